@@ -1,0 +1,19 @@
+use glam::DVec3;
+
+/// The sun as a parallel beam.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sun {
+    /// Unit vector from the scene towards the sun.
+    pub direction: DVec3,
+    /// Irradiance on a plane perpendicular to the beam at the top of the scene, W m⁻² nm⁻¹,
+    /// shape `[bands]`.
+    pub irradiance: Vec<f64>,
+}
+
+/// An isotropic sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sky {
+    /// Irradiance on the horizontal plane at the top of the scene, W m⁻² nm⁻¹, shape `[bands]`;
+    /// its radiance is this over π.
+    pub irradiance: Vec<f64>,
+}

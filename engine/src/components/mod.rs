@@ -1,0 +1,30 @@
+//! Plain data of the world's entities, one file a subject.
+//!
+//! Kinds of entity and what they carry:
+//!
+//! | entity | components |
+//! |---|---|
+//! | mesh prototype | [`Name`], [`SceneId`], [`Mesh`], [`PartMaterials`] |
+//! | material | [`Name`], [`SceneId`], [`SurfaceOptics`] |
+//! | instance | [`Placement`] (it holds its own scene id: there are millions of them) |
+//! | terrain | [`SceneId`], [`TerrainPatch`] |
+//! | sun, sky | [`Sun`], [`Sky`] |
+//! | sensor | [`Name`], [`SceneId`], [`Sensor`] |
+
+mod identity;
+mod light;
+mod mesh;
+mod optics;
+mod placement;
+mod sensor;
+mod terrain;
+
+pub use identity::{MaterialId, Name, PrototypeId, SceneId};
+pub use light::{Sky, Sun};
+pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
+pub use optics::{EnergyGain, SurfaceOptics};
+pub use placement::Placement;
+pub use sensor::{
+    Directions, ImageMeasure, Orthographic, PhotonMeasure, Photons, Sensor, Stop, System, View,
+};
+pub use terrain::TerrainPatch;

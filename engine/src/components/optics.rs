@@ -1,0 +1,85 @@
+/// What a surface does with light, each a fraction of the incident flux; shape `[bands]`.
+///
+/// Front is the side that the geometric normal points to. Holds only bands in which every fraction
+/// is lawful and no side sends out more than it receives; build it with [`SurfaceOptics::new`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceOptics {
+    front: Box<[f32]>,
+    back: Box<[f32]>,
+    transmittance: Box<[f32]>,
+}
+
+/// A band in which a surface would send out more light than it receives, or less than none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "band {band}: reflectance {reflectance} and transmittance {transmittance} must each be at \
+     least 0 and sum to at most 1"
+)]
+pub struct EnergyGain {
+    /// Band, from 0.
+    pub band: usize,
+    /// Reflectance of the worse side.
+    pub reflectance: f64,
+    /// Diffuse transmittance.
+    pub transmittance: f64,
+}
+
+impl SurfaceOptics {
+    /// Lambertian reflection on both sides, Lambertian transmission alike in both directions.
+    ///
+    /// Written in decimals, ρ + τ = 1 may come out an ulp above 1: such a sum is taken as 1.
+    ///
+    /// # Errors
+    /// The first band that breaks `ρ ≥ 0`, `τ ≥ 0`, `ρ + τ ≤ 1` on either side, NaN included.
+    ///
+    /// # Panics
+    /// If the three do not have the same number of bands.
+    pub fn new(front: &[f64], back: &[f64], transmittance: &[f64]) -> Result<Self, EnergyGain> {
+        assert!(front.len() == back.len() && back.len() == transmittance.len(), "one value a band");
+        let rounding = 4.0 * f64::EPSILON;
+        let lawful = |r: f64, t: f64| r >= 0.0 && t >= 0.0 && r + t <= 1.0 + rounding;
+        for (band, ((&f, &b), &t)) in front.iter().zip(back).zip(transmittance).enumerate() {
+            let reflectance = if lawful(f, t) { b } else { f };
+            if !lawful(reflectance, t) {
+                return Err(EnergyGain { band, reflectance, transmittance: t });
+            }
+        }
+        let narrow = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
+        Ok(Self { front: narrow(front), back: narrow(back), transmittance: narrow(transmittance) })
+    }
+
+    /// Reflectance of the front side, shape `[bands]`.
+    #[must_use]
+    pub fn front(&self) -> &[f32] {
+        &self.front
+    }
+
+    /// Reflectance of the back side, shape `[bands]`.
+    #[must_use]
+    pub fn back(&self) -> &[f32] {
+        &self.back
+    }
+
+    /// Transmittance, from either side to the other, shape `[bands]`.
+    #[must_use]
+    pub fn transmittance(&self) -> &[f32] {
+        &self.transmittance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SurfaceOptics;
+
+    #[test]
+    fn a_surface_exists_exactly_when_neither_side_gains_energy() {
+        let new = |f: f64, b: f64, t: f64| SurfaceOptics::new(&[f], &[b], &[t]);
+        assert!(new(0.5, 0.5, 0.5).is_ok());
+        assert!(new(0.1, 0.7, 0.3).is_ok());
+        assert!(new(0.7, 0.1, 0.3000001).is_err());
+        assert!(new(0.1, 0.71, 0.3).is_err());
+        assert!(new(-0.1, 0.0, 0.0).is_err());
+        assert!(new(f64::NAN, 0.0, 0.0).is_err());
+        assert!(new(0.0, 0.0, f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,125 @@
+use glam::{DVec2, DVec3, UVec2};
+
+/// Something that measures light.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sensor {
+    /// A parallel-projection image.
+    Orthographic(Orthographic),
+    /// The whole scene seen from given directions.
+    Directions(Directions),
+    /// What becomes of photons sent from sun and sky.
+    Photons(Photons),
+}
+
+/// A transport system: how a product is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum System {
+    /// Paths from the sensor, next-event estimation to the sun.
+    Backward,
+    /// Photon packets from sun and sky.
+    Forward,
+}
+
+/// A direction towards a sensor, as its angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From the vertical, rad.
+    pub zenith: f64,
+    /// Where the sensor is, clockwise from north, rad.
+    pub azimuth: f64,
+}
+
+impl View {
+    /// Unit vector from the scene towards the sensor.
+    #[must_use]
+    pub fn direction(self) -> DVec3 {
+        let (sin_zenith, cos_zenith) = self.zenith.sin_cos();
+        let (sin_azimuth, cos_azimuth) = self.azimuth.sin_cos();
+        DVec3::new(sin_zenith * sin_azimuth, sin_zenith * cos_azimuth, cos_zenith)
+    }
+}
+
+/// What an image holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageMeasure {
+    /// Radiance, W m⁻² sr⁻¹ nm⁻¹.
+    Radiance,
+    /// Bidirectional reflectance factor `π L / E`; the HDRF under a sky.
+    Brf,
+}
+
+/// Parallel-projection image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orthographic {
+    /// Columns and rows.
+    pub size: UVec2,
+    /// Width and height of the footprint in the plane perpendicular to the view, m.
+    pub extent: DVec2,
+    /// The ground point in the middle of the image, m, local frame.
+    pub center: DVec2,
+    /// Where the sensor is.
+    pub view: View,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// What to report.
+    pub measure: Vec<ImageMeasure>,
+    /// Which transport system estimates it.
+    pub system: System,
+}
+
+/// When a measurement is good enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The product's median relative standard error is at most this.
+    RelError(f64),
+    /// This much time has passed, s.
+    Seconds(f64),
+    /// This many samples a direction were drawn.
+    Samples(u64),
+}
+
+/// Reflectance factors of the scene towards given directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directions {
+    /// Where the sensors are.
+    pub views: Vec<View>,
+    /// The first that holds ends the measurement.
+    pub until: Vec<Stop>,
+    /// What to report.
+    pub measure: Vec<ImageMeasure>,
+    /// Which transport system estimates it.
+    pub system: System,
+}
+
+/// What photons are counted for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PhotonMeasure {
+    /// BRF in this many equal-area cells of the hemisphere.
+    BrfCells(u32),
+    /// BRF towards these directions, by virtual photons.
+    BrfViews(Vec<View>),
+    /// Reflected over incident flux.
+    Albedo,
+    /// Fraction of the incident flux that each material absorbs in each horizontal layer of this
+    /// thickness, m.
+    Fapar {
+        /// Thickness of a layer, m.
+        layer: f64,
+    },
+    /// Down- and upwelling flux density on the terrain and through horizontal planes.
+    Fluxes {
+        /// Side of a square pixel, m.
+        pixel: f64,
+        /// Heights of the planes, m, local frame.
+        heights: Vec<f64>,
+    },
+}
+
+/// Photon packets from sun and sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photons {
+    /// Packets a square metre of the terrain's rectangle.
+    pub per_area: f64,
+    /// What to report.
+    pub measure: Vec<PhotonMeasure>,
+}

@@ -1,0 +1,3 @@
+//! The `sunfleck` command.
+
+fn main() {}
