@@ -5,5 +5,6 @@
 
 pub mod components;
 pub mod document;
+pub mod output;
 pub mod products;
 pub mod units;

@@ -1,0 +1,70 @@
+//! ENVI rasters: float32, band sequential, little-endian, with a text header beside the pixels.
+
+use std::io::{self, Write};
+
+use super::Source;
+use crate::products::Image;
+
+/// Stands for "nothing was seen". Readers disagree on NaN; no product of light is negative.
+const NO_DATA: f32 = -9999.0;
+
+/// Writes the pixels, shape `[bands, rows, columns]`.
+pub(super) fn write_pixels(image: &Image, file: &mut impl Write) -> io::Result<()> {
+    let bands = image.bands.len();
+    let mut row_bytes = Vec::with_capacity(image.width * size_of::<f32>());
+    for band in 0..bands {
+        for row in image.values.chunks_exact(image.width * bands) {
+            row_bytes.clear();
+            for pixel in row.chunks_exact(bands) {
+                let value = if pixel[band].is_finite() { pixel[band] } else { NO_DATA };
+                row_bytes.extend_from_slice(&value.to_le_bytes());
+            }
+            file.write_all(&row_bytes)?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the header that goes with [`write_pixels`].
+pub(super) fn write_header(
+    source: &Source<'_>,
+    image: &Image,
+    file: &mut impl Write,
+) -> io::Result<()> {
+    let provenance = source.provenance().map(|(key, value)| format!("{key}: {}", item(&value)));
+    let description = provenance.join("; ");
+    let names: Vec<_> = image.bands.iter().map(|name| item(name)).collect();
+    writeln!(file, "ENVI")?;
+    writeln!(file, "description = {{{description}}}")?;
+    writeln!(file, "samples = {}", image.width)?;
+    writeln!(file, "lines = {}", image.height)?;
+    writeln!(file, "bands = {}", image.bands.len())?;
+    writeln!(file, "header offset = 0")?;
+    writeln!(file, "file type = ENVI Standard")?;
+    writeln!(file, "data type = 4")?;
+    writeln!(file, "interleave = bsq")?;
+    writeln!(file, "byte order = 0")?;
+    writeln!(file, "data ignore value = {NO_DATA}")?;
+    writeln!(file, "band names = {{{}}}", names.join(", "))?;
+    let wavelengths = source.wavelengths(image);
+    if wavelengths.iter().all(|wavelength| wavelength.is_finite()) {
+        let numbers: Vec<_> = wavelengths.iter().map(f64::to_string).collect();
+        writeln!(file, "wavelength units = Nanometers")?;
+        writeln!(file, "wavelength = {{{}}}", numbers.join(", "))?;
+    }
+    if let Some(place) = image.georeference {
+        // Pixel (1, 1) is the outer corner of the first pixel. The scene names no projection.
+        writeln!(
+            file,
+            "map info = {{Arbitrary, 1, 1, {}, {}, {}, {}, 0, North, units=Meters}}",
+            place.west, place.north, place.pixel_width, place.pixel_height
+        )?;
+    }
+    Ok(())
+}
+
+/// `text` without the letters that end an item or a list in a header.
+fn item(text: &str) -> String {
+    let plain = |letter| if matches!(letter, ',' | '{' | '}') { '_' } else { letter };
+    text.split_whitespace().collect::<Vec<_>>().join(" ").chars().map(plain).collect()
+}

@@ -1,0 +1,130 @@
+//! Names of files: from names of sensors and products, safe on every file system, and distinct.
+
+use std::collections::HashSet;
+
+use crate::products::Report;
+
+/// Names for one sensor.
+#[derive(Debug)]
+pub(super) struct SensorNames {
+    /// Its key in the summary.
+    pub(super) key: String,
+    /// Of its products, in order.
+    pub(super) products: Vec<ProductNames>,
+}
+
+/// Names for one product.
+#[derive(Debug)]
+pub(super) struct ProductNames {
+    /// Its key in the summary.
+    pub(super) key: String,
+    /// Its files' name, without extension.
+    pub(super) stem: String,
+}
+
+impl ProductNames {
+    pub(super) fn csv(&self) -> String {
+        format!("{}.csv", self.stem)
+    }
+
+    /// EXR, ENVI pixels, ENVI header, PNG.
+    pub(super) fn image(&self) -> [String; 4] {
+        ["exr", "img", "hdr", "png"].map(|extension| format!("{}.{extension}", self.stem))
+    }
+}
+
+/// Names for all that `report` holds, in its order.
+pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
+    let mut stems = Distinct::default();
+    let mut sensors = Distinct::default();
+    let names = report.sensors.iter().map(|sensor| {
+        let mut keys = Distinct::default();
+        let products = sensor.products.iter().map(|product| ProductNames {
+            key: keys.take(&product.name),
+            // Some file systems take `Nadir` and `nadir` for one name.
+            stem: stems.take_ignoring_case(&format!(
+                "{}_{}",
+                sanitise(&sensor.name),
+                sanitise(&product.name)
+            )),
+        });
+        SensorNames { key: sensors.take(&sensor.name), products: products.collect() }
+    });
+    names.collect()
+}
+
+/// Hands out each name once; a repeated one gets a number.
+#[derive(Debug, Default)]
+pub(super) struct Distinct {
+    taken: HashSet<String>,
+}
+
+impl Distinct {
+    pub(super) fn take(&mut self, name: &str) -> String {
+        self.take_by(name, str::to_owned)
+    }
+
+    fn take_ignoring_case(&mut self, name: &str) -> String {
+        self.take_by(name, str::to_lowercase)
+    }
+
+    fn take_by(&mut self, name: &str, identity: fn(&str) -> String) -> String {
+        let mut candidate = name.to_owned();
+        let mut number = 2_u64;
+        while !self.taken.insert(identity(&candidate)) {
+            candidate = format!("{name}_{number}");
+            number += 1;
+        }
+        candidate
+    }
+}
+
+/// `name` with letters, digits, `-` and `_` alone. It holds no dot, so it is neither hidden nor
+/// `..`, and with the product's name appended it is no reserved name (`CON`) of Windows.
+fn sanitise(name: &str) -> String {
+    // File systems allow 255 bytes for stem, product, number and extension together.
+    const LONGEST: usize = 80;
+    let mut safe = String::with_capacity(name.len().min(LONGEST));
+    for letter in name.chars() {
+        let letter = if letter.is_alphanumeric() || letter == '-' { letter } else { '_' };
+        if safe.len() + letter.len_utf8() > LONGEST {
+            break;
+        }
+        safe.push(letter);
+    }
+    if safe.is_empty() { "_".to_owned() } else { safe }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn unsafe_letters_become_underscores() {
+        assert_eq!(sanitise("../x"), "___x");
+        assert_eq!(sanitise("a/b"), "a_b");
+        assert_eq!(sanitise("C:\\x"), "C__x");
+        assert_eq!(sanitise("top view.2"), "top_view_2");
+        assert_eq!(sanitise("kärki-1"), "kärki-1");
+        assert_eq!(sanitise(""), "_");
+    }
+
+    #[test]
+    fn a_number_is_never_given_twice() {
+        let mut names = Distinct::default();
+        let given: Vec<_> =
+            ["a", "a_2", "a", "A"].map(|name| names.take_ignoring_case(name)).into();
+        assert_eq!(given, ["a", "a_2", "a_3", "A_4"]);
+    }
+
+    proptest! {
+        #[test]
+        fn any_name_is_safe(name in "\\PC{0,200}") {
+            let safe = sanitise(&name);
+            prop_assert!(!safe.is_empty() && safe.len() <= 80);
+            prop_assert!(safe.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_'));
+        }
+    }
+}
