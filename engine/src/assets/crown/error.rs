@@ -1,0 +1,39 @@
+/// Why a crown cannot grow.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "each variant's message names its fields")]
+pub enum CrownError {
+    #[error("{what} is {value}; write a length in metres between {least:e} and {most:e}")]
+    BadLength { what: &'static str, value: f64, least: f64, most: f64 },
+    #[error("base_m is {value}; write the height of the crown's lowest point in metres")]
+    BadBase { value: f64 },
+    #[error("leaf_area_m2 is {value}; write a finite area, 0 or above")]
+    BadArea { value: f64 },
+    #[error(
+        "leaf_area_m2 and the leaf's size make {count:e} leaves, more than {most:e}; use fewer or \
+         larger leaves, or several instances of a smaller crown"
+    )]
+    TooManyLeaves { count: f64, most: f64 },
+    #[error("leaf_area_m2 is {area}, less than half of one leaf of {leaf} m²; use smaller leaves")]
+    LessThanALeaf { area: f64, leaf: f64 },
+    #[error("the crown has neither leaves nor a trunk; give leaf_area_m2 above 0 or a trunk")]
+    Nothing,
+    #[error("trunk.tip_diameter_m is {tip}; write 0 up to trunk.diameter_m = {foot}")]
+    TipThickerThanFoot { tip: f64, foot: f64 },
+    #[error(
+        "trunk.height_m is {height}, above the crown's top at {top} m; shorten the trunk or raise \
+         the crown"
+    )]
+    TrunkAboveCrown { height: f64, top: f64 },
+    #[error("branches need a trunk to grow from; give a trunk")]
+    BranchesWithoutTrunk,
+    #[error(
+        "trunk.height_m is {height}, below the crown's base at {base} m, so no branch can start in \
+         the crown; lengthen the trunk or leave out the branches"
+    )]
+    TrunkBelowCrown { height: f64, base: f64 },
+    #[error("branches.zenith_deg is {value}; write an angle from 0 (up) to 180 (down)")]
+    BadZenith { value: f64 },
+    #[error("branches.count is {count}, more than {most}")]
+    TooManyBranches { count: u32, most: u32 },
+}

@@ -1,0 +1,178 @@
+//! Trees and shrubs generated leaf by leaf.
+
+mod error;
+mod leaves;
+mod shape;
+mod stream;
+mod wood;
+
+pub use error::CrownError;
+
+use std::ops::RangeInclusive;
+
+use super::AssetError;
+use crate::components::{Mesh, Part};
+use crate::document::{self, Branches, CrownShape, LeafAngle, LeafShape, Trunk};
+
+/// Most leaves of one crown.
+const MOST_LEAVES: f64 = 5e7;
+
+/// Most branches of one crown.
+const MOST_BRANCHES: u32 = 1_000_000;
+
+/// Lawful lengths, m: what lies outside was not meant in metres.
+const LENGTHS: RangeInclusive<f64> = 1e-6..=1e5;
+
+/// A generated crown, in the words of the scene language.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrownSpec {
+    /// Outline; its axis is the vertical through the origin.
+    pub shape: CrownShape,
+    /// Height of the lowest point of the outline, m.
+    pub base_m: f64,
+    /// One-sided area of all leaves, m².
+    pub leaf_area_m2: f64,
+    /// Distribution of leaf inclinations.
+    pub leaf_angle: LeafAngle,
+    /// Shape and size of a leaf.
+    pub leaf: LeafShape,
+    /// Trunk from the ground up, if any.
+    pub trunk: Option<Trunk>,
+    /// Branches from the trunk into the crown, if any.
+    pub branches: Option<Branches>,
+    /// Another number is another crown of the same kind.
+    pub seed: u64,
+}
+
+impl CrownSpec {
+    /// The crown that a scene's mesh describes, if it is one.
+    #[must_use]
+    pub fn from_document(mesh: &document::Mesh) -> Option<Self> {
+        let document::Mesh::Crown {
+            shape,
+            base_m,
+            leaf_area_m2,
+            leaf_angle,
+            leaf,
+            trunk,
+            branches,
+            seed,
+            ..
+        } = mesh
+        else {
+            return None;
+        };
+        Some(Self {
+            shape: shape.clone(),
+            base_m: *base_m,
+            leaf_area_m2: *leaf_area_m2,
+            leaf_angle: leaf_angle.clone(),
+            leaf: leaf.clone(),
+            trunk: trunk.clone(),
+            branches: branches.clone(),
+            seed: *seed,
+        })
+    }
+}
+
+/// A crown as a mesh with the parts `leaf` and `wood`, as far as it has them.
+///
+/// Leaf centres are uniform in the volume of the outline; normals follow the leaf angle
+/// distribution with uniform azimuths, and half of the fronts face down. There are
+/// `round(leaf area / area of a leaf)` leaves, of a size adjusted so that their total area is
+/// `leaf_area_m2` (to f32 rounding). Squares and rhombi are two triangles each. Trunk and branches
+/// are tapered, closed prisms, their corners on the circles of the given diameters; branches start
+/// on the trunk's axis and end near the outline.
+///
+/// The same specification always gives the same mesh, bit for bit.
+///
+/// # Errors
+/// [`AssetError::Crown`] for what cannot grow: see [`CrownError`].
+pub fn grow_crown(crown: &CrownSpec) -> Result<Mesh, AssetError> {
+    let count = check(crown)?;
+    let mut mesh = leaves::grow(crown, count);
+    let (leaf_triangles, leaf_discs) = (mesh.triangles.len() as u32, mesh.discs.len() as u32);
+    wood::grow(crown, &mut mesh);
+    let triangles = mesh.triangles.len() as u32;
+    let parts = [
+        ("leaf", 0..leaf_triangles, 0..leaf_discs),
+        ("wood", leaf_triangles..triangles, leaf_discs..leaf_discs),
+    ];
+    let parts = parts.into_iter().filter(|(_, triangles, discs)| triangles.len() + discs.len() > 0);
+    let named =
+        |(name, triangles, discs): (&str, _, _)| Part { name: name.to_owned(), triangles, discs };
+    mesh.parts = parts.map(named).collect();
+    Ok(mesh)
+}
+
+/// Number of leaves of a lawful crown.
+fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
+    for (what, value) in
+        shape::lengths(&crown.shape).into_iter().chain(leaves::lengths(&crown.leaf))
+    {
+        check_length(what, value)?;
+    }
+    if crown.base_m.is_nan() || crown.base_m.abs() > *LENGTHS.end() {
+        return Err(CrownError::BadBase { value: crown.base_m });
+    }
+    check_trunk(crown)?;
+    check_branches(crown)?;
+    let area = crown.leaf_area_m2;
+    if !(area >= 0.0 && area.is_finite()) {
+        return Err(CrownError::BadArea { value: area });
+    }
+    if area == 0.0 {
+        return if crown.trunk.is_some() { Ok(0) } else { Err(CrownError::Nothing) };
+    }
+    let leaf = leaves::area(&crown.leaf);
+    let count = (area / leaf).round();
+    if count > MOST_LEAVES {
+        return Err(CrownError::TooManyLeaves { count, most: MOST_LEAVES });
+    }
+    if count < 1.0 {
+        return Err(CrownError::LessThanALeaf { area, leaf });
+    }
+    Ok(count as usize)
+}
+
+fn check_length(what: &'static str, value: f64) -> Result<(), CrownError> {
+    if LENGTHS.contains(&value) {
+        return Ok(());
+    }
+    Err(CrownError::BadLength { what, value, least: *LENGTHS.start(), most: *LENGTHS.end() })
+}
+
+fn check_trunk(crown: &CrownSpec) -> Result<(), CrownError> {
+    let Some(trunk) = &crown.trunk else { return Ok(()) };
+    check_length("trunk.height_m", trunk.height_m)?;
+    check_length("trunk.diameter_m", trunk.diameter_m)?;
+    let (tip, foot) = (trunk.tip_diameter_m, trunk.diameter_m);
+    if !(0.0..=foot).contains(&tip) {
+        return Err(CrownError::TipThickerThanFoot { tip, foot });
+    }
+    let (height, top) = (trunk.height_m, crown.base_m + shape::height(&crown.shape));
+    if height > top {
+        return Err(CrownError::TrunkAboveCrown { height, top });
+    }
+    Ok(())
+}
+
+fn check_branches(crown: &CrownSpec) -> Result<(), CrownError> {
+    let Some(branches) = &crown.branches else { return Ok(()) };
+    let Some(trunk) = &crown.trunk else { return Err(CrownError::BranchesWithoutTrunk) };
+    check_length("branches.diameter_m", branches.diameter_m)?;
+    if !(0.0..=180.0).contains(&branches.zenith_deg) {
+        return Err(CrownError::BadZenith { value: branches.zenith_deg });
+    }
+    if branches.count > MOST_BRANCHES {
+        return Err(CrownError::TooManyBranches { count: branches.count, most: MOST_BRANCHES });
+    }
+    if trunk.height_m <= crown.base_m {
+        let (height, base) = (trunk.height_m, crown.base_m);
+        return Err(CrownError::TrunkBelowCrown { height, base });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+use std::io;
+use std::path::PathBuf;
+
+use super::crown::CrownError;
+use super::gltf::GltfError;
+
+/// Why a file is not what a scene can use: the file, the line where it has lines, and what to
+/// write instead.
+#[non_exhaustive]
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each variant's message names its fields")]
+pub enum AssetError {
+    #[error("{}: cannot be read: {cause}", .file.display())]
+    Unreadable { file: PathBuf, cause: io::Error },
+    #[error("{}: is a directory or a device; name a file", .file.display())]
+    NotAFile { file: PathBuf },
+    #[error(
+        "{}:{line}: is not UTF-8 text (binary, or UTF-16, say); save the file as UTF-8 text",
+        .file.display()
+    )]
+    NotText { file: PathBuf, line: usize },
+    #[error("{}:{line}: is longer than {most} bytes; this is no text table or OBJ file", .file.display())]
+    LineTooLong { file: PathBuf, line: usize, most: usize },
+    #[error("{}:{line}: {what} is {found:?}; write a finite number such as 1.5 or 2e-3", .file.display())]
+    BadNumber { file: PathBuf, line: usize, what: String, found: String },
+    #[error("{}:{line}: {what} is {value}; write a number above 0", .file.display())]
+    NotPositive { file: PathBuf, line: usize, what: String, value: f64 },
+    #[error(
+        "{}:{line}: coordinate {value:e} m is too large to keep; check the file and the length of \
+         its unit",
+        .file.display()
+    )]
+    TooFar { file: PathBuf, line: usize, value: f64 },
+    #[error("{}: holds more than {most} {what}; split it into several files", .file.display())]
+    TooMany { file: PathBuf, what: &'static str, most: usize },
+    #[error("{}: the unit's length is {unit_m} m; write a finite number above 0", .file.display())]
+    BadUnit { file: PathBuf, unit_m: f64 },
+    #[error(
+        "{}: holds no face that has an area; a mesh needs lines such as `v 0 0 0` and `f 1 2 3`, \
+         or triangles",
+        .file.display()
+    )]
+    NoFaces { file: PathBuf },
+
+    #[error("{}:{line}: this vertex has {found} coordinates; write three: `v x y z`", .file.display())]
+    ShortVertex { file: PathBuf, line: usize, found: usize },
+    #[error("{}:{line}: this face has {found} corners; write at least three", .file.display())]
+    ShortFace { file: PathBuf, line: usize, found: usize },
+    #[error(
+        "{}:{line}: this face has {found} corners, more than {most}; split it into triangles",
+        .file.display()
+    )]
+    LongFace { file: PathBuf, line: usize, found: usize, most: usize },
+    #[error(
+        "{}:{line}: {found:?} is no corner; write a vertex index as 7, 7/1, 7//3, 7/1/3 or -1",
+        .file.display()
+    )]
+    BadCorner { file: PathBuf, line: usize, found: String },
+    #[error(
+        "{}:{line}: corner {index} names none of the {count} vertices; count from 1 at the first, \
+         or from -1 backwards",
+        .file.display()
+    )]
+    NoSuchVertex { file: PathBuf, line: usize, index: i64, count: usize },
+
+    #[error("{}: holds no rows", .file.display())]
+    NoRows { file: PathBuf },
+    #[error("{}:{line}: has no header; write the names of its columns there: {wanted}", .file.display())]
+    NoHeader { file: PathBuf, line: usize, wanted: String },
+    #[error("{}:{line}: there is no column {column:?}; write {nearest:?} or one of {known:?}", .file.display())]
+    UnknownColumn {
+        file: PathBuf,
+        line: usize,
+        column: String,
+        nearest: String,
+        known: Vec<String>,
+    },
+    #[error("{}:{line}: column {column:?} is missing among {found:?}; add it", .file.display())]
+    MissingColumn { file: PathBuf, line: usize, column: String, found: Vec<String> },
+    #[error("{}:{line}: columns {first:?} and {second:?} say the same; keep one", .file.display())]
+    RepeatedColumn { file: PathBuf, line: usize, first: String, second: String },
+    #[error("{}:{line}: has {found} values for {wanted} columns", .file.display())]
+    WrongFieldCount { file: PathBuf, line: usize, found: usize, wanted: usize },
+    #[error("{}:{line}: the normal is zero; write a direction", .file.display())]
+    ZeroNormal { file: PathBuf, line: usize },
+    #[error(
+        "{}:{line}: wavelength {wavelength} nm follows {previous} nm; sort the rows by wavelength, \
+         each once",
+        .file.display()
+    )]
+    WavelengthOrder { file: PathBuf, line: usize, previous: f64, wavelength: f64 },
+    #[error("{}: holds one wavelength; a spectrum needs two or more", .file.display())]
+    ShortSpectrum { file: PathBuf },
+
+    #[error("{}: {problem}", .file.display())]
+    Gltf { file: PathBuf, problem: GltfError },
+    #[error(transparent)]
+    Crown(#[from] CrownError),
+}
+
+/// The beginning of a text that may be long, for a message.
+pub(super) fn excerpt(text: &str) -> String {
+    const MOST: usize = 40;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}

@@ -1,0 +1,256 @@
+//! From a file's axes, unit and origin to a mesh in metres, z up.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DVec3, Vec3};
+use indexmap::IndexMap;
+
+use super::{AssetError, Loaded};
+use crate::components::{Mesh, Part};
+use crate::document::{Axis, Origin};
+
+/// Most triangles of one file.
+const MOST_TRIANGLES: usize = 100_000_000;
+
+/// Most vertices of one file.
+const MOST_VERTICES: usize = 3 * MOST_TRIANGLES;
+
+/// Marks a vertex that no triangle uses.
+const UNUSED: u32 = u32::MAX;
+
+/// From 2^10 m on, f32 coordinates lie more than 0.1 mm apart.
+const COARSE: f32 = 1024.0;
+
+/// How a file's coordinates become those of a prototype.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Import {
+    /// Which axis of the file points up.
+    pub up: Axis,
+    /// Length of the file's unit, m.
+    pub unit_m: f64,
+    /// What becomes the origin.
+    pub origin: Origin,
+}
+
+impl Import {
+    /// A point of the file in metres, z up: a rotation and a scale, never a mirror.
+    #[must_use]
+    pub fn point(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
+        self.unit_m
+            * match self.up {
+                Axis::X => DVec3::new(y, z, x),
+                Axis::Y => DVec3::new(x, -z, y),
+                Axis::Z => DVec3::new(x, y, z),
+            }
+    }
+
+    pub(super) fn check(&self, file: &Path) -> Result<(), AssetError> {
+        if self.unit_m.is_finite() && self.unit_m > 0.0 {
+            return Ok(());
+        }
+        Err(AssetError::BadUnit { file: file.to_owned(), unit_m: self.unit_m })
+    }
+}
+
+/// Collects triangles of a file in metres, z up, and makes a mesh of them.
+pub(super) struct Collector {
+    pub(super) file: PathBuf,
+    pub(super) vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Part of each triangle, in the caller's numbers.
+    parts: Vec<u32>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Collector {
+    pub(super) fn new(file: &Path) -> Self {
+        Self {
+            file: file.to_owned(),
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            parts: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The place of the next vertex, if so many more may come.
+    pub(super) fn reserve(&self, count: usize) -> Result<u32, AssetError> {
+        let first = self.vertices.len();
+        if count > MOST_VERTICES - first {
+            return Err(self.too_many("vertices", MOST_VERTICES));
+        }
+        Ok(first as u32)
+    }
+
+    /// Adds a vertex unless it lies beyond what f32 can hold; gives back the offending coordinate.
+    pub(super) fn add_vertex(&mut self, vertex: DVec3) -> Result<(), f64> {
+        // A quarter of the range, so that differences and sums of two stay inside it.
+        let far = f64::from(f32::MAX) / 4.0;
+        let bad = |value: &f64| value.is_nan() || value.abs() > far;
+        if let Some(value) = vertex.to_array().into_iter().find(bad) {
+            return Err(value);
+        }
+        self.vertices.push(vertex);
+        Ok(())
+    }
+
+    pub(super) fn add_triangle(&mut self, corners: [u32; 3], part: u32) -> Result<(), AssetError> {
+        if self.triangles.len() == MOST_TRIANGLES {
+            return Err(self.too_many("triangles", MOST_TRIANGLES));
+        }
+        self.triangles.push(corners);
+        self.parts.push(part);
+        Ok(())
+    }
+
+    fn too_many(&self, what: &'static str, most: usize) -> AssetError {
+        AssetError::TooMany { file: self.file.clone(), what, most }
+    }
+
+    pub(super) fn warn(&mut self, what: &str) {
+        self.warnings.push(format!("{}: {what}", self.file.display()));
+    }
+
+    /// The mesh; `names` has the name of each of the caller's parts, and equal names are one part.
+    pub(super) fn finish(
+        mut self,
+        names: &[String],
+        import: &Import,
+    ) -> Result<Loaded<Mesh>, AssetError> {
+        let total = self.triangles.len();
+        let corners = |vertices: &[DVec3], t: [u32; 3]| t.map(|corner| vertices[corner as usize]);
+        self.keep_triangles(|vertices, t| has_area(corners(vertices, t)));
+        let origin = self.origin(import);
+        let vertices: Vec<Vec3> = self.vertices.iter().map(|&v| (v - origin).as_vec3()).collect();
+        // What had an area may have none left in f32.
+        self.keep_triangles(|_, t| has_area(t.map(|corner| vertices[corner as usize].as_dvec3())));
+        if self.triangles.is_empty() {
+            return Err(AssetError::NoFaces { file: self.file });
+        }
+        let dropped = total - self.triangles.len();
+        if dropped > 0 {
+            self.warn(&format!("{dropped} triangles without area were dropped"));
+        }
+        let mesh = self.mesh(&vertices, names);
+        if let Some(warning) = coarse(&self.file, &mesh, &import.origin) {
+            self.warnings.push(warning);
+        }
+        Ok(Loaded { value: mesh, warnings: self.warnings })
+    }
+
+    fn keep_triangles(&mut self, keep: impl Fn(&[DVec3], [u32; 3]) -> bool) {
+        let mut kept = 0;
+        for index in 0..self.triangles.len() {
+            if keep(&self.vertices, self.triangles[index]) {
+                self.triangles[kept] = self.triangles[index];
+                self.parts[kept] = self.parts[index];
+                kept += 1;
+            }
+        }
+        self.triangles.truncate(kept);
+        self.parts.truncate(kept);
+    }
+
+    /// The new origin, of corners alone: vertices that no triangle uses do not count.
+    fn origin(&self, import: &Import) -> DVec3 {
+        if import.origin == Origin::File {
+            return DVec3::ZERO;
+        }
+        let corners = self.triangles.iter().flatten().map(|&corner| self.vertices[corner as usize]);
+        let bounds = corners.map(|v| (v, v)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (low, high) = bounds.unwrap_or_default();
+        (0.5 * (low + high)).with_z(low.z)
+    }
+
+    /// Sorts the triangles by part, parts by first appearance, and leaves out unused vertices.
+    fn mesh(&mut self, vertices: &[Vec3], names: &[String]) -> Mesh {
+        let mut merged: IndexMap<&str, u32> = IndexMap::new();
+        let part_of: Vec<usize> =
+            names.iter().map(|name| merged.insert_full(name.as_str(), 0).0).collect();
+        for &part in &self.parts {
+            merged[part_of[part as usize]] += 1;
+        }
+        let mut parts = Vec::new();
+        let mut next = Vec::new();
+        let mut end = 0;
+        for (&name, &count) in &merged {
+            next.push(end);
+            end += count;
+            if count == 0 {
+                let what = format!("part {name:?} has no triangle and was left out");
+                self.warnings.push(format!("{}: {what}", self.file.display()));
+                continue;
+            }
+            parts.push(Part { name: name.to_owned(), triangles: end - count..end, discs: 0..0 });
+        }
+
+        let mut new_of = vec![UNUSED; vertices.len()];
+        for &corner in self.triangles.iter().flatten() {
+            new_of[corner as usize] = 0;
+        }
+        let mut used = Vec::new();
+        for (new, &vertex) in new_of.iter_mut().zip(vertices).filter(|(new, _)| **new != UNUSED) {
+            *new = used.len() as u32;
+            used.push(vertex);
+        }
+        let mut triangles = vec![[0; 3]; self.triangles.len()];
+        for (corners, &part) in self.triangles.iter().zip(&self.parts) {
+            let place = &mut next[part_of[part as usize]];
+            triangles[*place as usize] = corners.map(|corner| new_of[corner as usize]);
+            *place += 1;
+        }
+        Mesh { vertices: used, triangles, discs: Vec::new(), parts }
+    }
+}
+
+/// A warning for a mesh so far from its origin that f32 keeps less than 0.1 mm.
+pub(super) fn coarse(file: &Path, mesh: &Mesh, origin: &Origin) -> Option<String> {
+    let (low, high) = mesh.bounds()?;
+    let far = low.abs().max(high.abs()).max_element();
+    let advice = match origin {
+        Origin::File => "; its own place is better kept out of it (origin: BaseCenter)",
+        Origin::BaseCenter => "; check the length of its unit",
+    };
+    (far >= COARSE).then(|| {
+        format!(
+            "{}: coordinates reach {far} m from the origin, where less than 0.1 mm is kept{advice}",
+            file.display()
+        )
+    })
+}
+
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    // Scaled to its longest edge, so that the square of no lawful area underflows.
+    let (ab, ac) = (b - a, c - a);
+    let longest = ab.abs().max(ac.abs()).max_element();
+    longest > 0.0 && (ab / longest).cross(ac / longest) != DVec3::ZERO
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "powers of two and their products are exact")]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+
+    #[test]
+    fn every_axis_is_a_rotation_that_takes_its_axis_up() {
+        for (up, axis) in [(Axis::X, DVec3::X), (Axis::Y, DVec3::Y), (Axis::Z, DVec3::Z)] {
+            let import = Import { up, unit_m: 2.0, origin: Origin::File };
+            let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| import.point(axis));
+            let [x, y, z] = columns;
+            assert_eq!(DMat3::from_cols(x, y, z).determinant(), 8.0, "{import:?}");
+            assert_eq!(import.point(axis), 2.0 * DVec3::Z, "{import:?}");
+        }
+        let north = Import { up: Axis::Y, unit_m: 1.0, origin: Origin::File };
+        assert_eq!(north.point(DVec3::NEG_Z), DVec3::Y);
+    }
+
+    #[test]
+    fn tiny_triangles_have_an_area_and_flat_ones_have_none() {
+        let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+        assert!(has_area([at(0.0, 0.0), at(1e-30, 0.0), at(0.0, 1e-30)]));
+        assert!(!has_area([at(0.0, 0.0), at(1.0, 1.0), at(3.0, 3.0)]));
+        assert!(!has_area([at(0.0, 0.0), at(0.0, 0.0), at(1.0, 2.0)]));
+    }
+}

@@ -1,0 +1,39 @@
+//! What is read from files or generated: path in, value out.
+//!
+//! | function | from | to |
+//! |---|---|---|
+//! | [`read_obj`], [`read_gltf`] | Wavefront OBJ, glTF 2.0 and GLB | [`Mesh`](crate::components::Mesh) |
+//! | [`read_discs`] | CSV or RAMI text | [`Mesh`](crate::components::Mesh) |
+//! | [`grow_crown`] | a [`CrownSpec`] | [`Mesh`](crate::components::Mesh) |
+//! | [`read_instances`] | a text table | [`Row`]s |
+//! | [`read_spectrum`] | two columns of a table | points (wavelength, value) |
+
+mod crown;
+mod discs;
+mod error;
+mod gltf;
+mod import;
+mod instances;
+mod obj;
+mod polygon;
+mod spectrum;
+mod table;
+mod text;
+
+pub use crown::{CrownError, CrownSpec, grow_crown};
+pub use discs::read_discs;
+pub use error::AssetError;
+pub use gltf::{GltfError, read_gltf};
+pub use import::Import;
+pub use instances::{Row, read_instances};
+pub use obj::read_obj;
+pub use spectrum::read_spectrum;
+
+/// What was read, and what about it the author of the scene should know.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded<T> {
+    /// What was read.
+    pub value: T,
+    /// Each a sentence that names the file.
+    pub warnings: Vec<String>,
+}
