@@ -2,6 +2,20 @@
 
 #[macro_use]
 mod schema;
+mod check;
+mod decode;
+mod diagnostic;
+mod encode;
+mod formula;
+mod params;
+mod read;
 mod scene;
+mod source;
+mod syntax;
 
+pub use check::check;
+pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
+pub use read::{Options, ReadError, Reading, read_file, read_text};
 pub use scene::*;
+pub use source::Source;
+pub use syntax::Span;

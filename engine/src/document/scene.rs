@@ -1,13 +1,19 @@
+use std::borrow::Cow;
+
 use indexmap::IndexMap;
+
+use super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
+use super::encode::{Encode, Text, differs};
+use super::syntax::Node;
 
 /// Named values in document order.
 pub type Map<T> = IndexMap<String, T>;
 
 record! {
     /// A scene file: a function of its `params`.
-    pub struct Scene {
+    pub struct Scene ("the scene") {
         /// Version of the language; this is version 1.
-        format: u32,
+        format: u32 => "1",
         /// What a person calls the scene.
         title: String = String::new(),
         /// Values that `"=expr"` strings may use.
@@ -15,7 +21,7 @@ record! {
         /// Where the local frame lies on Earth.
         frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0) },
         /// Spectral bands, in the order of all band lists.
-        bands: Vec<Band>,
+        bands: Vec<Band> => r#"[(name: "red", center_nm: 660.0, width_nm: 10.0)]"#,
         /// Spectra that materials and lights may name.
         spectra: Map<Spectrum> = Map::new(),
         /// Surfaces.
@@ -23,7 +29,7 @@ record! {
         /// Mesh prototypes.
         meshes: Map<Mesh> = Map::new(),
         /// The ground.
-        terrain: Terrain,
+        terrain: Terrain => r#"Plane(size_m: (100.0, 100.0), material: "soil")"#,
         /// What stands on it.
         instances: Vec<Instances> = Vec::new(),
         /// The sun; without it only the sky lights the scene.
@@ -33,7 +39,7 @@ record! {
         /// What lies beyond the terrain's rectangle.
         boundary: Boundary = Boundary::Isolated,
         /// What measures the light.
-        sensors: Map<Sensor>,
+        sensors: Map<Sensor> => r#"{ "brf": Directions(views: PrincipalPlane) }"#,
         /// How light is traced.
         transport: Transport = Transport::default(),
         /// Named sets of changes to `params`.
@@ -43,7 +49,7 @@ record! {
 
 record! {
     /// Anchor of the local frame.
-    pub struct Frame {
+    pub struct Frame ("the frame") {
         /// Easting, northing and height (UTM, say) of the local origin, m. Results do not depend on it.
         origin_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
     }
@@ -51,11 +57,11 @@ record! {
 
 record! {
     /// A spectral band.
-    pub struct Band {
+    pub struct Band ("a band") {
         /// Its name in all outputs.
-        name: String,
+        name: String => r#""red""#,
         /// Centre wavelength, nm.
-        center_nm: f64,
+        center_nm: f64 => "660.0",
         /// Full width, nm; 0 means the centre wavelength alone.
         width_nm: f64 = 0.0,
     }
@@ -63,24 +69,24 @@ record! {
 
 choice! {
     /// A quantity as a function of wavelength, or given band by band.
-    pub enum Spectrum {
+    pub enum Spectrum ("a spectrum") {
         /// The same at every wavelength.
-        Constant(f64),
+        Constant(f64 => "0.3"),
         /// One value a band of this scene.
-        Bands(Vec<f64>),
+        Bands(Vec<f64> => "[0.1, 0.2]"),
         /// Points (wavelength nm, value), joined by straight lines and averaged over each band.
-        Points(Vec<(f64, f64)>),
+        Points(Vec<(f64, f64)> => "[(400.0, 0.05), (800.0, 0.3)]"),
         /// Such points from two columns of a CSV file.
         Table {
             /// Path, relative to the scene file.
-            file: String,
+            file: String => r#""spectra/soil.csv""#,
             /// Header of the column of wavelengths, nm.
             wavelength: String = "wavelength_nm".to_owned(),
             /// Header of the column of values; if absent, the second column of the file.
             value: Option<String> = None,
         },
         /// One of the scene's `spectra`.
-        Named(String),
+        Named(String => r#""soil""#),
         /// Leaf reflectance or transmittance (whichever the key asks for) by PROSPECT-PRO.
         Prospect {
             /// Leaf structure parameter N, 1 to 3.
@@ -107,20 +113,20 @@ choice! {
 
 choice! {
     /// A surface.
-    pub enum Material {
+    pub enum Material ("a material") {
         /// Reflects diffusely on both sides; opaque.
         Lambertian {
             /// Reflectance of the front side, and of the back unless that is given.
-            reflectance: Spectrum,
+            reflectance: Spectrum => "Constant(0.3)",
             /// Reflectance of the back side.
             back_reflectance: Option<Spectrum> = None,
         },
         /// Reflects and transmits diffusely.
         Leaf {
             /// Reflectance of the front side, and of the back unless that is given.
-            reflectance: Spectrum,
+            reflectance: Spectrum => "Constant(0.3)",
             /// Transmittance, the same in both directions.
-            transmittance: Spectrum,
+            transmittance: Spectrum => "Constant(0.2)",
             /// Reflectance of the back side.
             back_reflectance: Option<Spectrum> = None,
         },
@@ -129,7 +135,7 @@ choice! {
 
 choice! {
     /// The axis of a file's model that points to the zenith.
-    pub enum Axis {
+    pub enum Axis ("an axis") {
         /// x points up, y to the east, z to the north.
         X,
         /// y points up; x stays east and -z points north.
@@ -141,15 +147,15 @@ choice! {
 
 choice! {
     /// A mesh prototype.
-    pub enum Mesh {
+    pub enum Mesh ("a mesh") {
         /// Wavefront OBJ; groups, and within them materials, are the parts.
         Obj {
             /// Path, relative to the scene file.
-            file: String,
+            file: String => r#""assets/tree.obj""#,
             /// Which axis points up.
-            up: Axis,
+            up: Axis => "Z",
             /// Length of the file's unit, m.
-            unit_m: f64,
+            unit_m: f64 => "1.0",
             /// Material of each part.
             parts: Map<String> = Map::new(),
             /// Material of the parts that `parts` does not name.
@@ -160,11 +166,11 @@ choice! {
         /// glTF 2.0 or GLB; materials are the parts.
         Gltf {
             /// Path, relative to the scene file.
-            file: String,
+            file: String => r#""assets/tree.glb""#,
             /// Which axis points up (Y, if the file keeps to the standard).
-            up: Axis,
+            up: Axis => "Y",
             /// Length of the file's unit, m.
-            unit_m: f64,
+            unit_m: f64 => "1.0",
             /// Material of each part.
             parts: Map<String> = Map::new(),
             /// Material of the parts that `parts` does not name.
@@ -176,24 +182,24 @@ choice! {
         /// with rows `r x y z nx ny nz`; m, z up.
         Discs {
             /// Path, relative to the scene file.
-            file: String,
+            file: String => r#""assets/crown.csv""#,
             /// Material of the discs.
-            material: String,
+            material: String => r#""leaf""#,
         },
         /// A tree or shrub generated leaf by leaf.
         Crown {
             /// Outline of the crown.
-            shape: CrownShape,
+            shape: CrownShape => "Ellipsoid(diameter_m: 3.0, height_m: 5.0)",
             /// Height of the crown's lowest point above the ground, m.
-            base_m: f64,
+            base_m: f64 => "2.0",
             /// One-sided area of all leaves, m².
-            leaf_area_m2: f64,
+            leaf_area_m2: f64 => "30.0",
             /// Distribution of leaf inclinations.
             leaf_angle: LeafAngle = LeafAngle::Spherical,
             /// Shape and size of a leaf.
-            leaf: LeafShape,
+            leaf: LeafShape => "Disc(radius_m: 0.05)",
             /// Material of the leaves.
-            leaf_material: String,
+            leaf_material: String => r#""leaf""#,
             /// Trunk, if any.
             trunk: Option<Trunk> = None,
             /// Branches from the trunk into the crown, if any.
@@ -208,7 +214,7 @@ choice! {
 
 choice! {
     /// What becomes the origin of a prototype.
-    pub enum Origin {
+    pub enum Origin ("an origin") {
         /// The file's own origin.
         File,
         /// The middle of the bounding box, at its lowest height.
@@ -218,39 +224,39 @@ choice! {
 
 choice! {
     /// Outline of a generated crown.
-    pub enum CrownShape {
+    pub enum CrownShape ("a crown shape") {
         /// Ellipsoid of revolution.
         Ellipsoid {
             /// Largest width, m.
-            diameter_m: f64,
+            diameter_m: f64 => "3.0",
             /// From its lowest to its highest point, m.
-            height_m: f64,
+            height_m: f64 => "5.0",
         },
         /// Upright cone.
         Cone {
             /// Width at its base, m.
-            diameter_m: f64,
+            diameter_m: f64 => "3.0",
             /// From base to tip, m.
-            height_m: f64,
+            height_m: f64 => "5.0",
         },
         /// Upright cylinder.
         Cylinder {
             /// Width, m.
-            diameter_m: f64,
+            diameter_m: f64 => "3.0",
             /// From base to top, m.
-            height_m: f64,
+            height_m: f64 => "5.0",
         },
         /// Box, for homogeneous layers.
         Box {
             /// Extent to the east, to the north and up, m.
-            size_m: (f64, f64, f64),
+            size_m: (f64, f64, f64) => "(10.0, 10.0, 2.0)",
         },
     }
 }
 
 choice! {
     /// Distribution of the angle θ between leaf normal and zenith; azimuths are uniform.
-    pub enum LeafAngle {
+    pub enum LeafAngle ("a leaf angle distribution") {
         /// g(θ) = sin θ.
         Spherical,
         /// g(θ) = 2/π.
@@ -268,34 +274,34 @@ choice! {
 
 choice! {
     /// Shape of a generated leaf.
-    pub enum LeafShape {
+    pub enum LeafShape ("a leaf shape") {
         /// Flat disc.
         Disc {
             /// Radius, m.
-            radius_m: f64,
+            radius_m: f64 => "0.05",
         },
         /// Flat square.
         Square {
             /// Side, m.
-            side_m: f64,
+            side_m: f64 => "0.05",
         },
         /// Flat rhombus.
         Rhombus {
             /// Long diagonal, m.
-            length_m: f64,
+            length_m: f64 => "0.08",
             /// Short diagonal, m.
-            width_m: f64,
+            width_m: f64 => "0.04",
         },
     }
 }
 
 record! {
     /// Trunk of a generated tree: a tapered, closed prism.
-    pub struct Trunk {
+    pub struct Trunk ("the trunk") {
         /// Height of its tip, m.
-        height_m: f64,
+        height_m: f64 => "5.0",
         /// Diameter at the ground, m.
-        diameter_m: f64,
+        diameter_m: f64 => "0.2",
         /// Diameter at the tip, m.
         tip_diameter_m: f64 = 0.01,
     }
@@ -303,11 +309,11 @@ record! {
 
 record! {
     /// Branches of a generated tree, spread along the trunk within the crown.
-    pub struct Branches {
+    pub struct Branches ("the branches") {
         /// How many.
-        count: u32,
+        count: u32 => "12",
         /// Diameter at the trunk, m.
-        diameter_m: f64,
+        diameter_m: f64 => "0.2",
         /// Angle from the zenith, degrees.
         zenith_deg: f64 = 60.0,
     }
@@ -315,13 +321,13 @@ record! {
 
 choice! {
     /// The ground.
-    pub enum Terrain {
+    pub enum Terrain ("a terrain") {
         /// Horizontal rectangle.
         Plane {
             /// Extent to the east and to the north, m.
-            size_m: (f64, f64),
+            size_m: (f64, f64) => "(100.0, 100.0)",
             /// Material.
-            material: String,
+            material: String => r#""soil""#,
             /// South-west corner, m.
             corner_m: (f64, f64) = (0.0, 0.0),
             /// Height, m.
@@ -332,13 +338,13 @@ choice! {
 
 choice! {
     /// Instances of mesh prototypes.
-    pub enum Instances {
+    pub enum Instances ("instances") {
         /// Places from a text table.
         Table {
             /// Path, relative to the scene file.
-            file: String,
+            file: String => r#""stand.csv""#,
             /// Mesh that stands there.
-            of: String,
+            of: String => r#""tree""#,
             /// Names of the columns where the file has no header: `x_m`, `y_m`, `z_m`, `yaw_deg`
             /// or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`, `scale`, `scale_vertical`.
             columns: Option<Vec<String>> = None,
@@ -346,9 +352,9 @@ choice! {
         /// Places written here.
         List {
             /// Mesh that stands there.
-            of: String,
+            of: String => r#""tree""#,
             /// Positions, m.
-            at_m: Vec<(f64, f64, f64)>,
+            at_m: Vec<(f64, f64, f64)> => "[(20.0, 30.0, 0.0)]",
             /// Turn of each (counter-clockwise seen from above), degrees; none if empty.
             yaw_deg: Vec<f64> = Vec::new(),
             /// Scale of each; 1 if empty.
@@ -359,9 +365,9 @@ choice! {
 
 record! {
     /// The sun.
-    pub struct Sun {
+    pub struct Sun ("the sun") {
         /// Angle from the vertical, degrees, below 90.
-        zenith_deg: f64,
+        zenith_deg: f64 => "30.0",
         /// Where the sun is, clockwise from north, degrees.
         azimuth_deg: f64 = 0.0,
         /// Irradiance on a plane perpendicular to the beam, W m⁻² nm⁻¹; with `sky: Fraction(..)`
@@ -372,24 +378,24 @@ record! {
 
 choice! {
     /// The sky.
-    pub enum Sky {
+    pub enum Sky ("a sky") {
         /// Black.
         None,
         /// Isotropic; the share of the total irradiance that is diffuse, band by band
-        /// (SKY_TO_TOTAL): the sun keeps `irradiance (1 - s)`, the sky gives the horizontal plane
+        /// (`SKY_TO_TOTAL`): the sun keeps `irradiance (1 - s)`, the sky gives the horizontal plane
         /// `irradiance s cos(sun zenith)`.
-        Fraction(Vec<f64>),
+        Fraction(Vec<f64> => "[0.1, 0.05]"),
         /// Isotropic, of its own irradiance.
         Isotropic {
             /// Irradiance on the horizontal plane, W m⁻² nm⁻¹.
-            irradiance: Spectrum,
+            irradiance: Spectrum => "Constant(0.2)",
         },
     }
 }
 
 choice! {
     /// What lies beyond the terrain's rectangle.
-    pub enum Boundary {
+    pub enum Boundary ("a boundary") {
         /// The same scene again, without end.
         Periodic,
         /// Nothing.
@@ -399,13 +405,13 @@ choice! {
 
 choice! {
     /// A sensor.
-    pub enum Sensor {
+    pub enum Sensor ("a sensor") {
         /// Parallel-projection image.
         Orthographic {
             /// Columns and rows.
-            size_px: (u32, u32),
+            size_px: (u32, u32) => "(256, 256)",
             /// Width and height of the footprint in the plane perpendicular to the view, m.
-            extent_m: (f64, f64),
+            extent_m: (f64, f64) => "(50.0, 50.0)",
             /// Point on the ground in the middle of the image, m; the terrain's middle if absent.
             center_m: Option<(f64, f64)> = None,
             /// Zenith angle of the sensor, degrees.
@@ -422,7 +428,7 @@ choice! {
         /// The scene seen from many directions.
         Directions {
             /// Where the sensors are.
-            views: Views,
+            views: Views => "PrincipalPlane",
             /// When it is good enough.
             until: Until = Until::RelError(0.005),
             /// What to report.
@@ -442,7 +448,7 @@ choice! {
 
 choice! {
     /// Directions towards sensors.
-    pub enum Views {
+    pub enum Views ("views") {
         /// In the sun's vertical plane; positive angles are on the sun's side.
         PrincipalPlane {
             /// Largest zenith angle, degrees.
@@ -458,25 +464,25 @@ choice! {
             step_deg: f64 = 5.0,
         },
         /// Pairs (zenith, azimuth), degrees.
-        List(Vec<(f64, f64)>),
+        List(Vec<(f64, f64)> => "[(30.0, 90.0), (60.0, 90.0)]"),
     }
 }
 
 choice! {
     /// When a measurement is good enough.
-    pub enum Until {
+    pub enum Until ("an end of the measurement") {
         /// Its median relative standard error is at most this.
-        RelError(f64),
+        RelError(f64 => "0.005"),
         /// It has run for so many seconds.
-        Seconds(f64),
+        Seconds(f64 => "60.0"),
         /// So many samples a direction.
-        Samples(u64),
+        Samples(u64 => "1000"),
     }
 }
 
 choice! {
     /// What an image holds.
-    pub enum ImageMeasure {
+    pub enum ImageMeasure ("a measure of an image") {
         /// Radiance, W m⁻² sr⁻¹ nm⁻¹.
         Radiance,
         /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
@@ -486,11 +492,11 @@ choice! {
 
 choice! {
     /// What photons are counted for.
-    pub enum PhotonMeasure {
+    pub enum PhotonMeasure ("a measure of photons") {
         /// BRF in so many equal-area cells of the hemisphere.
-        BrfCells(u32),
+        BrfCells(u32 => "150"),
         /// BRF towards directions, by virtual photons.
-        BrfViews(Views),
+        BrfViews(Views => "PrincipalPlane"),
         /// Reflected over incident flux.
         Albedo,
         /// Share of the incident flux that each material absorbs in each layer.
@@ -510,7 +516,7 @@ choice! {
 
 choice! {
     /// A transport system.
-    pub enum System {
+    pub enum System ("a transport system") {
         /// Paths from the sensor.
         Backward,
         /// Photon packets from sun and sky.
@@ -520,7 +526,7 @@ choice! {
 
 record! {
     /// How light is traced.
-    pub struct Transport {
+    pub struct Transport ("`transport`") {
         /// Another number is another, independent estimate.
         seed: u64 = 1,
         /// How weak paths end.
@@ -533,7 +539,7 @@ record! {
 record! {
     /// Russian roulette: from some order on a path ends with some probability; those that survive
     /// carry its power on.
-    pub struct Roulette {
+    pub struct Roulette ("the roulette") {
         /// Orders of scattering before it starts.
         after_order: u32 = 5,
         /// Probability to end, below 1.

@@ -1,30 +1,250 @@
 //! `record!` and `choice!`: one declaration gives a document type its Rust form, its reader (every
 //! error with its place, unknown keys with the nearest known one) and its writer.
+//!
+//! `key: Type` must be written, `key: Type = default` may be. The text behind the type's name is
+//! what a person calls it; that behind `=>` shows how a key is written where it is missing.
 
 macro_rules! record {
-    ($(#[$meta:meta])* pub struct $name:ident {
-        $($(#[$field_meta:meta])* $field:ident : $type:ty $(= $default:expr)?),* $(,)?
+    ($(#[$meta:meta])* pub struct $name:ident ($kind:literal) {
+        $($(#[$field_meta:meta])* $field:ident : $type:ty
+            $(=> $example:literal)? $(= $default:expr)?),* $(,)?
     }) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq)]
         pub struct $name { $($(#[$field_meta])* pub $field: $type),* }
+
+        impl Decode for $name {
+            fn expected() -> Cow<'static, str> {
+                $kind.into()
+            }
+
+            fn example() -> String {
+                example_of_keys(&[
+                    $(example_of_key!($field: $type $(=> $example)? $(= $default)?)),*
+                ])
+            }
+
+            fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+                const KEYS: &[&str] = &[$(stringify!($field)),*];
+                match Fields::of_record(node, stringify!($name), $kind, KEYS) {
+                    Some(fields) => {
+                        fields.refuse_others(reader);
+                        Self {
+                            $($field: decode_key!(
+                                fields, reader, $field: $type $(=> $example)? $(= $default)?
+                            )),*
+                        }
+                    }
+                    None => reader.mismatch(node),
+                }
+            }
+
+            fn placeholder() -> Self {
+                Self { $($field: placeholder_of_key!($type $(= $default)?)),* }
+            }
+        }
+
+        impl Encode for $name {
+            fn encode(&self) -> Text {
+                let mut items = Vec::new();
+                let Self { $($field),* } = self;
+                $(encode_key!(items, $field: $type $(= $default)?);)*
+                Text::record("", items)
+            }
+        }
     };
 }
 
 macro_rules! choice {
-    ($(#[$meta:meta])* pub enum $name:ident {
+    ($(#[$meta:meta])* pub enum $name:ident ($kind:literal) {
         $($(#[$variant_meta:meta])* $variant:ident
-            $(($($tuple:tt)*))?
-            $({ $($(#[$field_meta:meta])* $field:ident : $type:ty $(= $default:expr)?),* $(,)? })?
+            $(($tuple:ty $(=> $tuple_example:literal)?))?
+            $({ $($(#[$field_meta:meta])* $field:ident : $type:ty
+                $(=> $example:literal)? $(= $default:expr)?),* $(,)? })?
         ),* $(,)?
     }) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq)]
         pub enum $name {
             $($(#[$variant_meta])* $variant
-                $(($($tuple)*))?
+                $(($tuple))?
                 $({ $($(#[$field_meta])* $field: $type),* })?
             ),*
         }
+
+        impl Decode for $name {
+            fn expected() -> Cow<'static, str> {
+                $kind.into()
+            }
+
+            fn example() -> String {
+                first_of!(example_of_variant: $({
+                    $variant
+                    $(($tuple $(=> $tuple_example)?))?
+                    $({ $($field: $type $(=> $example)? $(= $default)?),* })?
+                })*)
+            }
+
+            fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+                let Some(written) = Variant::of(node) else { return reader.mismatch(node) };
+                match written.name {
+                    $(stringify!($variant) => decode_variant!(
+                        written, reader, $variant
+                        $(($tuple $(=> $tuple_example)?))?
+                        $({ $($field: $type $(=> $example)? $(= $default)?),* })?
+                    ),)*
+                    _ => written.unknown($kind, &[$(stringify!($variant)),*], reader),
+                }
+            }
+
+            fn placeholder() -> Self {
+                first_of!(placeholder_of_variant: $({
+                    $variant $(($tuple))? $({ $($field: $type $(= $default)?),* })?
+                })*)
+            }
+        }
+
+        impl Encode for $name {
+            fn encode(&self) -> Text {
+                match self {
+                    $(encode_variant!(
+                        @pattern value $variant $(($tuple))? $({ $($field),* })?
+                    ) => encode_variant!(
+                        @text value $variant $(($tuple))? $({ $($field: $type $(= $default)?),* })?
+                    ),)*
+                }
+            }
+        }
     };
+}
+
+macro_rules! first_of {
+    ($of:ident: { $($first:tt)* } $($rest:tt)*) => {
+        $of!($($first)*)
+    };
+}
+
+macro_rules! example_of_key {
+    ($field:ident: $type:ty => $example:literal) => {
+        Some((stringify!($field), $example.to_owned()))
+    };
+    ($field:ident: $type:ty) => {
+        Some((stringify!($field), <$type>::example()))
+    };
+    ($field:ident: $type:ty $(=> $example:literal)? = $default:expr) => {
+        None
+    };
+}
+
+macro_rules! decode_key {
+    ($fields:ident, $reader:ident, $field:ident: $type:ty => $example:literal) => {
+        $fields.required::<$type>(stringify!($field), Some($example), $reader)
+    };
+    ($fields:ident, $reader:ident, $field:ident: $type:ty) => {
+        $fields.required::<$type>(stringify!($field), None, $reader)
+    };
+    ($fields:ident, $reader:ident, $field:ident: $type:ty = $default:expr) => {
+        $fields.optional::<$type>(stringify!($field), || $default, $reader)
+    };
+}
+
+macro_rules! placeholder_of_key {
+    ($type:ty) => {
+        <$type>::placeholder()
+    };
+    ($type:ty = $default:expr) => {
+        $default
+    };
+}
+
+macro_rules! encode_key {
+    ($items:ident, $field:ident: $type:ty) => {
+        $items.push((concat!(stringify!($field), ": ").to_owned(), $field.encode()))
+    };
+    ($items:ident, $field:ident: $type:ty = $default:expr) => {
+        let default: $type = $default;
+        if differs($field, &default) {
+            $items.push((concat!(stringify!($field), ": ").to_owned(), $field.encode()));
+        }
+    };
+}
+
+macro_rules! example_of_variant {
+    ($variant:ident) => {
+        stringify!($variant).to_owned()
+    };
+    ($variant:ident ($tuple:ty => $example:literal)) => {
+        concat!(stringify!($variant), "(", $example, ")").to_owned()
+    };
+    ($variant:ident ($tuple:ty)) => {
+        format!("{}({})", stringify!($variant), <$tuple>::example())
+    };
+    ($variant:ident { $($field:ident: $type:ty $(=> $example:literal)? $(= $default:expr)?),* }) => {
+        format!("{}{}", stringify!($variant), example_of_keys(&[
+            $(example_of_key!($field: $type $(=> $example)? $(= $default)?)),*
+        ]))
+    };
+}
+
+macro_rules! decode_variant {
+    ($written:ident, $reader:ident, $variant:ident) => {
+        $written.unit(Self::$variant, $reader)
+    };
+    ($written:ident, $reader:ident, $variant:ident ($tuple:ty)) => {
+        Self::$variant($written.newtype::<$tuple>(None, $reader))
+    };
+    ($written:ident, $reader:ident, $variant:ident ($tuple:ty => $example:literal)) => {
+        Self::$variant($written.newtype::<$tuple>(Some($example), $reader))
+    };
+    ($written:ident, $reader:ident, $variant:ident { $($field:ident: $type:ty
+        $(=> $example:literal)? $(= $default:expr)?),* }
+    ) => {{
+        const KEYS: &[&str] = &[$(stringify!($field)),*];
+        match $written.fields(concat!("`", stringify!($variant), "(..)`"), KEYS, $reader) {
+            Some(fields) => {
+                fields.refuse_others($reader);
+                Self::$variant {
+                    $($field: decode_key!(
+                        fields, $reader, $field: $type $(=> $example)? $(= $default)?
+                    )),*
+                }
+            }
+            None => Self::placeholder(),
+        }
+    }};
+}
+
+macro_rules! placeholder_of_variant {
+    ($variant:ident) => {
+        Self::$variant
+    };
+    ($variant:ident ($tuple:ty)) => {
+        Self::$variant(<$tuple>::placeholder())
+    };
+    ($variant:ident { $($field:ident: $type:ty $(= $default:expr)?),* }) => {
+        Self::$variant { $($field: placeholder_of_key!($type $(= $default)?)),* }
+    };
+}
+
+macro_rules! encode_variant {
+    (@pattern $value:ident $variant:ident) => {
+        Self::$variant
+    };
+    (@pattern $value:ident $variant:ident ($tuple:ty)) => {
+        Self::$variant($value)
+    };
+    (@pattern $value:ident $variant:ident { $($field:ident),* }) => {
+        Self::$variant { $($field),* }
+    };
+    (@text $value:ident $variant:ident) => {
+        Text::Leaf(stringify!($variant).to_owned())
+    };
+    (@text $value:ident $variant:ident ($tuple:ty)) => {
+        Text::newtype(stringify!($variant), $value.encode())
+    };
+    (@text $value:ident $variant:ident { $($field:ident: $type:ty $(= $default:expr)?),* }) => {{
+        let mut items = Vec::with_capacity(16);
+        $(encode_key!(items, $field: $type $(= $default)?);)*
+        Text::record(stringify!($variant), items)
+    }};
 }

@@ -1,0 +1,140 @@
+//! What is wrong with a scene, where, and what to write instead.
+
+use super::syntax::Span;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The scene cannot be run.
+    Error,
+    /// It can, but its author should know.
+    Warning,
+}
+
+/// Where in the text something stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// File, as the reader was given it.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Bytes of the text.
+    pub span: Span,
+}
+
+/// What is wrong, where, and what to write instead.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// Path in the document: `sensors.nadir.size_px`, `instances[3].of`; empty for all of it.
+    pub path: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to write instead.
+    pub help: Option<String>,
+    /// Where; if absent, where [`super::Source::place`] finds `path`.
+    pub place: Option<Place>,
+}
+
+impl Diagnostic {
+    /// An error at a path in the document.
+    pub fn error(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            path: path.into(),
+            message: message.into(),
+            help: None,
+            place: None,
+        }
+    }
+
+    /// A warning at a path in the document.
+    pub fn warning(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(path, message) }
+    }
+
+    /// The same with advice.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+
+    /// The same with a place.
+    #[must_use]
+    pub(super) fn at(self, place: Place) -> Self {
+        Self { place: Some(place), ..self }
+    }
+
+    /// Whether the scene cannot be run because of it.
+    #[must_use]
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+/// The known name that an author may have meant; none if all are far from it.
+pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = wrong.to_lowercase();
+    let scored = known.into_iter().filter(|name| *name != wrong).map(|name| {
+        let candidate = name.to_lowercase();
+        let edits = strsim::damerau_levenshtein(&lower, &candidate);
+        let length = lower.chars().count().max(candidate.chars().count());
+        // Two letters in five may be wrong; a name that the other starts with is near as well.
+        let shortened = lower.chars().count() >= 3
+            && candidate.chars().count() >= 3
+            && (candidate.starts_with(&lower) || lower.starts_with(&candidate));
+        let plausible = edits * 5 <= length * 2 || shortened;
+        (plausible, edits, name)
+    });
+    // `min_by_key` keeps the first of equals: document order decides.
+    scored.filter(|&(plausible, ..)| plausible).min_by_key(|&(_, edits, _)| edits).map(|s| s.2)
+}
+
+/// ``no material `laef`; did you mean `leaf`? this scene defines: leaf, bark``.
+pub fn unknown_name<'a>(
+    path: impl Into<String>,
+    kind: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'a str>,
+) -> Diagnostic {
+    let known: Vec<_> = known.into_iter().collect();
+    let help = if known.is_empty() {
+        format!("this scene defines no {kind}")
+    } else {
+        suggestion(name, &known, "this scene defines")
+    };
+    Diagnostic::error(path, format!("no {kind} `{name}`")).help(help)
+}
+
+/// ``did you mean `leaf`? this scene defines: leaf, bark``.
+pub(super) fn suggestion(wrong: &str, known: &[&str], introduction: &str) -> String {
+    const SHOWN: usize = 20;
+    let list = known.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
+    let more = match known.len() {
+        count if count > SHOWN => format!(", and {} more", count - SHOWN),
+        _ => String::new(),
+    };
+    match nearest(wrong, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? {introduction}: {list}{more}"),
+        None => format!("{introduction}: {list}{more}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    #[test]
+    fn the_nearest_name_is_found_only_if_it_is_plausible() {
+        assert_eq!(nearest("laef", ["bark", "leaf"]), Some("leaf"));
+        assert_eq!(nearest("zenit_deg", ["azimuth_deg", "zenith_deg"]), Some("zenith_deg"));
+        assert_eq!(nearest("leaf_front", ["bark", "leaf"]), Some("leaf"));
+        assert_eq!(nearest("Leaf", ["bark", "leaf"]), Some("leaf"));
+        assert_eq!(nearest("granite", ["bark", "leaf"]), None);
+        assert_eq!(nearest("", ["bark", "leaf"]), None);
+        assert_eq!(nearest("x", []), None);
+    }
+}

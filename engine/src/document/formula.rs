@@ -1,0 +1,352 @@
+//! Formulas over a scene's parameters: `2*PI/n`, `sqrt(lai)*scale`.
+//!
+//! Ours, because exmex (0.21) reads `-2^2` as 4, does not read `1e-3`, takes a parameter called
+//! `e` for Euler's number and does not say where a formula is wrong.
+
+use std::f64::consts;
+use std::ops::Range;
+
+use indexmap::IndexMap;
+
+use super::diagnostic::suggestion;
+
+/// A formula may be so long, bytes.
+const LENGTH: usize = 1000;
+
+/// Parentheses, signs and powers may nest so deep.
+const DEPTH: usize = 50;
+
+/// Why a formula has no value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FormulaError {
+    /// Bytes of the formula.
+    pub(super) at: Range<usize>,
+    /// None where a parameter has no value: that was reported where it is defined.
+    pub(super) message: Option<String>,
+    pub(super) help: Option<String>,
+}
+
+impl FormulaError {
+    fn new(at: Range<usize>, message: impl Into<String>, help: Option<String>) -> Self {
+        Self { at, message: Some(message.into()), help }
+    }
+}
+
+/// Value of a formula over `params`, of which those without a value are NaN.
+///
+/// # Errors
+/// Where it is not a formula, names what is unknown, or comes to no finite number.
+pub(super) fn evaluate(formula: &str, params: &IndexMap<String, f64>) -> Result {
+    let error = |message: String| FormulaError::new(0..formula.len(), message, None);
+    if formula.len() > LENGTH {
+        return Err(error(format!("this formula is longer than {LENGTH} bytes")));
+    }
+    let mut parser = Parser { text: formula, at: 0, depth: 0, params };
+    let value = parser.sum()?;
+    parser.skip_blank();
+    if parser.at < formula.len() {
+        return Err(parser.unexpected("an operator or the end of the formula"));
+    }
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(error(format!("this formula gives {value}, which is not a finite number")))
+    }
+}
+
+type Function = fn(f64) -> f64;
+type FunctionOfTwo = fn(f64, f64) -> f64;
+
+const FUNCTIONS: [(&str, Function); 21] = [
+    ("abs", f64::abs),
+    ("acos", f64::acos),
+    ("asin", f64::asin),
+    ("atan", f64::atan),
+    ("cbrt", f64::cbrt),
+    ("ceil", f64::ceil),
+    ("cos", f64::cos),
+    ("cosh", f64::cosh),
+    ("degrees", f64::to_degrees),
+    ("exp", f64::exp),
+    ("floor", f64::floor),
+    ("ln", f64::ln),
+    ("log10", f64::log10),
+    ("log2", f64::log2),
+    ("radians", f64::to_radians),
+    ("round", f64::round),
+    ("sin", f64::sin),
+    ("sinh", f64::sinh),
+    ("sqrt", f64::sqrt),
+    ("tan", f64::tan),
+    ("tanh", f64::tanh),
+];
+
+const FUNCTIONS_OF_TWO: [(&str, FunctionOfTwo); 4] =
+    [("atan2", f64::atan2), ("hypot", f64::hypot), ("max", f64::max), ("min", f64::min)];
+
+/// A parameter of the same name hides a constant.
+const CONSTANTS: [(&str, f64); 3] = [("PI", consts::PI), ("E", consts::E), ("TAU", consts::TAU)];
+
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+    params: &'a IndexMap<String, f64>,
+}
+
+type Result = std::result::Result<f64, FormulaError>;
+
+impl Parser<'_> {
+    fn sum(&mut self) -> Result {
+        let mut value = self.product()?;
+        loop {
+            if self.take('+') {
+                value += self.product()?;
+            } else if self.take('-') {
+                value -= self.product()?;
+            } else {
+                return Ok(value);
+            }
+        }
+    }
+
+    fn product(&mut self) -> Result {
+        let mut value = self.signed()?;
+        loop {
+            if self.take('*') {
+                value *= self.signed()?;
+            } else if self.take('/') {
+                value /= self.signed()?;
+            } else if self.take('%') {
+                value %= self.signed()?;
+            } else {
+                return Ok(value);
+            }
+        }
+    }
+
+    /// A sign binds less than a power: `-2^2` is -4.
+    fn signed(&mut self) -> Result {
+        self.deeper(|parser| {
+            if parser.take('-') {
+                Ok(-parser.signed()?)
+            } else if parser.take('+') {
+                parser.signed()
+            } else {
+                parser.power()
+            }
+        })
+    }
+
+    /// From the right: `2^3^2` is 2^9.
+    fn power(&mut self) -> Result {
+        let base = self.atom()?;
+        if self.take('^') { Ok(base.powf(self.signed()?)) } else { Ok(base) }
+    }
+
+    fn atom(&mut self) -> Result {
+        if self.take('(') {
+            let value = self.sum()?;
+            self.close()?;
+            return Ok(value);
+        }
+        match self.peek() {
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c == '_' || c.is_alphabetic() => self.name(),
+            _ => Err(self.unexpected("a number, a parameter or `(`")),
+        }
+    }
+
+    fn number(&mut self) -> Result {
+        let start = self.at;
+        let bytes = self.text.as_bytes();
+        let digits = |mut at: usize| {
+            while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+                at += 1;
+            }
+            at
+        };
+        self.at = digits(self.at);
+        if bytes.get(self.at) == Some(&b'.') {
+            self.at = digits(self.at + 1);
+        }
+        if matches!(bytes.get(self.at), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(bytes.get(self.at + 1), Some(b'+' | b'-')));
+            let end = digits(self.at + 1 + sign);
+            if end > self.at + 1 + sign {
+                self.at = end;
+            }
+        }
+        let literal = &self.text[start..self.at];
+        literal.parse().map_err(|_not_a_number| {
+            FormulaError::new(start..self.at, format!("`{literal}` is not a number"), None)
+        })
+    }
+
+    fn name(&mut self) -> Result {
+        let start = self.at;
+        let rest = &self.text[start..];
+        let length = rest.find(|c: char| c != '_' && !c.is_alphanumeric()).unwrap_or(rest.len());
+        let name = &rest[..length];
+        self.at += length;
+        if self.take('(') {
+            return self.call(name, start);
+        }
+        let at = start..start + length;
+        let constant = || CONSTANTS.iter().find(|(known, _)| *known == name).map(|&(_, v)| v);
+        match self.params.get(name).copied().or_else(constant) {
+            Some(value) if value.is_nan() => Err(FormulaError { at, message: None, help: None }),
+            Some(value) => Ok(value),
+            None => Err(self.unknown_name(name, at)),
+        }
+    }
+
+    fn unknown_name(&self, name: &str, at: Range<usize>) -> FormulaError {
+        if FUNCTIONS.iter().any(|(function, _)| *function == name) {
+            let message = format!("the function `{name}` needs a value");
+            return FormulaError::new(at, message, Some(format!("write `{name}(..)`")));
+        }
+        let names: Vec<_> = self.params.keys().map(String::as_str).collect();
+        let help = if names.is_empty() {
+            format!("define it: `params: {{ \"{name}\": 1.0 }}`")
+        } else {
+            suggestion(name, &names, "this scene's parameters")
+        };
+        FormulaError::new(at, format!("no parameter `{name}`"), Some(help))
+    }
+
+    /// After `name(`.
+    fn call(&mut self, name: &str, start: usize) -> Result {
+        let at = start..start + name.len();
+        if let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) {
+            let value = self.sum()?;
+            self.close()?;
+            return Ok(function(value));
+        }
+        if let Some((_, function)) = FUNCTIONS_OF_TWO.iter().find(|(known, _)| *known == name) {
+            let first = self.sum()?;
+            if !self.take(',') {
+                return Err(self.unexpected(&format!("`,` and the second value of `{name}`")));
+            }
+            let second = self.sum()?;
+            self.close()?;
+            return Ok(function(first, second));
+        }
+        let known: Vec<_> = FUNCTIONS
+            .iter()
+            .map(|(known, _)| *known)
+            .chain(FUNCTIONS_OF_TWO.iter().map(|(known, _)| *known))
+            .collect();
+        let help = if self.params.contains_key(name) {
+            format!("`{name}` is a parameter; to multiply, write `{name} * (..)`")
+        } else {
+            suggestion(name, &known, "functions")
+        };
+        Err(FormulaError::new(at, format!("no function `{name}`"), Some(help)))
+    }
+
+    fn close(&mut self) -> std::result::Result<(), FormulaError> {
+        if self.take(')') { Ok(()) } else { Err(self.unexpected("an operator or `)`")) }
+    }
+
+    fn deeper(&mut self, read: impl FnOnce(&mut Self) -> Result) -> Result {
+        if self.depth == DEPTH {
+            let message = format!("this formula nests more than {DEPTH} deep");
+            return Err(FormulaError::new(0..self.text.len(), message, None));
+        }
+        self.depth += 1;
+        let value = read(self);
+        self.depth -= 1;
+        value
+    }
+
+    fn skip_blank(&mut self) {
+        let rest = &self.text[self.at..];
+        self.at += rest.find(|c: char| !c.is_whitespace()).unwrap_or(rest.len());
+    }
+
+    fn peek(&mut self) -> Option<char> {
+        self.skip_blank();
+        self.text[self.at..].chars().next()
+    }
+
+    fn take(&mut self, mark: char) -> bool {
+        let found = self.peek() == Some(mark);
+        if found {
+            self.at += mark.len_utf8();
+        }
+        found
+    }
+
+    fn unexpected(&mut self, wanted: &str) -> FormulaError {
+        let (found, length) = match self.peek() {
+            Some(c) => (format!("`{}`", c.escape_debug()), c.len_utf8()),
+            None => ("the end of the formula".to_owned(), 0),
+        };
+        let at = self.at..self.at + length;
+        FormulaError::new(at, format!("expected {wanted}, found {found}"), None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use indexmap::IndexMap;
+
+    use super::{FormulaError, evaluate};
+
+    fn value(formula: &str) -> f64 {
+        let params = IndexMap::from([("n".to_owned(), 3.0), ("e".to_owned(), 0.5)]);
+        evaluate(formula, &params).expect("a value")
+    }
+
+    fn error(formula: &str) -> FormulaError {
+        evaluate(formula, &IndexMap::from([("sza".to_owned(), 30.0)])).expect_err("no value")
+    }
+
+    #[test]
+    fn operators_bind_as_in_mathematics() {
+        let cases = [
+            ("1 + 2 * 3", 7.0),
+            ("-2^2", -4.0),
+            ("2^-1", 0.5),
+            ("2^3^2", 512.0),
+            ("7 - 2 - 1", 4.0),
+            ("8 / 4 / 2", 1.0),
+            ("-(1 + n) * 2", -8.0),
+            ("1e-3 * 1.5E+3", 1.5),
+            ("e", 0.5),
+            ("7 % 4", 3.0),
+            ("max(1, n) + min(1, n)", 4.0),
+            ("cos(radians(60)) * 2", 2.0 * 60_f64.to_radians().cos()),
+            ("sqrt( n ^ 2 )", 3.0),
+            (".5 + 1.", 1.5),
+            ("- -2", 2.0),
+        ];
+        for (formula, expected) in cases {
+            assert_eq!(value(formula).to_bits(), expected.to_bits(), "{formula}");
+        }
+    }
+
+    #[test]
+    fn an_error_points_at_the_bytes_that_are_wrong() {
+        let at = |formula: &str| error(formula).at;
+        assert_eq!(at("90 - sna"), 5..8);
+        assert_eq!(at("2 * "), 4..4);
+        assert_eq!(at("(1 + 2"), 6..6);
+        assert_eq!(at("1 2"), 2..3);
+        assert_eq!(at("sine(1)"), 0..4);
+        assert_eq!(at("1/0"), 0..3);
+        assert_eq!(at("é"), 0..2);
+        assert_eq!(at(""), 0..0);
+    }
+
+    #[test]
+    fn deep_and_long_formulas_are_errors() {
+        for piece in ["(", "-", "2^", "sin("] {
+            let formula = piece.repeat(900 / piece.len());
+            assert!(error(&formula).message.is_some_and(|m| m.contains("deep")), "{piece}");
+        }
+        let sum = "1+".repeat(600);
+        assert!(error(&sum).message.is_some_and(|m| m.contains("longer")));
+    }
+}

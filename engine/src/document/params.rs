@@ -1,0 +1,220 @@
+//! Parameters and formulas: settles `params`, then gives every formula its number.
+
+use std::collections::HashMap;
+
+use indexmap::IndexMap;
+
+use super::decode::Reader;
+use super::diagnostic::{Diagnostic, unknown_name};
+use super::formula::evaluate;
+use super::read::Options;
+use super::syntax::{BadNumber, Field, Node, Span, Step, Value};
+
+/// Values of the parameters: of the file, of the variant, of the options, the later before the
+/// earlier. NaN where a value could not be read.
+pub(super) fn settle_params<'a>(
+    tree: &'a Node,
+    options: &Options,
+    reader: &mut Reader<'a>,
+) -> IndexMap<String, f64> {
+    let variant = options.variant.as_deref().and_then(|name| chosen_variant(tree, name, reader));
+    let mut params = IndexMap::<String, f64>::new();
+    for (name, node) in entries(key(tree, "params")) {
+        let own = reader.within(Step::Key("params"), |reader| {
+            reader.within(Step::Key(name), |reader| match &node.value {
+                Value::Formula(formula) => compute(formula, node, &params, reader),
+                _ => plain_number(node),
+            })
+        });
+        let varied = variant.iter().flatten().find(|(varied, _)| *varied == name);
+        let set = options.set.iter().rev().find(|(set, _)| set == name);
+        let value = set.map(|&(_, value)| value).or(varied.map(|&(_, value)| value)).or(own);
+        params.insert(name.to_owned(), value.unwrap_or(f64::NAN));
+    }
+    for (name, value) in &options.set {
+        if !params.contains_key(name) {
+            reader.push(unknown_name(
+                "params",
+                "parameter",
+                name,
+                params.keys().map(String::as_str),
+            ));
+        } else if !value.is_finite() {
+            let message = format!("`{name}` cannot be set to {value}: it must be a finite number");
+            reader.push(Diagnostic::error("params", message));
+        }
+    }
+    params
+}
+
+/// One walk over the tree: evaluates formulas, and reports repeated keys and numbers that no scene
+/// can hold.
+pub(super) fn survey<'a>(tree: &'a Node, params: &IndexMap<String, f64>, reader: &mut Reader<'a>) {
+    walk(tree, params, true, reader);
+}
+
+fn chosen_variant<'a>(
+    tree: &'a Node,
+    name: &str,
+    reader: &mut Reader<'a>,
+) -> Option<Vec<(&'a str, f64)>> {
+    let variants: Vec<_> = entries(key(tree, "variants")).collect();
+    let Some((_, node)) = variants.iter().find(|(variant, _)| *variant == name) else {
+        let known = variants.iter().map(|(variant, _)| *variant);
+        reader.push(unknown_name("variants", "variant", name, known));
+        return None;
+    };
+    Some(entries(Some(node)).filter_map(|(name, node)| Some((name, plain_number(node)?))).collect())
+}
+
+fn key<'a>(tree: &'a Node, name: &str) -> Option<&'a Node> {
+    match &tree.inner().value {
+        Value::Record(fields) => fields.iter().find(|field| field.name == name).map(|f| &f.value),
+        _ => None,
+    }
+}
+
+fn entries(map: Option<&Node>) -> impl Iterator<Item = (&str, &Node)> {
+    let entries = match map.map(|map| &map.inner().value) {
+        Some(Value::Map(entries)) => entries.as_slice(),
+        _ => &[],
+    };
+    entries.iter().filter_map(|(key, value)| match &key.value {
+        Value::Text(key) => Some((key.as_str(), value)),
+        _ => None,
+    })
+}
+
+fn plain_number(node: &Node) -> Option<f64> {
+    match node.value {
+        Value::Float(value) => Some(value),
+        Value::Integer { negative, magnitude } => {
+            Some(if negative { -(magnitude as f64) } else { magnitude as f64 })
+        }
+        _ => None,
+    }
+}
+
+fn compute<'a>(
+    formula: &str,
+    node: &'a Node,
+    params: &IndexMap<String, f64>,
+    reader: &mut Reader<'a>,
+) -> Option<f64> {
+    let value = match evaluate(formula, params) {
+        Ok(value) => Some(value),
+        Err(error) => {
+            if let Some(message) = error.message {
+                let span = within_text(reader.text(), node.span, formula, &error.at);
+                reader.error(span, message, error.help);
+            }
+            None
+        }
+    };
+    reader.set_computed(node, value);
+    value
+}
+
+/// Bytes of the text that are these bytes of the formula; all of the string where it has escapes.
+fn within_text(text: &str, span: Span, formula: &str, at: &std::ops::Range<usize>) -> Span {
+    let own = text.get(span.range()).unwrap_or("");
+    match own.find('=').map(|equals| equals + 1) {
+        Some(start) if own[start..].starts_with(formula) => {
+            let start = span.start as usize + start;
+            Span::new(start + at.start, start + at.end)
+        }
+        _ => span,
+    }
+}
+
+fn walk<'a>(
+    node: &'a Node,
+    params: &IndexMap<String, f64>,
+    is_scene: bool,
+    reader: &mut Reader<'a>,
+) {
+    let node = node.inner();
+    match &node.value {
+        Value::BadNumber(bad) => report_bad_number(node, *bad, reader),
+        Value::Formula(formula) => {
+            compute(formula, node, params, reader);
+        }
+        Value::List(items) | Value::Tuple(items) => {
+            for (index, item) in items.iter().enumerate() {
+                reader.within(Step::Index(index), |reader| walk(item, params, false, reader));
+            }
+        }
+        Value::Record(fields) => {
+            report_repeated(fields.iter().map(|f| (f.name.as_str(), f.name_span)), reader);
+            for Field { name, value, .. } in fields {
+                // `params` are settled, variants hold plain numbers, and a title is what it says.
+                let own = is_scene && matches!(name.as_str(), "params" | "variants" | "title");
+                reader.within(Step::Key(name), |reader| match &value.inner().value {
+                    Value::Formula(_) if own => {}
+                    Value::Map(_) if own => walk_plain(value, reader),
+                    _ => walk(value, params, false, reader),
+                });
+            }
+        }
+        Value::Map(entries) => {
+            report_repeated(names(entries), reader);
+            for (key, value) in entries {
+                if let Value::Text(key) = &key.value {
+                    reader.within(Step::Key(key), |reader| walk(value, params, false, reader));
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The same where formulas have been dealt with.
+fn walk_plain<'a>(node: &'a Node, reader: &mut Reader<'a>) {
+    match &node.inner().value {
+        Value::BadNumber(bad) => report_bad_number(node, *bad, reader),
+        Value::Map(entries) => {
+            report_repeated(names(entries), reader);
+            for (key, value) in entries {
+                if let Value::Text(key) = &key.value {
+                    reader.within(Step::Key(key), |reader| walk_plain(value, reader));
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn names(entries: &[(Node, Node)]) -> impl Iterator<Item = (&str, Span)> {
+    entries.iter().filter_map(|(key, _)| match &key.value {
+        Value::Text(name) => Some((name.as_str(), key.span)),
+        _ => None,
+    })
+}
+
+fn report_bad_number(node: &Node, bad: BadNumber, reader: &mut Reader<'_>) {
+    let text = reader.text().get(node.span.range()).unwrap_or("");
+    let (message, help) = match bad {
+        BadNumber::NotFinite => (format!("`{text}` has no meaning here"), "write a finite number"),
+        BadNumber::TooLarge => {
+            ("this number is too large".to_owned(), "the largest is about 1.8e308")
+        }
+    };
+    reader.error(node.span, message, Some(help.to_owned()));
+}
+
+fn report_repeated<'a>(names: impl Iterator<Item = (&'a str, Span)>, reader: &mut Reader<'a>) {
+    let mut seen = HashMap::new();
+    for (name, span) in names {
+        if let Some(&first) = seen.get(name) {
+            let first = reader.place_of(first);
+            let message = format!("the key `{name}` is given twice");
+            let help = format!(
+                "it stands at line {}, column {} already: take one of the two out",
+                first.line, first.column
+            );
+            reader.within(Step::Key(name), |reader| reader.error(span, message, Some(help)));
+        } else {
+            seen.insert(name, span);
+        }
+    }
+}

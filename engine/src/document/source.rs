@@ -1,0 +1,172 @@
+//! The text of a scene: finding paths in it, and showing them.
+
+use std::fmt::Write as _;
+
+use super::diagnostic::{Diagnostic, Place, Severity};
+use super::syntax::{Node, Span, Value};
+
+/// A scene's text, its tree, and where lines start.
+#[derive(Clone, Debug)]
+pub struct Source {
+    name: String,
+    text: String,
+    lines: Vec<usize>,
+    tree: Option<Node>,
+}
+
+impl Source {
+    pub(super) fn new(name: &str, text: &str) -> Self {
+        let after_newlines = text.match_indices('\n').map(|(at, _)| at + 1);
+        let lines = std::iter::once(0).chain(after_newlines).collect();
+        Self { name: name.to_owned(), text: text.to_owned(), lines, tree: None }
+    }
+
+    pub(super) fn with_tree(self, tree: Node) -> Self {
+        Self { tree: Some(tree), ..self }
+    }
+
+    /// File, as the reader was given it.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The whole text.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Bytes where a path of the document stands, or its nearest ancestor that exists.
+    #[must_use]
+    pub fn locate(&self, path: &str) -> Option<Span> {
+        let mut node = self.tree.as_ref()?.inner();
+        let mut rest = path;
+        while !rest.is_empty() {
+            let Some((child, after)) = step(node, rest) else { break };
+            // `Fraction([..])` is passed through on the way to `[0]`, yet all of it is `sky`.
+            if after.is_empty() {
+                return Some(child.head(&self.text));
+            }
+            node = child.inner();
+            rest = after;
+        }
+        Some(node.head(&self.text))
+    }
+
+    /// Place of a path of the document, or of its nearest ancestor that exists.
+    #[must_use]
+    pub fn place(&self, path: &str) -> Option<Place> {
+        self.locate(path).map(|span| self.place_of(span))
+    }
+
+    pub(super) fn place_of(&self, span: Span) -> Place {
+        let at = span.start as usize;
+        let line = self.lines.partition_point(|&start| start <= at).max(1);
+        let start = self.lines[line - 1];
+        let column = self.text.get(start..at).map_or(0, |before| before.chars().count()) + 1;
+        Place { file: self.name.clone(), line, column, span }
+    }
+
+    /// What a person reads: each diagnostic with its line of the text and a caret below it.
+    #[must_use]
+    pub fn render(&self, diagnostics: &[Diagnostic]) -> String {
+        diagnostics.iter().map(|one| self.render_one(one)).collect::<Vec<_>>().join("\n")
+    }
+
+    fn render_one(&self, diagnostic: &Diagnostic) -> String {
+        let severity = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        format!("{severity}: {}", self.describe(diagnostic))
+    }
+
+    /// The same without the leading `error: `.
+    pub(super) fn describe(&self, diagnostic: &Diagnostic) -> String {
+        let Diagnostic { message, path, help, .. } = diagnostic;
+        let mut out = format!("{message}\n");
+        let at = if path.is_empty() { String::new() } else { format!(" ({path})") };
+        let place = diagnostic.place.clone().or_else(|| self.place(path));
+        let mut gutter = "     ".to_owned();
+        match place {
+            Some(Place { file, line, column, span }) => {
+                let number = line.to_string();
+                gutter = " ".repeat(number.len().max(2) + 3);
+                write_line(&mut out, format_args!("  --> {file}:{line}:{column}{at}"));
+                write_line(&mut out, format_args!("{gutter}|"));
+                let (excerpt, marks) = self.excerpt(line, column, span);
+                write_line(&mut out, format_args!("  {number:>2} | {excerpt}"));
+                write_line(&mut out, format_args!("{gutter}| {marks}"));
+            }
+            None => write_line(&mut out, format_args!("  --> {}{at}", self.name)),
+        }
+        if let Some(advice) = help {
+            write_line(&mut out, format_args!("{gutter}= help: {advice}"));
+        }
+        out
+    }
+
+    /// A line of the text, cut to a window where it is long, and the carets for the line below it.
+    fn excerpt(&self, line: usize, column: usize, span: Span) -> (String, String) {
+        const BEFORE: usize = 60;
+        const SHOWN: usize = 110;
+        let start = self.lines.get(line - 1).copied().unwrap_or(0);
+        let text = self.text.get(start..).unwrap_or("");
+        let text = text.lines().next().unwrap_or("");
+        let skipped = (column - 1).saturating_sub(BEFORE);
+        let shown: String = text
+            .chars()
+            .skip(skipped)
+            .take(SHOWN)
+            .map(|c| if c.is_control() { ' ' } else { c })
+            .collect();
+        let (lead, tail) = (
+            if skipped > 0 { "…" } else { "" },
+            if text.chars().nth(skipped + SHOWN).is_some() { "…" } else { "" },
+        );
+        let offset = column - 1 - skipped + lead.chars().count();
+        let room = shown.chars().count().saturating_sub(column - 1 - skipped);
+        let own = self.text.get(span.range()).unwrap_or("").lines().next().unwrap_or("");
+        let width = own.chars().count().min(room).max(1);
+        (format!("{lead}{shown}{tail}"), format!("{}{}", " ".repeat(offset), "^".repeat(width)))
+    }
+}
+
+fn write_line(out: &mut String, line: std::fmt::Arguments<'_>) {
+    // Writing to a string cannot fail.
+    let _infallible = out.write_fmt(line);
+    out.push('\n');
+}
+
+/// The child that a path starts with, and the rest of the path. Keys may hold dots: of the keys
+/// that fit, the longest is meant.
+fn step<'a, 'p>(node: &'a Node, path: &'p str) -> Option<(&'a Node, &'p str)> {
+    if let Some((index, after)) = path.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+        let (Value::List(items) | Value::Tuple(items)) = &node.value else { return None };
+        let child = items.get(index.parse::<usize>().ok()?)?;
+        return Some((child, after.strip_prefix('.').unwrap_or(after)));
+    }
+    let after_key = |key: &str| {
+        let after = path.strip_prefix(key)?;
+        match after.as_bytes().first() {
+            None | Some(b'[') => Some(after),
+            Some(b'.') => Some(&after[1..]),
+            Some(_) => None,
+        }
+    };
+    match &node.value {
+        Value::Record(fields) => fields
+            .iter()
+            .filter_map(|field| Some((&field.value, after_key(&field.name)?)))
+            .min_by_key(|(_, after)| after.len()),
+        Value::Map(entries) => entries
+            .iter()
+            .filter_map(|(key, value)| match &key.value {
+                Value::Text(key) => Some((value, after_key(key)?)),
+                _ => None,
+            })
+            .min_by_key(|(_, after)| after.len()),
+        _ => None,
+    }
+}

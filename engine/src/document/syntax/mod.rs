@@ -1,0 +1,164 @@
+//! RON text to a tree in which every node knows its place.
+//!
+//! Ours, because `ron` with `serde` stops at the first error, keeps no places, and takes repeated
+//! keys and `NaN` in silence.
+
+mod lexer;
+mod parser;
+
+pub(super) use parser::parse;
+
+/// Bytes of the text, from `start` up to but without `end`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Span {
+    /// First byte.
+    pub start: u32,
+    /// Byte after the last.
+    pub end: u32,
+}
+
+impl Span {
+    pub(super) fn new(start: usize, end: usize) -> Self {
+        Self { start: start as u32, end: end as u32 }
+    }
+
+    /// The bytes as a range, to index the text.
+    #[must_use]
+    pub fn range(self) -> std::ops::Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// A value and where it stands.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub(super) span: Span,
+    pub(super) value: Value,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Bool(bool),
+    Integer {
+        negative: bool,
+        magnitude: u64,
+    },
+    Float(f64),
+    /// A number that no scene can hold.
+    BadNumber(BadNumber),
+    Text(String),
+    /// Text that starts with `=`, without it.
+    Formula(String),
+    /// `[a, b]`.
+    List(Vec<Node>),
+    /// `(a, b)`; `()` too.
+    Tuple(Vec<Node>),
+    /// `(key: a)`.
+    Record(Vec<Field>),
+    /// `Name`, `Name(a)`, `Name(key: a)`.
+    Named(Box<Named>),
+    /// `{ "key": a }`.
+    Map(Vec<(Node, Node)>),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum BadNumber {
+    NotFinite,
+    TooLarge,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub(super) name: String,
+    pub(super) name_span: Span,
+    pub(super) value: Node,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) name_span: Span,
+    /// [`Value::Tuple`] or [`Value::Record`].
+    pub(super) body: Option<Node>,
+}
+
+/// One step of a path in the document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step<'a> {
+    Key(&'a str),
+    Index(usize),
+}
+
+/// `sensors.nadir.size_px[0]`.
+pub(super) fn path_of(steps: &[Step<'_>]) -> String {
+    let mut path = String::new();
+    for step in steps {
+        match step {
+            Step::Key(key) => {
+                if !path.is_empty() {
+                    path.push('.');
+                }
+                path.push_str(key);
+            }
+            Step::Index(index) => path.extend(["[", &index.to_string(), "]"]),
+        }
+    }
+    path
+}
+
+impl Node {
+    /// The node that a path's next step starts from: names with one unnamed value, such as
+    /// `Bands([..])` and `Some(..)`, are no step of a path.
+    pub(super) fn inner(&self) -> &Self {
+        let mut node = self;
+        loop {
+            match &node.value {
+                Value::Named(named) => match &named.body {
+                    Some(Self { value: Value::Tuple(items), .. }) if items.len() == 1 => {
+                        node = &items[0];
+                    }
+                    Some(body) => node = body,
+                    None => return node,
+                },
+                _ => return node,
+            }
+        }
+    }
+
+    /// What of the node to underline: all of it on one line, else its first word or bracket.
+    pub(super) fn head(&self, text: &str) -> Span {
+        if text.get(self.span.range()).is_some_and(|own| own.contains('\n')) {
+            self.opening()
+        } else {
+            self.span
+        }
+    }
+
+    /// Its first word or bracket.
+    pub(super) fn opening(&self) -> Span {
+        match &self.value {
+            Value::Named(named) => named.name_span,
+            Value::List(_) | Value::Tuple(_) | Value::Record(_) | Value::Map(_) => {
+                Span { start: self.span.start, end: self.span.start + 1 }
+            }
+            _ => self.span,
+        }
+    }
+
+    /// `a number`, `a list`, `` `Periodic` ``.
+    pub(super) fn describe(&self) -> String {
+        match &self.value {
+            Value::Bool(value) => format!("`{value}`"),
+            Value::Integer { .. } | Value::Float(_) | Value::BadNumber(_) => "a number".to_owned(),
+            Value::Text(_) => "a string".to_owned(),
+            Value::Formula(_) => "a formula".to_owned(),
+            Value::List(_) => "a list `[..]`".to_owned(),
+            Value::Tuple(items) if items.is_empty() => "empty parentheses `()`".to_owned(),
+            Value::Tuple(_) => "values in parentheses `(..)`".to_owned(),
+            Value::Record(_) => "keys in parentheses `(key: ..)`".to_owned(),
+            Value::Named(named) if named.body.is_some() => format!("`{}(..)`", named.name),
+            Value::Named(named) => format!("the word `{}`", named.name),
+            Value::Map(_) => "a map `{..}`".to_owned(),
+        }
+    }
+}

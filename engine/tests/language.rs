@@ -1,0 +1,4 @@
+//! The scene language: what a scene file may say, and what a person reads where it says it wrong.
+
+#[path = "language/reading.rs"]
+mod reading;
