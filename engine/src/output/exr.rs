@@ -3,13 +3,21 @@
 use std::io::{self, Seek, Write};
 
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image as ExrImage, Layer,
-    LayerAttributes, Text, WritableImage as _,
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples,
+    Image as ExrImage, Layer, LayerAttributes, LineOrder, Text, WritableImage as _,
 };
 
 use super::Source;
 use super::names::Distinct;
 use crate::products::Image;
+
+/// Monte Carlo noise hardly compresses: ZIP takes 17 times as long as run lengths for a file 9 %
+/// smaller. Rows in order keep the pixels' bytes the same from run to run.
+const ENCODING: Encoding = Encoding {
+    compression: Compression::RLE,
+    blocks: Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
 
 /// Writes channels `<band>`, `<band>.se` and `coverage`; attributes tell the provenance.
 pub(super) fn write(
@@ -44,7 +52,7 @@ pub(super) fn write(
     let layer = Layer::new(
         (image.width, image.height),
         attributes,
-        Encoding::SMALL_LOSSLESS,
+        ENCODING,
         AnyChannels::sort(channels.into()),
     );
     ExrImage::from_layer(layer).write().to_buffered(file).map_err(|error| match error {

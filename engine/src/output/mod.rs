@@ -73,6 +73,14 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
     staging.commit()
 }
 
+/// Tries whether [`write`] could write into `folder`, and leaves everything as it was.
+///
+/// # Errors
+/// If the folder cannot be made, or no file in it.
+pub fn probe(folder: &Path) -> Result<(), OutputError> {
+    staging::Staging::open(folder)?.file("summary.json", |_| Ok(()))
+}
+
 /// A product and what tells where it comes from.
 struct Source<'a> {
     report: &'a Report,

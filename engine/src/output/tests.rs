@@ -338,6 +338,9 @@ fn a_folder_that_cannot_be_is_an_error_with_its_path_and_cause() {
     let file = root.path().join("file");
     fs::write(&file, "mine").unwrap();
     let report = report(vec![sensor("plane", views())]);
+    assert!(matches!(probe(&file), Err(OutputError::NotAFolder { .. })));
+    assert!(matches!(probe(&file.join("below")), Err(OutputError::Folder { .. })));
+    probe(&root.path().join("new/er")).unwrap();
     let error = write(&report, &file).unwrap_err();
     let expected = format!("{} is a file: name a folder for the output", file.display());
     assert_eq!(error.to_string(), expected);
