@@ -1,4 +1,6 @@
 //! The scene language: what a scene file may say, and what a person reads where it says it wrong.
 
+#[path = "language/broken.rs"]
+mod broken;
 #[path = "language/reading.rs"]
 mod reading;

@@ -104,9 +104,12 @@ fn compute<'a>(
     let value = match evaluate(formula, params) {
         Ok(value) => Some(value),
         Err(error) => {
-            if let Some(message) = error.message {
-                let span = within_text(reader.text(), node.span, formula, &error.at);
-                reader.error(span, message, error.help);
+            match error.message {
+                Some(message) => {
+                    let span = within_text(reader.text(), node.span, formula, &error.at);
+                    reader.error(span, message, error.help);
+                }
+                None => reader.mark_broken(),
             }
             None
         }

@@ -136,11 +136,12 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
         diagnostics.extend(check_readable(&scene, &broken));
     }
     for diagnostic in &mut diagnostics {
-        if diagnostic.place.is_none() {
+        if diagnostic.place.is_none() && !diagnostic.path.is_empty() {
             diagnostic.place = source.place(&diagnostic.path);
         }
     }
-    diagnostics.sort_by_key(|one| one.place.as_ref().map(|place| place.span.start));
+    // What has no place of its own stands last.
+    diagnostics.sort_by_key(|one| one.place.as_ref().map_or(u32::MAX, |place| place.span.start));
     if dropped > 0 {
         diagnostics.push(Diagnostic::error("", format!("and {dropped} more errors")));
     }

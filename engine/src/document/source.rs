@@ -40,16 +40,14 @@ impl Source {
     /// Bytes where a path of the document stands, or its nearest ancestor that exists.
     #[must_use]
     pub fn locate(&self, path: &str) -> Option<Span> {
-        let mut node = self.tree.as_ref()?.inner();
+        let mut node = self.tree.as_ref()?;
         let mut rest = path;
         while !rest.is_empty() {
-            let Some((child, after)) = step(node, rest) else { break };
             // `Fraction([..])` is passed through on the way to `[0]`, yet all of it is `sky`.
-            if after.is_empty() {
-                return Some(child.head(&self.text));
+            match step(node.inner(), rest) {
+                Some((child, after)) => (node, rest) = (child, after),
+                None => return Some(node.opening()),
             }
-            node = child.inner();
-            rest = after;
         }
         Some(node.head(&self.text))
     }
@@ -87,7 +85,8 @@ impl Source {
         let Diagnostic { message, path, help, .. } = diagnostic;
         let mut out = format!("{message}\n");
         let at = if path.is_empty() { String::new() } else { format!(" ({path})") };
-        let place = diagnostic.place.clone().or_else(|| self.place(path));
+        let path_place = || if path.is_empty() { None } else { self.place(path) };
+        let place = diagnostic.place.clone().or_else(path_place);
         let mut gutter = "     ".to_owned();
         match place {
             Some(Place { file, line, column, span }) => {

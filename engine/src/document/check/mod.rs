@@ -1,7 +1,16 @@
 //! What a scene may not say, as far as it shows without files: ranges, shapes and names.
 
-use super::diagnostic::Diagnostic;
-use super::scene::Scene;
+mod ground;
+mod light;
+mod mesh;
+mod sensor;
+mod spectrum;
+
+use super::diagnostic::{Diagnostic, suggestion, unknown_name};
+use super::scene::{Map, Scene, Transport};
+
+/// No more errors than this are kept: nobody reads them.
+const ERRORS: usize = 100;
 
 /// Everything wrong with a scene that needs no file to be seen.
 #[must_use]
@@ -11,9 +20,179 @@ pub fn check(scene: &Scene) -> Vec<Diagnostic> {
 
 /// The same for a scene that was read with errors at the `broken` paths: says nothing of these.
 pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic> {
-    if scene.format == 1 || broken.iter().any(|path| path == "format") {
-        return Vec::new();
+    let mut report = Report { broken, found: Vec::new(), dropped: 0 };
+    if scene.format != 1 {
+        let message = format!("format {} is unknown", scene.format);
+        report.push(Diagnostic::error("format", message).help("this version reads `format: 1`"));
     }
-    let message = format!("format {} is unknown: this version reads format 1", scene.format);
-    vec![Diagnostic::error("format", message)]
+    check_params(scene, &mut report);
+    spectrum::check_bands(scene, &mut report);
+    spectrum::check_spectra(scene, &mut report);
+    spectrum::check_materials(scene, &mut report);
+    mesh::check_meshes(scene, &mut report);
+    ground::check_frame(scene, &mut report);
+    ground::check_terrain(scene, &mut report);
+    ground::check_instances(scene, &mut report);
+    light::check_sun(scene, &mut report);
+    light::check_sky(scene, &mut report);
+    sensor::check_sensors(scene, &mut report);
+    check_transport(&scene.transport, &mut report);
+    report.finish()
+}
+
+/// What has been found so far.
+struct Report<'a> {
+    broken: &'a [String],
+    found: Vec<Diagnostic>,
+    dropped: usize,
+}
+
+impl Report<'_> {
+    fn push(&mut self, diagnostic: Diagnostic) {
+        if !self.is_readable(&diagnostic.path) {
+            return;
+        }
+        if self.found.len() < ERRORS {
+            self.found.push(diagnostic);
+        } else {
+            self.dropped += 1;
+        }
+    }
+
+    fn error(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
+        self.push(Diagnostic::error(path, message).help(help));
+    }
+
+    fn finish(mut self) -> Vec<Diagnostic> {
+        if self.dropped > 0 {
+            let message = format!("and {} more errors", self.dropped);
+            self.found.push(Diagnostic::error("", message));
+        }
+        self.found
+    }
+
+    /// Whether what stands at a path could be read: nothing is wrong there or above.
+    fn is_readable(&self, path: &str) -> bool {
+        !self.broken.iter().any(|broken| is_within(path, broken))
+    }
+
+    /// Whether nothing below a path is wrong either.
+    fn is_whole(&self, path: &str) -> bool {
+        self.is_readable(path) && !self.broken.iter().any(|broken| is_within(broken, path))
+    }
+
+    fn above_zero(&mut self, path: &str, value: f64) {
+        if !(value > 0.0 && value.is_finite()) {
+            self.push(Diagnostic::error(path, format!("expected a number above 0, found {value}")));
+        }
+    }
+
+    fn at_least(&mut self, path: &str, value: f64, least: f64) {
+        if !(value >= least && value.is_finite()) {
+            let message = format!("expected a number of at least {least}, found {value}");
+            self.push(Diagnostic::error(path, message));
+        }
+    }
+
+    fn finite(&mut self, path: &str, values: &[f64]) {
+        if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+            let message = format!("expected a finite number, found {value}");
+            self.push(Diagnostic::error(path, message));
+        }
+    }
+
+    fn fraction(&mut self, path: &str, value: f64) {
+        if !(0.0..=1.0).contains(&value) {
+            let message = format!("expected a fraction from 0 to 1, found {value}");
+            let help = if (2.0..=100.0).contains(&value) {
+                // Rounded, for 7.0 / 100.0 is 0.07000000000000001.
+                format!("write {value} % as {}", (value * 1e4).round() / 1e6)
+            } else {
+                "it is a share of the light".to_owned()
+            };
+            self.error(path, message, help);
+        }
+    }
+
+    /// Angle from the vertical, below the horizon's 90°.
+    fn zenith(&mut self, path: &str, degrees: f64) {
+        if !(0.0..90.0).contains(&degrees) {
+            let message =
+                format!("expected an angle from the vertical, 0 up to below 90°, found {degrees}");
+            let help = if (-90.0..0.0).contains(&degrees) {
+                format!("write {} and turn the azimuth by 180°", -degrees)
+            } else {
+                "0 is overhead, 90 would be the horizon".to_owned()
+            };
+            self.error(path, message, help);
+        }
+    }
+
+    fn azimuth(&mut self, path: &str, degrees: f64) {
+        if !(-360.0..=360.0).contains(&degrees) {
+            let message = format!("expected an azimuth from -360 to 360°, found {degrees}");
+            self.error(path, message, "0 is north, 90 east, 180 south, 270 west");
+        }
+    }
+
+    /// A name that must be defined, unless its definitions could not be read.
+    fn name<T>(&mut self, path: &str, kind: &str, name: &str, defined: &Map<T>, in_key: &str) {
+        if !defined.contains_key(name) && self.is_readable(in_key) {
+            self.push(unknown_name(path, kind, name, defined.keys().map(String::as_str)));
+        }
+    }
+
+    /// Names that their own definitions give.
+    fn own_names<T>(&mut self, key: &str, kind: &str, defined: &Map<T>) {
+        if defined.contains_key("") {
+            self.error(key, format!("{kind} has no name"), "write a name between the quotes");
+        }
+    }
+}
+
+/// `1 value`, `2 values`.
+fn count(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+fn is_within(path: &str, ancestor: &str) -> bool {
+    path.strip_prefix(ancestor)
+        .is_some_and(|rest| ancestor.is_empty() || rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+fn check_params(scene: &Scene, report: &mut Report<'_>) {
+    for (name, value) in &scene.params {
+        let path = format!("params.{name}");
+        let mut letters = name.chars();
+        let lawful = letters.next().is_some_and(|c| c == '_' || c.is_alphabetic())
+            && letters.all(|c| c == '_' || c.is_alphanumeric());
+        if !lawful {
+            let help = "start with a letter, go on with letters, digits and `_`";
+            report.error(&path, format!("`{name}` cannot be a parameter's name"), help);
+        }
+        report.finite(&path, &[*value]);
+    }
+    for (variant, changes) in &scene.variants {
+        let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
+        for (name, value) in changes {
+            let path = format!("variants.{variant}.{name}");
+            report.finite(&path, &[*value]);
+            if !scene.params.contains_key(name) && report.is_readable("params") {
+                let help = if known.is_empty() {
+                    format!("add it: `params: {{ \"{name}\": {value:?} }}`")
+                } else {
+                    suggestion(name, &known, "a variant may change")
+                };
+                report.error(&path, format!("no parameter `{name}` to change"), help);
+            }
+        }
+    }
+}
+
+fn check_transport(transport: &Transport, report: &mut Report<'_>) {
+    let kill = transport.roulette.kill;
+    if !(0.0..1.0).contains(&kill) {
+        let message = format!("expected a probability from 0 up to below 1, found {kill}");
+        report.error("transport.roulette.kill", message, "with 1 no path would go on");
+    }
 }

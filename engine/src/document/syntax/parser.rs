@@ -15,7 +15,7 @@ const DEPTH: usize = 128;
 pub(in super::super) fn parse(text: &str) -> Result<Node> {
     let mut lexer = Lexer::new(text);
     lexer.skip_headers()?;
-    let mut parser = Parser { text, lexer, open: Vec::new() };
+    let mut parser = Parser { text, lexer, open: Vec::new(), long_string: None };
     let node = parser.value()?;
     let after = parser.lexer.next()?;
     match after.kind {
@@ -29,11 +29,17 @@ struct Parser<'a> {
     lexer: Lexer<'a>,
     /// Places of the brackets that are still open.
     open: Vec<(char, usize)>,
+    /// The last string, if it runs over several lines: its end may be another string's start.
+    long_string: Option<usize>,
 }
 
 impl Parser<'_> {
     fn value(&mut self) -> Result<Node> {
         let token = self.lexer.next()?;
+        if matches!(token.kind, Kind::Text(_) | Kind::Formula(_)) {
+            let is_long = self.text[token.span.range()].contains('\n');
+            self.long_string = is_long.then_some(token.span.start as usize);
+        }
         let value = match token.kind {
             Kind::Integer { negative, magnitude } => Value::Integer { negative, magnitude },
             Kind::Float(value) => Value::Float(value),
@@ -180,6 +186,13 @@ impl Parser<'_> {
             _ => "a number".to_owned(),
         };
         let error = SyntaxError::new(token.span, format!("expected {wanted}, found {found}"));
+        if let Some(start) = self.long_string {
+            let (line, column) = line_and_column(self.text, start);
+            return error.help(format!(
+                "the string of line {line}, column {column} runs over several lines: \
+                 does it lack its `\"`?"
+            ));
+        }
         match opened {
             Some((_, _, opened)) => error.help(format!("{opened} is still open here")),
             None => error,

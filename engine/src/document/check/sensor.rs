@@ -1,0 +1,182 @@
+//! Sensors.
+
+use std::mem::discriminant;
+
+use super::super::scene::{PhotonMeasure, Scene, Sensor, Terrain, Until, Views};
+use super::Report;
+
+/// An image or a map may hold so many values, bands included: 16 GiB as f64.
+const VALUES: f64 = 2_147_483_648.0;
+
+/// Views that one sensor may have.
+const VIEWS: f64 = 100_000.0;
+
+pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
+    if scene.sensors.is_empty() {
+        let help = "write, for example, `sensors: { \"brf\": Directions(views: PrincipalPlane) }`";
+        report.error("sensors", "the scene has no sensor: nothing would be measured", help);
+    }
+    report.own_names("sensors", "a sensor", &scene.sensors);
+    for (name, sensor) in &scene.sensors {
+        let path = format!("sensors.{name}");
+        match sensor {
+            Sensor::Orthographic { measure, .. } => {
+                check_image(&path, sensor, scene, report);
+                check_measures(&format!("{path}.measure"), measure, "Brf", report);
+            }
+            Sensor::Directions { views, until, measure, system: _ } => {
+                check_views(&format!("{path}.views"), views, scene, report);
+                check_until(&format!("{path}.until"), until, report);
+                check_measures(&format!("{path}.measure"), measure, "Brf", report);
+            }
+            Sensor::Photons { per_m2, measure } => {
+                report.above_zero(&format!("{path}.per_m2"), *per_m2);
+                let path = format!("{path}.measure");
+                check_measures(&path, measure, "Albedo", report);
+                for (index, measure) in measure.iter().enumerate() {
+                    check_photon_measure(&format!("{path}[{index}]"), measure, scene, report);
+                }
+            }
+        }
+    }
+}
+
+fn check_image(path: &str, image: &Sensor, scene: &Scene, report: &mut Report<'_>) {
+    let Sensor::Orthographic {
+        size_px: (columns, rows),
+        extent_m: (width, height),
+        center_m,
+        zenith_deg,
+        azimuth_deg,
+        samples_per_px,
+        measure: _,
+        system: _,
+    } = image
+    else {
+        return;
+    };
+    let at = |key: &str| format!("{path}.{key}");
+    for (key, pixels) in [("size_px[0]", columns), ("size_px[1]", rows)] {
+        if !(1..=65536).contains(pixels) {
+            let message = format!("expected 1 to 65536 pixels, found {pixels}");
+            report.error(&at(key), message, "`size_px` is (columns, rows)");
+        }
+    }
+    let values = f64::from(*columns) * f64::from(*rows) * scene.bands.len() as f64;
+    if values > VALUES {
+        let message = format!(
+            "{columns} x {rows} pixels in {} bands are more than an image may hold",
+            scene.bands.len()
+        );
+        report.error(&at("size_px"), message, format!("keep the product below {VALUES}"));
+    }
+    report.above_zero(&at("extent_m[0]"), *width);
+    report.above_zero(&at("extent_m[1]"), *height);
+    if let Some((x, y)) = center_m {
+        report.finite(&at("center_m"), &[*x, *y]);
+    }
+    report.zenith(&at("zenith_deg"), *zenith_deg);
+    report.azimuth(&at("azimuth_deg"), *azimuth_deg);
+    if !(2..=1 << 24).contains(samples_per_px) {
+        let message = format!("expected 2 to {} samples, found {samples_per_px}", 1 << 24);
+        let help = match samples_per_px {
+            0 | 1 => "1 sample gives no error estimate: write 2 or more",
+            _ => "write fewer samples, or average runs of several seeds",
+        };
+        report.error(&at("samples_per_px"), message, help);
+    }
+}
+
+fn check_views(path: &str, views: &Views, scene: &Scene, report: &mut Report<'_>) {
+    let (name, max_deg, step_deg) = match views {
+        Views::List(views) => {
+            if views.is_empty() {
+                let help = "write pairs of zenith and azimuth: `List([(30.0, 90.0)])`";
+                report.error(path, "the list of views is empty", help);
+            }
+            for (index, (zenith, azimuth)) in views.iter().enumerate() {
+                report.zenith(&format!("{path}[{index}][0]"), *zenith);
+                report.azimuth(&format!("{path}[{index}][1]"), *azimuth);
+            }
+            return;
+        }
+        Views::PrincipalPlane { max_deg, step_deg } => ("PrincipalPlane", max_deg, step_deg),
+        Views::CrossPlane { max_deg, step_deg } => ("CrossPlane", max_deg, step_deg),
+    };
+    report.zenith(&format!("{path}.max_deg"), *max_deg);
+    report.above_zero(&format!("{path}.step_deg"), *step_deg);
+    if *step_deg > 0.0 && 2.0 * max_deg / step_deg > VIEWS {
+        let message = format!("steps of {step_deg}° make more than {VIEWS} views");
+        report.error(&format!("{path}.step_deg"), message, "write a larger step");
+    }
+    if scene.sun.is_none() && report.is_readable("sun") {
+        let message = format!("`{name}` is a plane of the sun, and there is no sun");
+        let help = "write the views as pairs of zenith and azimuth: `List([(30.0, 90.0)])`";
+        report.error(path, message, help);
+    }
+}
+
+fn check_until(path: &str, until: &Until, report: &mut Report<'_>) {
+    match until {
+        Until::RelError(error) if !(*error > 0.0 && *error < 1.0) => {
+            let message = format!("expected a relative error above 0 and below 1, found {error}");
+            report.error(path, message, "half a percent is `RelError(0.005)`");
+        }
+        Until::Seconds(seconds) => report.above_zero(path, *seconds),
+        Until::Samples(samples) if *samples < 32 => {
+            let message = format!("expected 32 samples or more, found {samples}");
+            report.error(path, message, "fewer give no error estimate");
+        }
+        Until::RelError(_) | Until::Samples(_) => {}
+    }
+}
+
+fn check_photon_measure(
+    path: &str,
+    measure: &PhotonMeasure,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    match measure {
+        PhotonMeasure::BrfCells(cells) => {
+            if !(4..=100_000).contains(cells) {
+                let message = format!("expected 4 to 100000 cells, found {cells}");
+                report.error(path, message, "150 is usual: `BrfCells(150)`");
+            }
+        }
+        PhotonMeasure::BrfViews(views) => check_views(path, views, scene, report),
+        PhotonMeasure::Albedo => {}
+        PhotonMeasure::Fapar { layer_m } => report.above_zero(&format!("{path}.layer_m"), *layer_m),
+        PhotonMeasure::Fluxes { pixel_m, heights_m } => {
+            report.above_zero(&format!("{path}.pixel_m"), *pixel_m);
+            report.finite(&format!("{path}.heights_m"), heights_m);
+            let Terrain::Plane { size_m: (width, height), .. } = &scene.terrain;
+            let maps = (heights_m.len() + 2) * scene.bands.len();
+            let values = (width / pixel_m).ceil() * (height / pixel_m).ceil() * maps as f64;
+            if values > VALUES && *pixel_m > 0.0 {
+                let message = format!("pixels of {pixel_m} m make maps of {values:.0} values");
+                let help = format!("write a larger `pixel_m`: at most {VALUES} values");
+                report.error(&format!("{path}.pixel_m"), message, help);
+            }
+        }
+    }
+}
+
+/// At least one measure, each kind once: outputs are called by it.
+fn check_measures<T>(path: &str, measures: &[T], example: &str, report: &mut Report<'_>) {
+    if measures.is_empty() && report.is_readable(path) {
+        let help = format!("write, for example, `measure: [{example}]`");
+        report.error(path, "nothing is measured here", help);
+    }
+    for (index, measure) in measures.iter().enumerate() {
+        let before = measures[..index].iter();
+        let repeated = before.enumerate().any(|(earlier, other)| {
+            discriminant(other) == discriminant(measure)
+                && report.is_readable(&format!("{path}[{earlier}]"))
+        });
+        if repeated {
+            let message = "this is measured twice";
+            report.error(&format!("{path}[{index}]"), message, "take one of the two out");
+        }
+    }
+}

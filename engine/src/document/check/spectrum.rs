@@ -1,0 +1,236 @@
+//! Bands, spectra, and the materials that have them.
+
+use std::collections::HashMap;
+
+use super::super::scene::{Band, Material, Scene, Spectrum};
+use super::{Report, count};
+
+/// A spectrum may name one that names one, and so on, so often.
+const CHAIN: usize = 16;
+
+/// What a spectrum is the spectrum of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    /// Reflectance or transmittance, 0 to 1.
+    Fraction,
+    /// 0 or above.
+    Irradiance,
+    /// Whatever those who name it take it for.
+    Any,
+}
+
+pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
+    if scene.bands.is_empty() {
+        let help = "write, for example, `bands: [(name: \"red\", center_nm: 660.0)]`";
+        report.error("bands", "the scene has no band", help);
+    }
+    let mut names = HashMap::new();
+    for (index, Band { name, center_nm, width_nm }) in scene.bands.iter().enumerate() {
+        let path = |key: &str| format!("bands[{index}].{key}");
+        if name.is_empty() {
+            let help = "outputs call the band by its name";
+            report.error(&path("name"), "this band has no name", help);
+        } else if let Some(first) = names.insert(name, index) {
+            let message = format!("a second band `{name}`");
+            let help = format!("`bands[{first}]` has that name already");
+            report.error(&path("name"), message, help);
+        }
+        report.above_zero(&path("center_nm"), *center_nm);
+        report.at_least(&path("width_nm"), *width_nm, 0.0);
+        if *center_nm > 0.0 && *width_nm >= 2.0 * center_nm {
+            let message = format!(
+                "a band of {width_nm} nm around {center_nm} nm reaches to a wavelength of 0"
+            );
+            report.error(&path("width_nm"), message, "the width is that from edge to edge");
+        }
+    }
+}
+
+pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {
+    report.own_names("spectra", "a spectrum", &scene.spectra);
+    for (index, (name, spectrum)) in scene.spectra.iter().enumerate() {
+        let path = format!("spectra.{name}");
+        check_spectrum(&path, spectrum, Quantity::Any, scene, report);
+        check_chain(index, &path, scene, report);
+    }
+}
+
+pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
+    report.own_names("materials", "a material", &scene.materials);
+    for (name, material) in &scene.materials {
+        let (keys, back) = match material {
+            Material::Lambertian { reflectance, back_reflectance } => {
+                (vec![("reflectance", reflectance)], back_reflectance)
+            }
+            Material::Leaf { reflectance, transmittance, back_reflectance } => (
+                vec![("reflectance", reflectance), ("transmittance", transmittance)],
+                back_reflectance,
+            ),
+        };
+        let back = back.iter().map(|back| ("back_reflectance", back));
+        for (key, spectrum) in keys.into_iter().chain(back) {
+            let path = format!("materials.{name}.{key}");
+            check_spectrum(&path, spectrum, Quantity::Fraction, scene, report);
+        }
+    }
+}
+
+pub(super) fn check_spectrum(
+    path: &str,
+    spectrum: &Spectrum,
+    quantity: Quantity,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let value = |report: &mut Report<'_>, path: &str, value: f64| match quantity {
+        Quantity::Fraction => report.fraction(path, value),
+        Quantity::Irradiance | Quantity::Any => report.at_least(path, value, 0.0),
+    };
+    match spectrum {
+        Spectrum::Constant(constant) => value(report, path, *constant),
+        Spectrum::Bands(values) => {
+            check_band_count(path, "Bands", values.len(), scene, report);
+            for (index, one) in values.iter().enumerate() {
+                value(report, &format!("{path}[{index}]"), *one);
+            }
+        }
+        Spectrum::Points(points) => {
+            check_wavelengths(path, points, report);
+            for (index, (_, one)) in points.iter().enumerate() {
+                value(report, &format!("{path}[{index}][1]"), *one);
+            }
+        }
+        Spectrum::Table { .. } => {}
+        Spectrum::Named(name) => {
+            report.name(path, "spectrum", name, &scene.spectra, "spectra");
+            let is_leaf = matches!(resolve(name, scene), Some(Spectrum::Prospect { .. }));
+            if quantity == Quantity::Irradiance && is_leaf {
+                refuse_leaf_as_light(path, report);
+            }
+        }
+        Spectrum::Prospect { .. } => {
+            check_prospect(path, spectrum, report);
+            if quantity == Quantity::Irradiance {
+                refuse_leaf_as_light(path, report);
+            }
+        }
+    }
+}
+
+/// As many values as bands; both numbers if not.
+pub(super) fn check_band_count(
+    path: &str,
+    what: &str,
+    values: usize,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let bands = scene.bands.len();
+    if values == bands || bands == 0 || !report.is_readable("bands") {
+        return;
+    }
+    let (values, shown) = (count(values, "value"), count(bands, "band"));
+    let message = format!("`{what}` has {values}, but the scene has {shown}");
+    let names: Vec<_> = scene.bands.iter().take(20).map(|band| band.name.as_str()).collect();
+    let more = if bands > names.len() { ", .." } else { "" };
+    let help = format!("write one value for each of: {}{more}", names.join(", "));
+    report.error(path, message, help);
+}
+
+fn check_wavelengths(path: &str, points: &[(f64, f64)], report: &mut Report<'_>) {
+    if points.is_empty() {
+        let help = "write, for example, `Points([(400.0, 0.05), (800.0, 0.3)])`";
+        report.error(path, "`Points` has no point", help);
+    }
+    let mut before = 0.0;
+    for (index, &(wavelength, _)) in points.iter().enumerate() {
+        let at = format!("{path}[{index}][0]");
+        if index == 0 {
+            report.above_zero(&at, wavelength);
+        } else if !(wavelength > before && wavelength.is_finite()) {
+            let message = format!("wavelength {wavelength} nm follows {before} nm");
+            report.error(&at, message, "sort the points: wavelengths must rise");
+        }
+        before = wavelength;
+    }
+}
+
+fn refuse_leaf_as_light(path: &str, report: &mut Report<'_>) {
+    let help = "write `Constant(..)`, `Bands(..)`, `Points(..)` or `Table(..)`";
+    report.error(path, "`Prospect` is the spectrum of a leaf, not of light", help);
+}
+
+fn check_prospect(path: &str, spectrum: &Spectrum, report: &mut Report<'_>) {
+    let Spectrum::Prospect {
+        n,
+        chlorophyll_ug_cm2,
+        carotenoid_ug_cm2,
+        anthocyanin_ug_cm2,
+        brown,
+        water_cm,
+        dry_matter_g_cm2,
+        protein_g_cm2,
+        carbon_g_cm2,
+    } = spectrum
+    else {
+        return;
+    };
+    report.at_least(&format!("{path}.n"), *n, 1.0);
+    let contents = [
+        ("chlorophyll_ug_cm2", chlorophyll_ug_cm2),
+        ("carotenoid_ug_cm2", carotenoid_ug_cm2),
+        ("anthocyanin_ug_cm2", anthocyanin_ug_cm2),
+        ("brown", brown),
+        ("water_cm", water_cm),
+        ("dry_matter_g_cm2", dry_matter_g_cm2),
+        ("protein_g_cm2", protein_g_cm2),
+        ("carbon_g_cm2", carbon_g_cm2),
+    ];
+    for (key, content) in contents {
+        report.at_least(&format!("{path}.{key}"), *content, 0.0);
+    }
+    if *dry_matter_g_cm2 > 0.0 && (*protein_g_cm2 > 0.0 || *carbon_g_cm2 > 0.0) {
+        let message = "dry matter would count twice: proteins and other carbon are parts of it";
+        let help = "write `dry_matter_g_cm2: 0.0` beside `protein_g_cm2` and `carbon_g_cm2`";
+        report.error(path, message, help);
+    }
+}
+
+/// The spectrum at the end of a chain of names.
+fn resolve<'a>(name: &str, scene: &'a Scene) -> Option<&'a Spectrum> {
+    let mut spectrum = scene.spectra.get(name)?;
+    for _ in 0..CHAIN {
+        match spectrum {
+            Spectrum::Named(next) => spectrum = scene.spectra.get(next)?,
+            _ => return Some(spectrum),
+        }
+    }
+    None
+}
+
+/// Names that lead back to where they started, reported once, at the first of them.
+fn check_chain(start: usize, path: &str, scene: &Scene, report: &mut Report<'_>) {
+    let mut chain = Vec::new();
+    let mut at = start;
+    while let Some((name, Spectrum::Named(next))) = scene.spectra.get_index(at) {
+        chain.push(format!("`{name}`"));
+        let help = "give one of them values of its own";
+        match scene.spectra.get_index_of(next) {
+            Some(next) if next == start => {
+                let message = match chain.as_slice() {
+                    [own] => format!("the spectrum {own} names itself"),
+                    _ => format!("the spectra {} name each other in a circle", chain.join(", ")),
+                };
+                return report.error(path, message, help);
+            }
+            // Who comes earlier in the document has reported it.
+            Some(next) if next < start => return,
+            Some(_) if chain.len() == CHAIN => {
+                let message = format!("more than {CHAIN} spectra name one another from here");
+                return report.error(path, message, help);
+            }
+            Some(next) => at = next,
+            None => return,
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Keys of records, and variants of choices.
+
+use super::super::diagnostic::{nearest, suggestion};
+use super::super::syntax::{Field, Node, Span, Step, Value};
+use super::{Decode, Reader};
+
+/// The keys of a record or of a variant.
+pub(in super::super) struct Fields<'a> {
+    list: &'a [Field],
+    /// What to underline where a key is missing.
+    head: Span,
+    /// What a person calls the owner: `the sun`.
+    owner: &'static str,
+    known: &'static [&'static str],
+}
+
+impl<'a> Fields<'a> {
+    /// Keys of a record, with or without its type's name.
+    pub(in super::super) fn of_record(
+        node: &'a Node,
+        type_name: &str,
+        owner: &'static str,
+        known: &'static [&'static str],
+    ) -> Option<Self> {
+        let head = node.opening();
+        let value = match &node.value {
+            Value::Named(named) if named.name == type_name => &named.body.as_ref()?.value,
+            value => value,
+        };
+        let list = match value {
+            Value::Record(fields) => fields.as_slice(),
+            Value::Tuple(items) if items.is_empty() => &[],
+            _ => return None,
+        };
+        Some(Self { list, head, owner, known })
+    }
+
+    fn unknown(&self) -> impl Iterator<Item = &'a Field> {
+        let known = self.known;
+        self.list.iter().filter(|field| !known.contains(&field.name.as_str()))
+    }
+
+    /// Reports every key that is not among those known.
+    pub(in super::super) fn refuse_others(&self, reader: &mut Reader<'a>) {
+        let known = self.known;
+        for field in self.unknown() {
+            let name = field.name.as_str();
+            let (message, help) = match later(self.owner, name) {
+                Some((what, instead)) => {
+                    (format!("this version does not know {what} yet"), instead.to_owned())
+                }
+                None if name == "transmittance" && self.owner == "`Lambertian(..)`" => (
+                    "a `Lambertian(..)` surface is opaque: it has no transmittance".to_owned(),
+                    "write `Leaf(..)` for one that light passes through".to_owned(),
+                ),
+                None if known.is_empty() => (
+                    format!("no key `{name}` in {}", self.owner),
+                    format!("{} has no keys", self.owner),
+                ),
+                None => (
+                    format!("no key `{name}` in {}", self.owner),
+                    suggestion(name, known, "keys here"),
+                ),
+            };
+            reader.within(Step::Key(name), |reader| {
+                reader.error(field.name_span, message, Some(help));
+            });
+        }
+    }
+
+    fn find(&self, name: &str) -> Option<&'a Field> {
+        self.list.iter().find(|field| field.name == name)
+    }
+
+    pub(in super::super) fn required<T: Decode>(
+        &self,
+        name: &'static str,
+        example: Option<&'static str>,
+        reader: &mut Reader<'a>,
+    ) -> T {
+        reader.within(Step::Key(name), |reader| match self.find(name) {
+            Some(field) => reader.by_example(example, |reader| T::decode(&field.value, reader)),
+            // Under a name like this one it is there, and that has been reported.
+            None if self
+                .unknown()
+                .any(|f| nearest(&f.name, self.known.iter().copied()) == Some(name)) =>
+            {
+                reader.mark_broken();
+                T::placeholder()
+            }
+            None => {
+                let message = format!("{} lacks the key `{name}`", self.owner);
+                let example = example.map_or_else(T::example, str::to_owned);
+                let help = format!("write, for example, `{name}: {example}`");
+                reader.error(self.head, message, Some(help));
+                T::placeholder()
+            }
+        })
+    }
+
+    pub(in super::super) fn optional<T: Decode>(
+        &self,
+        name: &'static str,
+        default: impl FnOnce() -> T,
+        reader: &mut Reader<'a>,
+    ) -> T {
+        match self.find(name) {
+            Some(field) => reader.within(Step::Key(name), |reader| T::decode(&field.value, reader)),
+            None => default(),
+        }
+    }
+}
+
+/// What the language will know, but this version does not.
+fn later(owner: &str, name: &str) -> Option<(&'static str, &'static str)> {
+    match (owner, name) {
+        ("the scene", "include") => {
+            Some(("`include`", "write the included values into this file and take the key out"))
+        }
+        ("the scene", "sweep") => {
+            Some(("`sweep`", "take the key out and run the scene once a point with `--set`"))
+        }
+        ("instances", "Scatter") => {
+            Some(("`Scatter(..)`", "write the places with `List(..)` or `Table(..)`"))
+        }
+        _ => None,
+    }
+}
+
+/// A variant of a choice, as written.
+pub(in super::super) struct Variant<'a> {
+    pub(in super::super) name: &'a str,
+    name_span: Span,
+    body: Option<&'a Node>,
+}
+
+impl<'a> Variant<'a> {
+    pub(in super::super) fn of(node: &'a Node) -> Option<Self> {
+        match &node.value {
+            Value::Named(named) => Some(Self {
+                name: &named.name,
+                name_span: named.name_span,
+                body: named.body.as_ref(),
+            }),
+            _ => None,
+        }
+    }
+
+    /// `Periodic`.
+    pub(in super::super) fn unit<T>(&self, value: T, reader: &mut Reader<'a>) -> T {
+        if let Some(body) = self.body
+            && !matches!(&body.value, Value::Tuple(items) if items.is_empty())
+        {
+            let message = format!("`{}` takes no values", self.name);
+            let help = format!("write `{}` alone", self.name);
+            reader.error(body.head(reader.text()), message, Some(help));
+        }
+        value
+    }
+
+    /// `Constant(0.3)`.
+    pub(in super::super) fn newtype<T: Decode>(
+        &self,
+        example: Option<&'static str>,
+        reader: &mut Reader<'a>,
+    ) -> T {
+        let items = match self.body.map(|body| &body.value) {
+            Some(Value::Tuple(items)) => items.as_slice(),
+            _ => &[],
+        };
+        if let [item] = items {
+            return reader.by_example(example, |reader| T::decode(item, reader));
+        }
+        let example = example.map_or_else(T::example, str::to_owned);
+        let found = match self.body.map(|body| &body.value) {
+            None => "none".to_owned(),
+            Some(Value::Record(_)) => "keys".to_owned(),
+            Some(_) => items.len().to_string(),
+        };
+        let message = format!("`{}` takes one value, found {found}", self.name);
+        let help = format!("write, for example, `{}({example})`", self.name);
+        reader.error(self.name_span, message, Some(help));
+        T::placeholder()
+    }
+
+    /// `Plane(size_m: ..)`; the name alone stands for a variant with defaults only.
+    pub(in super::super) fn fields(
+        &self,
+        owner: &'static str,
+        known: &'static [&'static str],
+        reader: &mut Reader<'a>,
+    ) -> Option<Fields<'a>> {
+        let list = match self.body.map(|body| &body.value) {
+            None => &[],
+            Some(Value::Record(fields)) => fields.as_slice(),
+            Some(Value::Tuple(items)) if items.is_empty() => &[],
+            Some(_) => {
+                let message = format!("{owner} takes keys, found values without");
+                let help = format!("write `key: value`; keys here: {}", known.join(", "));
+                reader.error(self.name_span, message, Some(help));
+                return None;
+            }
+        };
+        Some(Fields { list, head: self.name_span, owner, known })
+    }
+
+    /// A name that no variant has.
+    pub(in super::super) fn unknown<T: Decode>(
+        &self,
+        kind: &str,
+        known: &[&'static str],
+        reader: &mut Reader<'a>,
+    ) -> T {
+        let expected = T::expected();
+        let (message, help) = match later(kind, self.name) {
+            Some((what, instead)) => {
+                (format!("this version does not know {what} yet"), instead.to_owned())
+            }
+            None => (
+                format!("expected {expected}, found `{}`", self.name),
+                suggestion(self.name, known, "choices here"),
+            ),
+        };
+        reader.error(self.name_span, message, Some(help));
+        T::placeholder()
+    }
+}
+
+/// `(zenith_deg: 30.0)` from keys and examples.
+pub(in super::super) fn example_of_keys(keys: &[Option<(&'static str, String)>]) -> String {
+    let keys: Vec<_> =
+        keys.iter().flatten().map(|(name, example)| format!("{name}: {example}")).collect();
+    format!("({})", keys.join(", "))
+}

@@ -1,0 +1,158 @@
+//! Tree to types: always a value, and every error on the way.
+
+mod keys;
+mod plain;
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+pub(super) use keys::{Fields, Variant, example_of_keys};
+
+use super::diagnostic::{Diagnostic, Place};
+use super::source::Source;
+use super::syntax::{Node, Span, Step, Value, path_of};
+
+/// No more errors than this are kept: nobody reads them.
+const ERRORS: usize = 100;
+
+/// A type that can be read from the tree.
+pub(super) trait Decode: Sized {
+    /// What a person calls such a value: `a number`.
+    fn expected() -> Cow<'static, str>;
+
+    /// How one is written.
+    fn example() -> String;
+
+    /// The value; where it cannot be read, the reader is told and the value is a placeholder.
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self;
+
+    /// A value that stands where none could be read.
+    fn placeholder() -> Self;
+}
+
+/// Where reading has come to, and what was wrong on the way.
+pub(super) struct Reader<'a> {
+    source: &'a Source,
+    path: Vec<Step<'a>>,
+    diagnostics: Vec<Diagnostic>,
+    dropped: usize,
+    /// What formulas came to, by their first byte; none where that was nothing.
+    computed: HashMap<u32, Option<f64>>,
+    /// Paths without a value, beside those of `diagnostics`.
+    broken: Vec<String>,
+    /// How the value of the key at this depth is written.
+    example: Option<(usize, &'static str)>,
+}
+
+/// What was wrong with a tree.
+pub(super) struct Findings {
+    pub(super) diagnostics: Vec<Diagnostic>,
+    /// How many more errors there were.
+    pub(super) dropped: usize,
+    /// Paths without a value.
+    pub(super) broken: Vec<String>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(source: &'a Source) -> Self {
+        Self {
+            source,
+            path: Vec::new(),
+            diagnostics: Vec::new(),
+            dropped: 0,
+            computed: HashMap::new(),
+            broken: Vec::new(),
+            example: None,
+        }
+    }
+
+    /// What was wrong.
+    pub(super) fn finish(self) -> Findings {
+        let Self { diagnostics, dropped, mut broken, .. } = self;
+        broken.extend(diagnostics.iter().map(|error| error.path.clone()));
+        Findings { diagnostics, dropped, broken }
+    }
+
+    /// There is no value here, for a reason that has been reported elsewhere.
+    pub(super) fn mark_broken(&mut self) {
+        if self.broken.len() < ERRORS {
+            self.broken.push(path_of(&self.path));
+        }
+    }
+
+    pub(super) fn text(&self) -> &'a str {
+        self.source.text()
+    }
+
+    /// Reads something one step down.
+    pub(super) fn within<T>(&mut self, step: Step<'a>, read: impl FnOnce(&mut Self) -> T) -> T {
+        self.path.push(step);
+        let value = read(self);
+        self.path.pop();
+        value
+    }
+
+    /// Something wrong where reading has come to.
+    pub(super) fn error(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
+        let error = Diagnostic::error(path_of(&self.path), message).at(self.place_of(span));
+        self.push(Diagnostic { help, ..error });
+    }
+
+    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
+        if self.diagnostics.len() < ERRORS {
+            self.diagnostics.push(diagnostic);
+        } else {
+            self.dropped += 1;
+        }
+    }
+
+    pub(super) fn place_of(&self, span: Span) -> Place {
+        self.source.place_of(span)
+    }
+
+    /// What a formula came to; none where it was wrong, which has been reported.
+    pub(super) fn set_computed(&mut self, formula: &Node, value: Option<f64>) {
+        self.computed.insert(formula.span.start, value);
+    }
+
+    fn computed(&self, formula: &Node) -> Option<f64> {
+        self.computed.get(&formula.span.start).copied().flatten()
+    }
+
+    /// Reads a value that is written, for example, like this.
+    fn by_example<T>(
+        &mut self,
+        example: Option<&'static str>,
+        read: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        self.example = example.map(|example| (self.path.len(), example));
+        let value = read(self);
+        self.example = None;
+        value
+    }
+
+    /// A value of the wrong kind.
+    pub(super) fn mismatch<T: Decode>(&mut self, node: &Node) -> T {
+        let computed = self.computed.get(&node.span.start).copied();
+        let reported = matches!(node.value, Value::BadNumber(_)) || computed == Some(None);
+        if !reported {
+            let found = match computed.flatten() {
+                Some(value) => format!("a formula that gives {value:?}"),
+                None => node.describe(),
+            };
+            let message = format!("expected {}, found {found}", T::expected());
+            let example = match self.example {
+                Some((depth, example)) if depth == self.path.len() => example.to_owned(),
+                _ => T::example(),
+            };
+            let help = format!("write, for example, `{example}`");
+            self.error(node.head(self.text()), message, Some(help));
+        }
+        T::placeholder()
+    }
+
+    fn number_error<T: Decode>(&mut self, node: &Node, message: String, help: Option<String>) -> T {
+        self.error(node.span, message, help);
+        T::placeholder()
+    }
+}

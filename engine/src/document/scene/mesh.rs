@@ -1,0 +1,194 @@
+//! Mesh prototypes, from files and generated.
+
+use std::borrow::Cow;
+
+use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
+use super::super::encode::{Encode, Text, differs};
+use super::super::syntax::Node;
+use super::Map;
+
+choice! {
+    /// A mesh prototype.
+    pub enum Mesh ("a mesh") {
+        /// Wavefront OBJ; groups, and within them materials, are the parts.
+        Obj {
+            /// Path, relative to the scene file.
+            file: String => r#""assets/tree.obj""#,
+            /// Which axis points up.
+            up: Axis => "Z",
+            /// Length of the file's unit, m.
+            unit_m: f64 => "1.0",
+            /// Material of each part.
+            parts: Map<String> = Map::new(),
+            /// Material of the parts that `parts` does not name.
+            material: Option<String> = None,
+            /// What becomes the origin.
+            origin: Origin = Origin::File,
+        },
+        /// glTF 2.0 or GLB; materials are the parts.
+        Gltf {
+            /// Path, relative to the scene file.
+            file: String => r#""assets/tree.glb""#,
+            /// Which axis points up (Y, if the file keeps to the standard).
+            up: Axis => "Y",
+            /// Length of the file's unit, m.
+            unit_m: f64 => "1.0",
+            /// Material of each part.
+            parts: Map<String> = Map::new(),
+            /// Material of the parts that `parts` does not name.
+            material: Option<String> = None,
+            /// What becomes the origin.
+            origin: Origin = Origin::File,
+        },
+        /// A cloud of discs: CSV with the header `radius,x,y,z,nx,ny,nz`, or a RAMI `.def` text
+        /// with rows `r x y z nx ny nz`; m, z up.
+        Discs {
+            /// Path, relative to the scene file.
+            file: String => r#""assets/crown.csv""#,
+            /// Material of the discs.
+            material: String => r#""leaf""#,
+        },
+        /// A tree or shrub generated leaf by leaf.
+        Crown {
+            /// Outline of the crown.
+            shape: CrownShape => "Ellipsoid(diameter_m: 3.0, height_m: 5.0)",
+            /// Height of the crown's lowest point above the ground, m.
+            base_m: f64 => "2.0",
+            /// One-sided area of all leaves, m².
+            leaf_area_m2: f64 => "30.0",
+            /// Distribution of leaf inclinations.
+            leaf_angle: LeafAngle = LeafAngle::Spherical,
+            /// Shape and size of a leaf.
+            leaf: LeafShape => "Disc(radius_m: 0.05)",
+            /// Material of the leaves.
+            leaf_material: String => r#""leaf""#,
+            /// Trunk, if any.
+            trunk: Option<Trunk> = None,
+            /// Branches from the trunk into the crown, if any.
+            branches: Option<Branches> = None,
+            /// Material of trunk and branches.
+            wood_material: Option<String> = None,
+            /// Another number is another tree of the same kind.
+            seed: u64 = 1,
+        },
+    }
+}
+
+choice! {
+    /// The axis of a file's model that points to the zenith.
+    pub enum Axis ("an axis") {
+        /// x points up, y to the east, z to the north.
+        X,
+        /// y points up; x stays east and -z points north.
+        Y,
+        /// z points up: the frame of sunfleck.
+        Z,
+    }
+}
+
+choice! {
+    /// What becomes the origin of a prototype.
+    pub enum Origin ("an origin") {
+        /// The file's own origin.
+        File,
+        /// The middle of the bounding box, at its lowest height.
+        BaseCenter,
+    }
+}
+
+choice! {
+    /// Outline of a generated crown.
+    pub enum CrownShape ("a crown shape") {
+        /// Ellipsoid of revolution.
+        Ellipsoid {
+            /// Largest width, m.
+            diameter_m: f64 => "3.0",
+            /// From its lowest to its highest point, m.
+            height_m: f64 => "5.0",
+        },
+        /// Upright cone.
+        Cone {
+            /// Width at its base, m.
+            diameter_m: f64 => "3.0",
+            /// From base to tip, m.
+            height_m: f64 => "5.0",
+        },
+        /// Upright cylinder.
+        Cylinder {
+            /// Width, m.
+            diameter_m: f64 => "3.0",
+            /// From base to top, m.
+            height_m: f64 => "5.0",
+        },
+        /// Box, for homogeneous layers.
+        Box {
+            /// Extent to the east, to the north and up, m.
+            size_m: (f64, f64, f64) => "(10.0, 10.0, 2.0)",
+        },
+    }
+}
+
+choice! {
+    /// Distribution of the angle θ between leaf normal and zenith; azimuths are uniform.
+    pub enum LeafAngle ("a leaf angle distribution") {
+        /// g(θ) = sin θ.
+        Spherical,
+        /// g(θ) = 2/π.
+        Uniform,
+        /// g(θ) = (2/π)(1 + cos 2θ): mostly horizontal leaves.
+        Planophile,
+        /// g(θ) = (2/π)(1 - cos 2θ): mostly vertical leaves.
+        Erectophile,
+        /// g(θ) = (2/π)(1 - cos 4θ): mostly leaves at 45°.
+        Plagiophile,
+        /// g(θ) = (2/π)(1 + cos 4θ): mostly horizontal or vertical leaves.
+        Extremophile,
+    }
+}
+
+choice! {
+    /// Shape of a generated leaf.
+    pub enum LeafShape ("a leaf shape") {
+        /// Flat disc.
+        Disc {
+            /// Radius, m.
+            radius_m: f64 => "0.05",
+        },
+        /// Flat square.
+        Square {
+            /// Side, m.
+            side_m: f64 => "0.05",
+        },
+        /// Flat rhombus.
+        Rhombus {
+            /// Long diagonal, m.
+            length_m: f64 => "0.08",
+            /// Short diagonal, m.
+            width_m: f64 => "0.04",
+        },
+    }
+}
+
+record! {
+    /// Trunk of a generated tree: a tapered, closed prism.
+    pub struct Trunk ("the trunk") {
+        /// Height of its tip, m.
+        height_m: f64 => "5.0",
+        /// Diameter at the ground, m.
+        diameter_m: f64 => "0.2",
+        /// Diameter at the tip, m.
+        tip_diameter_m: f64 = 0.01,
+    }
+}
+
+record! {
+    /// Branches of a generated tree, spread along the trunk within the crown.
+    pub struct Branches ("the branches") {
+        /// How many.
+        count: u32 => "12",
+        /// Diameter at the trunk, m.
+        diameter_m: f64 => "0.2",
+        /// Angle from the zenith, degrees.
+        zenith_deg: f64 = 60.0,
+    }
+}

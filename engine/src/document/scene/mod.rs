@@ -1,0 +1,82 @@
+//! What a scene file may say.
+
+mod ground;
+mod light;
+mod mesh;
+mod sensor;
+mod spectrum;
+
+use std::borrow::Cow;
+
+use indexmap::IndexMap;
+
+use super::decode::{Decode, Fields, Reader, example_of_keys};
+use super::encode::{Encode, Text, differs};
+use super::syntax::Node;
+
+pub use ground::{Boundary, Instances, Terrain};
+pub use light::{Sky, Sun};
+pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
+pub use sensor::{ImageMeasure, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views};
+pub use spectrum::{Material, Spectrum};
+
+/// Named values in document order.
+pub type Map<T> = IndexMap<String, T>;
+
+record! {
+    /// A scene file: a function of its `params`.
+    pub struct Scene ("the scene") {
+        /// Version of the language; this is version 1.
+        format: u32 => "1",
+        /// What a person calls the scene.
+        title: String = String::new(),
+        /// Values that `"=expr"` strings may use.
+        params: Map<f64> = Map::new(),
+        /// Where the local frame lies on Earth.
+        frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0) },
+        /// Spectral bands, in the order of all band lists.
+        bands: Vec<Band> => r#"[(name: "red", center_nm: 660.0, width_nm: 10.0)]"#,
+        /// Spectra that materials and lights may name.
+        spectra: Map<Spectrum> = Map::new(),
+        /// Surfaces.
+        materials: Map<Material> = Map::new(),
+        /// Mesh prototypes.
+        meshes: Map<Mesh> = Map::new(),
+        /// The ground.
+        terrain: Terrain => r#"Plane(size_m: (100.0, 100.0), material: "soil")"#,
+        /// What stands on it.
+        instances: Vec<Instances> = Vec::new(),
+        /// The sun; without it only the sky lights the scene.
+        sun: Option<Sun> = None,
+        /// The sky.
+        sky: Sky = Sky::None,
+        /// What lies beyond the terrain's rectangle.
+        boundary: Boundary = Boundary::Isolated,
+        /// What measures the light.
+        sensors: Map<Sensor> => r#"{ "brf": Directions(views: PrincipalPlane) }"#,
+        /// How light is traced.
+        transport: Transport = Transport::default(),
+        /// Named sets of changes to `params`.
+        variants: Map<Map<f64>> = Map::new(),
+    }
+}
+
+record! {
+    /// Anchor of the local frame.
+    pub struct Frame ("the frame") {
+        /// Easting, northing and height (UTM, say) of the local origin, m. Results do not depend on it.
+        origin_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
+    }
+}
+
+record! {
+    /// A spectral band.
+    pub struct Band ("a band") {
+        /// Its name in all outputs.
+        name: String => r#""red""#,
+        /// Centre wavelength, nm.
+        center_nm: f64 => "660.0",
+        /// Full width, nm; 0 means the centre wavelength alone.
+        width_nm: f64 = 0.0,
+    }
+}

@@ -1,0 +1,163 @@
+//! What measures the light, and how it is traced.
+
+use std::borrow::Cow;
+
+use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
+use super::super::encode::{Encode, Text, differs};
+use super::super::syntax::Node;
+
+choice! {
+    /// A sensor.
+    pub enum Sensor ("a sensor") {
+        /// Parallel-projection image.
+        Orthographic {
+            /// Columns and rows.
+            size_px: (u32, u32) => "(256, 256)",
+            /// Width and height of the footprint in the plane perpendicular to the view, m.
+            extent_m: (f64, f64) => "(50.0, 50.0)",
+            /// Point on the ground in the middle of the image, m; the terrain's middle if absent.
+            center_m: Option<(f64, f64)> = None,
+            /// Zenith angle of the sensor, degrees.
+            zenith_deg: f64 = 0.0,
+            /// Where the sensor is, clockwise from north, degrees. A nadir image has north up at 180.
+            azimuth_deg: f64 = 180.0,
+            /// Samples a pixel.
+            samples_per_px: u32 = 64,
+            /// What to report.
+            measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
+            /// Which transport system estimates it.
+            system: System = System::Backward,
+        },
+        /// The scene seen from many directions.
+        Directions {
+            /// Where the sensors are.
+            views: Views => "PrincipalPlane",
+            /// When it is good enough.
+            until: Until = Until::RelError(0.005),
+            /// What to report.
+            measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
+            /// Which transport system estimates it.
+            system: System = System::Backward,
+        },
+        /// Photon packets from sun and sky.
+        Photons {
+            /// Packets a square metre of the terrain's rectangle.
+            per_m2: f64 = 1000.0,
+            /// What to count them for.
+            measure: Vec<PhotonMeasure> = vec![PhotonMeasure::Albedo],
+        },
+    }
+}
+
+choice! {
+    /// Directions towards sensors.
+    pub enum Views ("views") {
+        /// In the sun's vertical plane; positive angles are on the sun's side.
+        PrincipalPlane {
+            /// Largest zenith angle, degrees.
+            max_deg: f64 = 75.0,
+            /// Step, degrees.
+            step_deg: f64 = 5.0,
+        },
+        /// In the plane perpendicular to it; positive angles are 90° clockwise of the sun.
+        CrossPlane {
+            /// Largest zenith angle, degrees.
+            max_deg: f64 = 75.0,
+            /// Step, degrees.
+            step_deg: f64 = 5.0,
+        },
+        /// Pairs (zenith, azimuth), degrees.
+        List(Vec<(f64, f64)> => "[(30.0, 90.0), (60.0, 90.0)]"),
+    }
+}
+
+choice! {
+    /// When a measurement is good enough.
+    pub enum Until ("an end of the measurement") {
+        /// Its median relative standard error is at most this.
+        RelError(f64 => "0.005"),
+        /// It has run for so many seconds.
+        Seconds(f64 => "60.0"),
+        /// So many samples a direction.
+        Samples(u64 => "1000"),
+    }
+}
+
+choice! {
+    /// What an image holds.
+    pub enum ImageMeasure ("a measure of an image") {
+        /// Radiance, W m⁻² sr⁻¹ nm⁻¹.
+        Radiance,
+        /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
+        Brf,
+    }
+}
+
+choice! {
+    /// What photons are counted for.
+    pub enum PhotonMeasure ("a measure of photons") {
+        /// BRF in so many equal-area cells of the hemisphere.
+        BrfCells(u32 => "150"),
+        /// BRF towards directions, by virtual photons.
+        BrfViews(Views => "PrincipalPlane"),
+        /// Reflected over incident flux.
+        Albedo,
+        /// Share of the incident flux that each material absorbs in each layer.
+        Fapar {
+            /// Thickness of a layer, m.
+            layer_m: f64 = 1.0,
+        },
+        /// Down- and upwelling flux density, W m⁻² nm⁻¹, on the terrain and at the top of the scene.
+        Fluxes {
+            /// Side of a square pixel, m.
+            pixel_m: f64 = 1.0,
+            /// Further heights, m.
+            heights_m: Vec<f64> = Vec::new(),
+        },
+    }
+}
+
+choice! {
+    /// A transport system.
+    pub enum System ("a transport system") {
+        /// Paths from the sensor.
+        Backward,
+        /// Photon packets from sun and sky.
+        Forward,
+    }
+}
+
+record! {
+    /// How light is traced.
+    pub struct Transport ("`transport`") {
+        /// Another number is another, independent estimate.
+        seed: u64 = 1,
+        /// How weak paths end.
+        roulette: Roulette = Roulette::default(),
+        /// Count light that was scattered once, and no more.
+        first_order_only: bool = false,
+    }
+}
+
+impl Default for Transport {
+    fn default() -> Self {
+        Self { seed: 1, roulette: Roulette::default(), first_order_only: false }
+    }
+}
+
+record! {
+    /// Russian roulette: from some order on a path ends with some probability; those that survive
+    /// carry its power on.
+    pub struct Roulette ("the roulette") {
+        /// Orders of scattering before it starts.
+        after_order: u32 = 5,
+        /// Probability to end, below 1.
+        kill: f64 = 0.05,
+    }
+}
+
+impl Default for Roulette {
+    fn default() -> Self {
+        Self { after_order: 5, kill: 0.05 }
+    }
+}

@@ -1,0 +1,61 @@
+//! Broken scenes, and what a person reads about each.
+
+use sunfleck::document::{Options, read_text};
+
+/// What `sunfleck check` writes.
+fn shown(name: &str, text: &str) -> String {
+    match read_text(&format!("{name}.ron"), text, &Options::default()) {
+        Ok(reading) => reading.render(),
+        Err(error) => format!("error: {error}\n"),
+    }
+}
+
+macro_rules! broken {
+    ($($name:ident)*) => {
+        $(#[test]
+        fn $name() {
+            let name = stringify!($name);
+            let text = include_str!(concat!("broken/", stringify!($name), ".ron"));
+            insta::assert_snapshot!(name, shown(name, text));
+        })*
+    };
+}
+
+broken! {
+    bands
+    bracket_closed_wrongly
+    bracket_never_closed
+    comma_missing
+    comment_never_closed
+    crown
+    directions
+    formulas
+    fractions
+    image
+    last_string_never_closed
+    instances
+    later_versions
+    leaf_as_light
+    missing_keys
+    no_bands
+    no_light
+    not_a_scene
+    numbers
+    params
+    photons
+    quoted_key
+    repeated_keys
+    sky_without_sun
+    spectra
+    string_never_closed
+    sun_below_the_horizon
+    terrain
+    text_behind_the_scene
+    unit_behind_a_number
+    unknown_key
+    unknown_names
+    unknown_variants
+    variants_written_wrongly
+    windows_path
+    wrong_kinds
+}
