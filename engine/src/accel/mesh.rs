@@ -1,0 +1,328 @@
+//! The tree of one mesh: its primitives in blocks of eight, found and checked when it is built.
+
+use glam::{DVec3, Vec3};
+
+use crate::{components::Mesh, geometry::Bounds};
+
+use super::{
+    BuildError, MeshInput,
+    simd::{Lanes, Words},
+    tree::{self, Box3, Plan, Ref, Tree},
+};
+
+/// Set in a lane's id when the lane is a parallelogram: triangle `id` and the one after it.
+pub(super) const PARALLELOGRAM: u32 = 1 << 31;
+
+/// Coordinates beyond this would overflow the products of the traversal, m.
+const FARTHEST: f32 = 1e9;
+
+const MOST_PRIMITIVES: usize = 1 << 29;
+
+/// Up to eight triangles or parallelograms.
+///
+/// Corners are kept as the mesh has them, bit for bit, and not as edges: neighbours then agree on
+/// which side of their common edge a ray passes.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct PlanarBlock {
+    /// Three corners, each as x, y, z; a parallelogram's fourth is `b + c - a`.
+    pub corners: [[Lanes; 3]; 3],
+    /// Length of the longer of the two edges at the first corner; negative in an unused lane.
+    pub edge: Lanes,
+    /// Triangle in the mesh, with [`PARALLELOGRAM`].
+    pub id: Words,
+}
+
+/// Up to eight discs.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct DiscBlock {
+    pub center: [Lanes; 3],
+    /// Unit within rounding.
+    pub normal: [Lanes; 3],
+    /// Negative in an unused lane.
+    pub radius: Lanes,
+    /// Disc in the mesh.
+    pub id: Words,
+}
+
+/// One mesh, ready to be traced.
+#[derive(Debug)]
+pub(super) struct MeshTree {
+    pub tree: Tree,
+    pub planar: Vec<PlanarBlock>,
+    pub discs: Vec<DiscBlock>,
+    /// Box around all primitives, not padded.
+    pub bounds: Box3,
+    /// Largest absolute coordinate.
+    pub reach: f32,
+    /// Number of triangles in the mesh: where its discs are counted from.
+    pub triangles: u32,
+    /// End of each part's triangles, and its surface.
+    triangle_surfaces: Vec<(u32, u32)>,
+    /// End of each part's discs, and its surface.
+    disc_surfaces: Vec<(u32, u32)>,
+}
+
+/// A primitive before it has a place in a block.
+#[derive(Clone, Copy)]
+enum Primitive {
+    Planar { corners: [Vec3; 3], id: u32 },
+    Disc { center: Vec3, normal: Vec3, radius: f32, id: u32 },
+}
+
+impl MeshTree {
+    pub(super) fn build(number: usize, input: &MeshInput<'_>) -> Result<Self, BuildError> {
+        let MeshInput { mesh, surfaces } = *input;
+        check(number, mesh, surfaces)?;
+        let mut primitives = planar_primitives(mesh);
+        let triangles = mesh.triangles.len() as u32;
+        primitives.extend(mesh.discs.iter().enumerate().filter_map(|(id, disc)| {
+            let normal = disc.normal.as_dvec3().try_normalize()?.as_vec3();
+            let radius = (disc.radius > 0.0).then_some(disc.radius)?;
+            Some(Primitive::Disc { center: disc.center, normal, radius, id: id as u32 })
+        }));
+        let boxes: Vec<_> = primitives.iter().map(Primitive::bounds).collect();
+        let bounds = boxes.iter().copied().fold(Box3::EMPTY, Box3::union);
+        let reach = if boxes.is_empty() { 0.0 } else { bounds.reach() };
+        let plan = Plan { leaf: 8, leaf_cost: 1.0, pad: pad(reach), reinsertion: 1.0 };
+        let (mut planar, mut discs) = (Vec::new(), Vec::new());
+        let is_disc = |p: u32| matches!(primitives[p as usize], Primitive::Disc { .. });
+        let tree = tree::build(&boxes, plan, is_disc, &mut |leaf: &[u32]| {
+            if is_disc(leaf[0]) {
+                discs.push(DiscBlock::new(leaf.iter().map(|&p| primitives[p as usize])));
+                Ref(Ref::LEAF | Ref::OTHER | (discs.len() as u32 - 1))
+            } else {
+                planar.push(PlanarBlock::new(leaf.iter().map(|&p| primitives[p as usize])));
+                Ref(Ref::LEAF | (planar.len() as u32 - 1))
+            }
+        });
+        let ends = |end: fn(&crate::components::Part) -> u32| {
+            mesh.parts.iter().zip(surfaces).map(|(part, &surface)| (end(part), surface)).collect()
+        };
+        Ok(Self {
+            tree,
+            planar,
+            discs,
+            bounds,
+            reach,
+            triangles,
+            triangle_surfaces: ends(|part| part.triangles.end),
+            disc_surfaces: ends(|part| part.discs.end),
+        })
+    }
+
+    /// Where a ray in object space enters the box of the mesh.
+    pub(super) fn clip(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let room = 0.5 * f64::from(pad(self.reach));
+        let Box3 { min, max } = self.bounds;
+        let bounds = Bounds { min: min.as_dvec3() - room, max: max.as_dvec3() + room };
+        bounds.clip(origin, direction).map(|(enter, _)| enter)
+    }
+
+    /// The surface of a primitive, counted as in [`super::Hit::primitive`].
+    pub(super) fn surface(&self, primitive: u32) -> u32 {
+        let (ends, index) = if primitive < self.triangles {
+            (&self.triangle_surfaces, primitive)
+        } else {
+            (&self.disc_surfaces, primitive - self.triangles)
+        };
+        ends[ends.partition_point(|&(end, _)| end <= index)].1
+    }
+}
+
+/// By how much boxes grow so that the rounding of the slab test never loses a primitive.
+///
+/// The test runs on `|origin| <= 4 reach`; each of its roundings, of relative size 2⁻²⁴, moves a
+/// plane of the box by at most that share of `|origin|`, of the plane's coordinate, or of the
+/// distance between the two: together less than 32 · 2⁻²⁴ `reach`.
+pub(super) fn pad(reach: f32) -> f32 {
+    reach * (-19_f32).exp2()
+}
+
+fn check(number: usize, mesh: &Mesh, surfaces: &[u32]) -> Result<(), BuildError> {
+    let lawful = |v: Vec3| v.abs().cmple(Vec3::splat(FARTHEST)).all();
+    if let Some(vertex) = mesh.vertices.iter().position(|&v| !lawful(v)) {
+        let Vec3 { x, y, z } = mesh.vertices[vertex];
+        return Err(BuildError::Vertex { mesh: number, vertex, x, y, z, limit: FARTHEST });
+    }
+    let count = mesh.vertices.len();
+    for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        if let Some(&vertex) = corners.iter().find(|&&corner| corner as usize >= count) {
+            return Err(BuildError::Corner { mesh: number, triangle, vertex, count });
+        }
+    }
+    let fine = |d: &crate::components::Disc| {
+        lawful(d.center) && d.normal.is_finite() && d.radius.abs() <= FARTHEST
+    };
+    if let Some(disc) = mesh.discs.iter().position(|d| !fine(d)) {
+        return Err(BuildError::Disc { mesh: number, disc, limit: FARTHEST });
+    }
+    let primitives = mesh.triangles.len() + mesh.discs.len();
+    if primitives > MOST_PRIMITIVES {
+        let limit = MOST_PRIMITIVES;
+        return Err(BuildError::TooManyPrimitives { mesh: number, count: primitives, limit });
+    }
+    let parts = mesh.parts.len();
+    if parts != surfaces.len() {
+        return Err(BuildError::Surfaces { mesh: number, parts, surfaces: surfaces.len() });
+    }
+    let mut ends = (0, 0);
+    for part in &mesh.parts {
+        if (part.triangles.start, part.discs.start) != ends {
+            break;
+        }
+        ends = (part.triangles.end.max(ends.0), part.discs.end.max(ends.1));
+    }
+    let (triangles, discs) = (mesh.triangles.len(), mesh.discs.len());
+    if (ends.0 as usize, ends.1 as usize) != (triangles, discs) {
+        return Err(BuildError::Parts { mesh: number, triangles, discs });
+    }
+    Ok(())
+}
+
+/// Triangles that have an area, two at a time where they form a parallelogram.
+fn planar_primitives(mesh: &Mesh) -> Vec<Primitive> {
+    let mut uses = vec![0_u8; mesh.vertices.len()];
+    for &corner in mesh.triangles.iter().flatten() {
+        uses[corner as usize] = uses[corner as usize].saturating_add(1);
+    }
+    let mut found = Vec::with_capacity(mesh.triangles.len());
+    let mut parts = mesh.parts.iter().map(|part| part.triangles.end as usize).peekable();
+    let mut index = 0;
+    while index < mesh.triangles.len() {
+        while parts.next_if(|&end| end <= index).is_some() {}
+        let within = parts.peek().is_some_and(|&end| index + 1 < end);
+        if let Some(corners) = within.then(|| parallelogram(mesh, index, &uses)).flatten() {
+            found.push(Primitive::Planar { corners, id: index as u32 | PARALLELOGRAM });
+            index += 2;
+            continue;
+        }
+        let corners = mesh.corners(index);
+        if has_area(corners) {
+            found.push(Primitive::Planar { corners, id: index as u32 });
+        }
+        index += 1;
+    }
+    found
+}
+
+fn has_area(corners: [Vec3; 3]) -> bool {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    (b - a).cross(c - a).length_squared() > 0.0
+}
+
+/// The first three corners of the parallelogram that a triangle and the next one form: the
+/// triangle's apex, then the diagonal in the triangle's own sense.
+///
+/// The fourth corner is `b + c - a` exactly, or within rounding if no other triangle uses it: else
+/// a ray could pass between this parallelogram and a neighbour.
+fn parallelogram(mesh: &Mesh, index: usize, uses: &[u8]) -> Option<[Vec3; 3]> {
+    let (own, next) = (mesh.triangles[index], mesh.triangles[index + 1]);
+    let (turn, far) = (0..3).find_map(|i| {
+        let (b, c) = (own[(i + 1) % 3], own[(i + 2) % 3]);
+        (0..3).find(|&k| next[k] == c && next[(k + 1) % 3] == b).map(|k| (i, next[(k + 2) % 3]))
+    })?;
+    let corners = [0, 1, 2].map(|k| mesh.vertices[own[(turn + k) % 3] as usize]);
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let corner = mesh.vertices[far as usize];
+    let ideal = b + c - a;
+    let rounding = f64::from(f32::EPSILON) * (a.abs() + b.abs() + c.abs());
+    let exact = ideal == corner.as_dvec3();
+    let close = (ideal - corner.as_dvec3()).abs().cmple(rounding).all();
+    (has_area(corners) && (exact || close && uses[far as usize] == 1)).then_some(corners)
+}
+
+impl Primitive {
+    fn bounds(&self) -> Box3 {
+        match *self {
+            Self::Planar { corners: [a, b, c], id } => {
+                let three = Box3 { min: a.min(b).min(c), max: a.max(b).max(c) };
+                if id & PARALLELOGRAM == 0 {
+                    return three;
+                }
+                let fourth = b.as_dvec3() + c.as_dvec3() - a.as_dvec3();
+                three.union(outward(fourth, fourth))
+            }
+            Self::Disc { center, normal, radius, .. } => {
+                // A disc reaches r sqrt(1 - n_i²) along axis i.
+                let n = normal.as_dvec3();
+                let n = n / n.length();
+                let rounding = 1.0 + 1e-12;
+                let reach = (DVec3::ONE - n * n + 1e-15).max(DVec3::ZERO).map(f64::sqrt);
+                let reach = reach * f64::from(radius) * rounding;
+                outward(center.as_dvec3() - reach, center.as_dvec3() + reach)
+            }
+        }
+    }
+}
+
+/// The smallest `f32` box around an `f64` one.
+pub(super) fn outward(min: DVec3, max: DVec3) -> Box3 {
+    use crate::geometry::{round_down, round_up};
+    Box3 {
+        min: Vec3::new(round_down(min.x), round_down(min.y), round_down(min.z)),
+        max: Vec3::new(round_up(max.x), round_up(max.y), round_up(max.z)),
+    }
+}
+
+impl PlanarBlock {
+    fn new(primitives: impl Iterator<Item = Primitive>) -> Self {
+        let zero = Lanes([0.0; 8]);
+        let mut block = Self { corners: [[zero; 3]; 3], edge: Lanes([-1.0; 8]), id: Words([0; 8]) };
+        for (lane, primitive) in primitives.enumerate() {
+            let Primitive::Planar { corners, id } = primitive else { continue };
+            for (to, from) in block.corners.iter_mut().zip(corners) {
+                for (axis, lanes) in to.iter_mut().enumerate() {
+                    lanes.0[lane] = from[axis];
+                }
+            }
+            let [a, b, c] = corners.map(Vec3::as_dvec3);
+            let edge = (b - a).length().max((c - a).length());
+            block.edge.0[lane] = crate::geometry::round_up(edge);
+            block.id.0[lane] = id;
+        }
+        block
+    }
+
+    /// Corners of one lane, m, object space.
+    #[inline(always)]
+    pub(super) fn lane(&self, lane: usize) -> [DVec3; 3] {
+        let lane = lane & 7;
+        self.corners.each_ref().map(|corner| {
+            DVec3::new(corner[0].0[lane].into(), corner[1].0[lane].into(), corner[2].0[lane].into())
+        })
+    }
+}
+
+impl DiscBlock {
+    fn new(primitives: impl Iterator<Item = Primitive>) -> Self {
+        let zero = Lanes([0.0; 8]);
+        let mut block = Self {
+            center: [zero; 3],
+            normal: [zero; 3],
+            radius: Lanes([-1.0; 8]),
+            id: Words([0; 8]),
+        };
+        for (lane, primitive) in primitives.enumerate() {
+            let Primitive::Disc { center, normal, radius, id } = primitive else { continue };
+            for axis in 0..3 {
+                block.center[axis].0[lane] = center[axis];
+                block.normal[axis].0[lane] = normal[axis];
+            }
+            block.radius.0[lane] = radius;
+            block.id.0[lane] = id;
+        }
+        block
+    }
+
+    /// Centre, normal and radius of one lane, object space.
+    #[inline(always)]
+    pub(super) fn lane(&self, lane: usize) -> (DVec3, DVec3, f64) {
+        let lane = lane & 7;
+        let vector = |of: &[Lanes; 3]| {
+            DVec3::new(of[0].0[lane].into(), of[1].0[lane].into(), of[2].0[lane].into())
+        };
+        (vector(&self.center), vector(&self.normal), self.radius.0[lane].into())
+    }
+}

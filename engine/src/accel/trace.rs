@@ -1,0 +1,426 @@
+//! The traversal, generic over the instruction set.
+//!
+//! Boxes and primitives are tested eight at a time in `f32`, with bounds on the rounding error, so
+//! that a test says "missed", "certainly hit" or "perhaps". Distances, and whatever is only
+//! perhaps hit, are decided in `f64` by [`super::exact`]. The answer is therefore the least
+//! `(distance, instance, primitive)` over all primitives, and depends neither on the tree nor on
+//! the instruction set nor on threads.
+
+use std::cmp::Ordering;
+
+use glam::{DMat3, DVec3};
+
+use crate::geometry::round_up;
+
+use super::{
+    exact,
+    mesh::{DiscBlock, MeshTree, PARALLELOGRAM, PlanarBlock},
+    scene::Scene,
+    simd::{Isa, Lanes, Stack},
+    tree::{Node, Ref},
+    types::Departure,
+};
+
+/// One ray in one tile.
+pub(super) struct Query<'a> {
+    pub scene: &'a Scene,
+    /// In the tile's frame.
+    pub origin: DVec3,
+    pub direction: DVec3,
+    /// Which tile: how many periods the frame lies from that of the ray.
+    pub tile: [i32; 2],
+    pub from: Option<Departure>,
+    /// Primitives at this distance or farther do not count.
+    pub limit: f64,
+}
+
+/// A primitive on a ray.
+#[derive(Clone, Copy)]
+pub(super) struct Found {
+    pub distance: f64,
+    /// Which instance or image.
+    pub record: u32,
+    /// Which block, and which lane of it.
+    pub block: Ref,
+    pub lane: u8,
+    /// Triangle or disc.
+    pub id: u32,
+}
+
+/// A ray in the space of one tree.
+struct BoxRay<I: Isa> {
+    inverse: [I::F; 3],
+    shift: [I::F; 3],
+    /// 1 where the ray runs down an axis.
+    side: [usize; 3],
+}
+
+impl<I: Isa> BoxRay<I> {
+    #[inline(always)]
+    fn new(isa: I, origin: [f32; 3], direction: [f32; 3]) -> Self {
+        // A component this small moves the ray by less than the padding of any box.
+        let [x, y, z] = direction.map(f32::abs);
+        let least = x.max(y).max(z) * 1e-18;
+        let inverse = direction.map(|d| 1.0 / if d.abs() < least { least.copysign(d) } else { d });
+        Self {
+            inverse: inverse.map(|i| isa.splat(i)),
+            shift: [0, 1, 2].map(|axis| isa.splat(-origin[axis] * inverse[axis])),
+            side: direction.map(|d| usize::from(d.is_sign_negative())),
+        }
+    }
+
+    /// Which children's boxes the ray meets between 0 and `limit`, and where it enters them.
+    #[inline(always)]
+    fn children(&self, isa: I, node: &Node, limit: I::F) -> (u32, I::F) {
+        let plane = |axis: usize, side: usize| {
+            let bounds = isa.load(&node.bounds[axis][side & 1]);
+            isa.mul_add(bounds, self.inverse[axis], self.shift[axis])
+        };
+        let [sx, sy, sz] = self.side;
+        let enter =
+            isa.max(isa.max(plane(0, sx), plane(1, sy)), isa.max(plane(2, sz), isa.splat(0.0)));
+        let leave =
+            isa.min(isa.min(plane(0, sx ^ 1), plane(1, sy ^ 1)), isa.min(plane(2, sz ^ 1), limit));
+        (isa.le(enter, leave), enter)
+    }
+}
+
+/// Walks down from the newest entry of a stack until it meets a leaf that may be closer than
+/// `limit`, nearest child first; `None` when nothing above `base` is left.
+#[inline(always)]
+fn next_leaf<I: Isa, const ANY: bool>(
+    isa: I,
+    nodes: &[Node],
+    ray: &BoxRay<I>,
+    limit: f32,
+    stack: &mut Stack,
+    base: usize,
+) -> Option<(Ref, f32)> {
+    let wide_limit = isa.splat(limit);
+    loop {
+        let item = stack.pop(base)?;
+        let mut near = f32::from_bits((item >> 32) as u32);
+        if near > limit {
+            continue;
+        }
+        let mut at = Ref(item as u32);
+        while at.is_inner() {
+            let node = &nodes[at.index()];
+            let (mut mask, enter) = ray.children(isa, node, wide_limit);
+            if mask == 0 {
+                break;
+            }
+            let enter = isa.store(enter);
+            let entry = |lane: usize| {
+                u64::from(enter.0[lane & 7].to_bits()) << 32 | u64::from(node.child.0[lane & 7])
+            };
+            let first = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            if mask == 0 {
+                at = Ref(node.child.0[first & 7]);
+                near = enter.0[first & 7];
+                continue;
+            }
+            let mut best = entry(first);
+            if ANY {
+                while mask != 0 {
+                    stack.push(entry(mask.trailing_zeros() as usize));
+                    mask &= mask - 1;
+                }
+            } else {
+                // Insertion from the farthest to the nearest: two or three children are usual.
+                let start = stack.len();
+                while mask != 0 {
+                    let next = entry(mask.trailing_zeros() as usize);
+                    mask &= mask - 1;
+                    stack.insert_descending(start, next.max(best));
+                    best = best.min(next);
+                }
+            }
+            at = Ref(best as u32);
+            near = f32::from_bits((best >> 32) as u32);
+        }
+        if !at.is_inner() {
+            return Some((at, near));
+        }
+    }
+}
+
+/// The closest primitive, or any if `ANY`.
+#[inline(always)]
+pub(super) fn trace<I: Isa, const ANY: bool>(isa: I, query: &Query<'_>) -> Option<Found> {
+    let scene = query.scene;
+    let enter = scene.clip(query.origin, query.direction, query.limit)?;
+    let start = query.origin + enter * query.direction - scene.center();
+    let ray = BoxRay::new(isa, start.as_vec3().to_array(), query.direction.as_vec3().to_array());
+    let mut best = Best { limit: query.limit, found: None };
+    let mut stack = Stack::new();
+    stack.push(u64::from(scene.instances().root.0));
+    while let Some((leaf, near)) = {
+        let limit = round_up(best.limit - enter);
+        next_leaf::<I, ANY>(isa, &scene.instances().nodes, &ray, limit, &mut stack, 0)
+    } {
+        let record = leaf.index() as u32;
+        trace_mesh::<I, ANY>(isa, query, record, enter + f64::from(near), &mut best, &mut stack);
+        if ANY && best.found.is_some() {
+            break;
+        }
+    }
+    best.found
+}
+
+struct Best {
+    limit: f64,
+    found: Option<Found>,
+}
+
+impl Best {
+    #[inline(always)]
+    fn offer(&mut self, scene: &Scene, found: Found) {
+        let closer = match &self.found {
+            None => found.distance < self.limit,
+            Some(best) => match found.distance.total_cmp(&best.distance) {
+                Ordering::Less => true,
+                Ordering::Equal => scene.rank(&found) < scene.rank(best),
+                Ordering::Greater => false,
+            },
+        };
+        if closer {
+            self.limit = found.distance;
+            self.found = Some(found);
+        }
+    }
+}
+
+/// A ray in the space of one mesh.
+struct MeshRay {
+    /// Exact up to `f64` rounding; distances along it are those of the world.
+    origin: DVec3,
+    direction: DVec3,
+    /// Distance at which the `f32` ray starts.
+    start: f64,
+    start_near: [f32; 3],
+    direction_near: [f32; 3],
+    /// Bounds of rounding: of side determinants per edge length, and of distances per squared one.
+    side_error: f32,
+    distance_error: f32,
+    /// Beyond the whole mesh, from `start`.
+    beyond: f32,
+    /// Size of the coordinates that rounding is relative to.
+    size: f32,
+    length: f32,
+}
+
+impl MeshRay {
+    #[inline(always)]
+    fn new(query: &Query<'_>, record: u32, mesh: &MeshTree, mut start: f64) -> Option<Self> {
+        let record = &query.scene.records()[record as usize];
+        let object_from_world = DMat3::from_cols_array(&record.object_from_world.map(f64::from));
+        let origin = object_from_world * (query.origin - record.translation);
+        let direction = object_from_world * query.direction;
+        let mut point = origin + start * direction;
+        let reach = f64::from(mesh.reach);
+        if point.abs().max_element() > 4.0 * reach {
+            // The box of a strongly squeezed instance is far from the mesh: go to the mesh's own.
+            start = mesh.clip(origin, direction)?;
+            point = origin + start * direction;
+        }
+        // Rounding the ray moves it by 2⁻²⁴ of its coordinates; the products of the tests below
+        // then add less than 60 roundings of that size, relative to edges and distances.
+        let size = (reach + point.abs().max_element()) as f32;
+        let length = direction.length() as f32;
+        Some(Self {
+            origin,
+            direction,
+            start,
+            start_near: point.as_vec3().to_array(),
+            direction_near: direction.as_vec3().to_array(),
+            side_error: size * length * ROUNDING,
+            distance_error: size * ROUNDING,
+            beyond: 4.0 * size / length,
+            size,
+            length,
+        })
+    }
+}
+
+/// 64 roundings of `f32`.
+const ROUNDING: f32 = 64.0 / (1 << 24) as f32;
+
+#[inline(always)]
+fn trace_mesh<I: Isa, const ANY: bool>(
+    isa: I,
+    query: &Query<'_>,
+    record: u32,
+    start: f64,
+    best: &mut Best,
+    stack: &mut Stack,
+) {
+    let scene = query.scene;
+    let mesh = scene.mesh_of(record);
+    let Some(ray) = MeshRay::new(query, record, mesh, start) else { return };
+    let boxes = BoxRay::new(isa, ray.start_near, ray.direction_near);
+    let wide = WideRay {
+        origin: ray.start_near.map(|v| isa.splat(v)),
+        direction: ray.direction_near.map(|v| isa.splat(v)),
+        side_error: isa.splat(ray.side_error),
+        distance_error: isa.splat(ray.distance_error),
+    };
+    let (skip_block, skip_lanes) = scene.skipped(query, record);
+    let base = stack.len();
+    stack.push(u64::from(mesh.tree.root.0));
+    while let Some((block, _)) = {
+        let limit = round_up(best.limit - ray.start).min(ray.beyond);
+        next_leaf::<I, ANY>(isa, &mesh.tree.nodes, &boxes, limit, stack, base)
+    } {
+        let limit = round_up(best.limit - ray.start).min(ray.beyond);
+        let (perhaps, sure) = if block.is_other() {
+            wide.discs(isa, &mesh.discs[block.index()], &ray, limit)
+        } else {
+            wide.planar(isa, &mesh.planar[block.index()], limit)
+        };
+        let keep = if block.0 == skip_block { !skip_lanes } else { u32::MAX };
+        let (mut perhaps, sure) = (perhaps & keep, sure & keep);
+        if ANY && sure != 0 {
+            let (distance, lane, id) = (0.0, 0, 0);
+            best.found = Some(Found { distance, record, block, lane, id });
+            return;
+        }
+        while perhaps != 0 {
+            let lane = perhaps.trailing_zeros() as usize;
+            perhaps &= perhaps - 1;
+            let is_sure = sure >> lane & 1 != 0;
+            let (distance, id) = if block.is_other() {
+                let block = &mesh.discs[block.index()];
+                let distance = exact::disc_distance(block.lane(lane), ray.origin, ray.direction);
+                (distance, block.id.0[lane & 7])
+            } else {
+                let block = &mesh.planar[block.index()];
+                (planar_distance(query, record, &ray, block, lane, is_sure), block.id.0[lane & 7])
+            };
+            let Some(distance) = distance else { continue };
+            if distance > 0.0 {
+                best.offer(scene, Found { distance, record, block, lane: lane as u8, id });
+                if ANY && best.found.is_some() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn planar_distance(
+    query: &Query<'_>,
+    record: u32,
+    ray: &MeshRay,
+    block: &PlanarBlock,
+    lane: usize,
+    is_sure: bool,
+) -> Option<f64> {
+    let corners = block.lane(lane);
+    let distance = exact::plane_distance(&corners, ray.origin, ray.direction)?;
+    let parallelogram = block.id.0[lane & 7] & PARALLELOGRAM != 0;
+    let hit = is_sure || {
+        let blur = blur(query, record, distance);
+        exact::contains(&corners, parallelogram, ray.origin, ray.direction, blur)
+    };
+    hit.then_some(distance)
+}
+
+/// How far, in object space, rounding in `f64` may move the point at a distance along a ray.
+#[cold]
+fn blur(query: &Query<'_>, record: u32, distance: f64) -> f64 {
+    let record = &query.scene.records()[record as usize];
+    let stretch: f64 = record.object_from_world.iter().map(|&v| f64::from(v.abs())).sum();
+    let place = query.origin.abs().max_element() + record.translation.abs().max_element();
+    8.0 * f64::EPSILON * stretch * (place + distance.abs())
+}
+
+struct WideRay<I: Isa> {
+    origin: [I::F; 3],
+    direction: [I::F; 3],
+    side_error: I::F,
+    distance_error: I::F,
+}
+
+impl<I: Isa> WideRay<I> {
+    /// Lanes that are perhaps hit between 0 and `limit`, and those that surely are.
+    ///
+    /// Source: Möller and Trumbore (1997), Fast, minimum storage ray/triangle intersection, with
+    /// the division left out.
+    #[inline(always)]
+    fn planar(&self, isa: I, block: &PlanarBlock, limit: f32) -> (u32, u32) {
+        let [a, b, c] =
+            block.corners.each_ref().map(|corner| corner.each_ref().map(|v| isa.load(v)));
+        let sub = |a: [I::F; 3], b: [I::F; 3]| {
+            [isa.sub(a[0], b[0]), isa.sub(a[1], b[1]), isa.sub(a[2], b[2])]
+        };
+        let cross = |a: [I::F; 3], b: [I::F; 3]| {
+            [
+                isa.mul_sub(a[1], b[2], isa.mul(a[2], b[1])),
+                isa.mul_sub(a[2], b[0], isa.mul(a[0], b[2])),
+                isa.mul_sub(a[0], b[1], isa.mul(a[1], b[0])),
+            ]
+        };
+        let dot = |a: [I::F; 3], b: [I::F; 3]| {
+            isa.mul_add(a[0], b[0], isa.mul_add(a[1], b[1], isa.mul(a[2], b[2])))
+        };
+        let (ab, ac, from_a) = (sub(b, a), sub(c, a), sub(self.origin, a));
+        let p = cross(self.direction, ac);
+        let q = cross(from_a, ab);
+        let det = dot(ab, p);
+        let u = isa.turn(dot(from_a, p), det);
+        let v = isa.turn(dot(self.direction, q), det);
+        let t = isa.turn(dot(ac, q), det);
+        let det = isa.abs(det);
+        let used = isa.pick(isa.add(u, v), isa.max(u, v), isa.load_bits(&block.id));
+        let inside = isa.min(isa.min(u, v), isa.sub(det, used));
+        let edge = isa.load(&block.edge);
+        let side_error = isa.mul(self.side_error, edge);
+        let distance_error = isa.mul(isa.mul(self.distance_error, edge), edge);
+        let far = isa.mul(isa.splat(limit), det);
+        let zero = isa.splat(0.0);
+        let perhaps = isa.le(isa.sub(zero, side_error), inside)
+            & isa.le(isa.sub(zero, distance_error), t)
+            & isa.le(isa.sub(t, distance_error), far);
+        if perhaps == 0 {
+            return (0, 0);
+        }
+        let sure = isa.le(side_error, inside)
+            & isa.le(distance_error, t)
+            & isa.le(isa.add(t, distance_error), far);
+        // An unused lane's error is negative: never perhaps, though it may look sure.
+        (perhaps, perhaps & sure)
+    }
+
+    /// As [`Self::planar`], for discs.
+    #[inline(always)]
+    fn discs(&self, isa: I, block: &DiscBlock, ray: &MeshRay, limit: f32) -> (u32, u32) {
+        let load = |v: &[Lanes; 3]| v.each_ref().map(|v| isa.load(v));
+        let (center, normal) = (load(&block.center), load(&block.normal));
+        let dot = |a: [I::F; 3], b: [I::F; 3]| {
+            isa.mul_add(a[0], b[0], isa.mul_add(a[1], b[1], isa.mul(a[2], b[2])))
+        };
+        let to = [0, 1, 2].map(|i| isa.sub(center[i], self.origin[i]));
+        let slope = dot(normal, self.direction);
+        let t = isa.div(dot(normal, to), slope);
+        let off = [0, 1, 2].map(|i| isa.sub(isa.mul(self.direction[i], t), to[i]));
+        let off = dot(off, off);
+        // The distance is off by rounding over the slope, and the point by that along the ray.
+        let steep = isa.div(isa.splat(ray.distance_error), isa.abs(slope));
+        let error = isa.mul_add(isa.splat(ray.length), steep, isa.splat(ray.size * ROUNDING));
+        let radius = isa.load(&block.radius);
+        let zero = isa.splat(0.0);
+        let (outer, inner) = (isa.add(radius, error), isa.max(isa.sub(radius, error), zero));
+        let (low, high) = (isa.sub(t, steep), isa.add(t, steep));
+        let limit = isa.splat(limit);
+        let used = isa.le(zero, radius);
+        let perhaps = isa.not_gt(off, isa.mul(outer, outer))
+            & isa.not_gt(zero, high)
+            & isa.not_gt(low, limit)
+            & used;
+        let sure = isa.le(off, isa.mul(inner, inner)) & isa.le(zero, low) & isa.le(high, limit);
+        (perhaps, perhaps & sure)
+    }
+}

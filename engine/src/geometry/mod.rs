@@ -1,0 +1,9 @@
+//! Small geometry that several modules share: frames, bounds, outward rounding.
+
+mod bounds;
+mod frame;
+mod rounding;
+
+pub use bounds::Bounds;
+pub use frame::basis;
+pub use rounding::{round_down, round_up};
