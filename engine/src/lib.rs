@@ -1,14 +1,21 @@
 //! `sunfleck` computes where the light of a forest goes.
 //!
 //! A scene is text; it becomes a document, a world of entities, a flat stage, and the stage is
-//! traced. See `ARCHITECTURE.md` for the map of the modules.
+//! traced. `ARCHITECTURE.md` beside this crate is the map of its modules.
 
 pub mod accel;
 pub mod assets;
 pub mod components;
 pub mod document;
+pub mod extract;
+pub mod film;
 pub mod geometry;
 pub mod output;
 pub mod products;
+pub mod run;
+pub mod sampling;
+pub mod scattering;
+pub mod spawn;
 pub mod spectral;
+pub mod transport;
 pub mod units;

@@ -76,7 +76,7 @@ mod tests {
         let new = |f: f64, b: f64, t: f64| SurfaceOptics::new(&[f], &[b], &[t]);
         assert!(new(0.5, 0.5, 0.5).is_ok());
         assert!(new(0.1, 0.7, 0.3).is_ok());
-        assert!(new(0.7, 0.1, 0.3000001).is_err());
+        assert!(new(0.7, 0.1, 0.300_000_1).is_err());
         assert!(new(0.1, 0.71, 0.3).is_err());
         assert!(new(-0.1, 0.0, 0.0).is_err());
         assert!(new(f64::NAN, 0.0, 0.0).is_err());

@@ -1,0 +1,102 @@
+use glam::{DVec2, DVec3};
+
+use super::Light;
+use crate::accel;
+use crate::scattering::{Bsdf, LANES};
+
+/// All that transport reads.
+#[derive(Debug)]
+pub struct Stage {
+    /// Number of spectral bands.
+    pub bands: usize,
+    /// How paths are traced.
+    pub rules: Rules,
+    /// South-west corner of the scene's rectangle, m.
+    pub corner: DVec2,
+    /// Extent of the scene's rectangle to the east and to the north, m.
+    pub size: DVec2,
+    /// Height of the ground, m.
+    pub ground: f64,
+    /// Whether the rectangle repeats without end.
+    pub periodic: bool,
+    /// Surfaces, by the id that hits carry; 0 is the ground's.
+    pub surfaces: Vec<Surface>,
+    /// What lights the scene.
+    pub light: Light,
+    /// What rays can hit.
+    pub geometry: accel::Scene,
+}
+
+/// A surface with the name that its absorption is reported under.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Name of the material.
+    pub name: String,
+    /// How it scatters.
+    pub bsdf: Bsdf,
+}
+
+/// How paths are traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// Orders of scattering before the constant roulette starts.
+    pub roulette_after: u32,
+    /// Probability of the constant roulette to end a path.
+    pub roulette_kill: f64,
+    /// Highest order of scattering that counts.
+    pub max_order: u32,
+}
+
+impl Stage {
+    /// Length of spectra in transport: the bands, padded to whole groups of lanes.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.bands.next_multiple_of(LANES)
+    }
+
+    /// Area of the scene's rectangle, m².
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.size.x * self.size.y
+    }
+
+    /// Height of the reference plane: the highest point of the scene, m.
+    #[must_use]
+    pub fn top(&self) -> f64 {
+        self.geometry.top().max(self.ground)
+    }
+
+    /// Surface of a hit.
+    #[must_use]
+    pub fn surface(&self, hit: &accel::Hit) -> &Surface {
+        &self.surfaces[hit.surface as usize]
+    }
+
+    /// Whether a hit lies on the ground itself: it is the first instance of every stage.
+    #[must_use]
+    pub fn is_ground(&self, hit: &accel::Hit) -> bool {
+        hit.instance == 0
+    }
+
+    /// Whether a ray that goes up from `point` leaves through the scene's rectangle at the top.
+    #[must_use]
+    pub fn leaves_through_top(&self, point: DVec3, direction: DVec3) -> bool {
+        if direction.z <= 0.0 {
+            return false;
+        }
+        self.periodic || {
+            let up = (self.top() - point.z).max(0.0) / direction.z;
+            let at = (point + direction * up).truncate() - self.corner;
+            at.cmpge(DVec2::ZERO).all() && at.cmple(self.size).all()
+        }
+    }
+
+    /// Position within the scene's rectangle in units of its extent, in [0, 1) where periodic.
+    #[must_use]
+    pub fn within(&self, point: DVec3) -> DVec2 {
+        let at = (point.truncate() - self.corner) / self.size;
+        if self.periodic { at - at.floor() } else { at }
+    }
+}

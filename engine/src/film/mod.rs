@@ -1,0 +1,14 @@
+//! Mergeable accumulators in f64, and the standard error of what they hold.
+//!
+//! Work is cut into fixed blocks; each fills its own [`Sums`], and they are folded in block order,
+//! so a result does not depend on the number of threads. A measurement is repeated as independent
+//! randomisations, and [`Spread`] over these gives the standard error, whatever correlations the
+//! points within one of them have.
+
+mod ratio;
+mod spread;
+mod sums;
+
+pub use ratio::ratio;
+pub use spread::Spread;
+pub use sums::Sums;

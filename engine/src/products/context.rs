@@ -1,0 +1,50 @@
+use super::{Axis, AxisPoints, Product};
+
+/// What all products of a run share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Context {
+    /// Names of the bands.
+    pub bands: Vec<String>,
+    /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
+    pub irradiance: Vec<f64>,
+    /// Whether a sky shines: factors are then hemispherical-directional.
+    pub has_sky: bool,
+    /// Anchor of the local frame: easting and northing of its origin, m.
+    pub origin: (f64, f64),
+}
+
+impl Context {
+    /// Name of the reflectance factor that this light allows.
+    #[must_use]
+    pub const fn factor(&self) -> &'static str {
+        if self.has_sky { "hdrf" } else { "brf" }
+    }
+
+    /// A product over these dimensions and the bands, its error scaled as its values are.
+    pub(super) fn product(
+        &self,
+        (name, unit): (impl Into<String>, &str),
+        dimensions: Vec<Vec<Axis>>,
+        (values, standard_error): (&[f64], &[f64]),
+        scale: impl Fn(&[f64], &[f64]) -> Vec<f64>,
+    ) -> Product {
+        let mut dimensions = dimensions;
+        dimensions.push(vec![labels("band", &self.bands)]);
+        Product {
+            name: name.into(),
+            unit: unit.to_owned(),
+            dimensions,
+            values: scale(values, &self.irradiance),
+            standard_error: scale(standard_error, &self.irradiance),
+            image: None,
+        }
+    }
+}
+
+pub(super) fn labels(name: &str, labels: &[String]) -> Axis {
+    Axis { name: name.to_owned(), points: AxisPoints::Labels(labels.to_vec()) }
+}
+
+pub(super) fn numbers(name: &str, values: impl IntoIterator<Item = f64>) -> Axis {
+    Axis { name: name.to_owned(), points: AxisPoints::Numbers(values.into_iter().collect()) }
+}

@@ -1,0 +1,69 @@
+use super::{Context, Georeference, Image, Product, reflectance};
+use crate::components::{ImageMeasure, Orthographic};
+use crate::transport::ImageOutcome;
+
+/// The products of an image measurement.
+#[must_use]
+pub fn of_image(sensor: &Orthographic, outcome: &ImageOutcome, context: &Context) -> Vec<Product> {
+    sensor
+        .measure
+        .iter()
+        .map(|measure| match measure {
+            ImageMeasure::Radiance => image(
+                ("radiance", "W m-2 sr-1 nm-1"),
+                sensor,
+                outcome,
+                context,
+                reflectance::radiance,
+            ),
+            ImageMeasure::Brf => {
+                image((context.factor(), "1"), sensor, outcome, context, reflectance::brf)
+            }
+        })
+        .collect()
+}
+
+fn image(
+    name: (&str, &str),
+    sensor: &Orthographic,
+    outcome: &ImageOutcome,
+    context: &Context,
+    scale: fn(&[f64], &[f64]) -> Vec<f64>,
+) -> Product {
+    // Of one pixel at a time: an image is large, and f64 is needed only in between.
+    let bands = context.bands.len();
+    let scaled = |pixels: &[f32]| -> Vec<f32> {
+        pixels
+            .chunks_exact(bands)
+            .flat_map(|pixel| {
+                let pixel: Vec<f64> = pixel.iter().map(|&value| f64::from(value)).collect();
+                scale(&pixel, &context.irradiance)
+            })
+            .map(|value| value as f32)
+            .collect()
+    };
+    let pixels = Image {
+        width: sensor.size.x as usize,
+        height: sensor.size.y as usize,
+        bands: context.bands.clone(),
+        values: scaled(&outcome.pixels),
+        standard_error: scaled(&outcome.errors),
+        coverage: outcome.coverage.clone(),
+        georeference: georeference(sensor, context),
+    };
+    let mean = (outcome.mean.as_slice(), outcome.mean_error.as_slice());
+    Product { image: Some(pixels), ..context.product(name, Vec::new(), mean, scale) }
+}
+
+/// Place of a nadir image with north up; others lie askew on the ground.
+fn georeference(sensor: &Orthographic, context: &Context) -> Option<Georeference> {
+    let is_nadir = sensor.view.zenith == 0.0;
+    let north_up = (sensor.view.azimuth.to_degrees() - 180.0).abs() < 1e-9;
+    let corner = sensor.center + sensor.extent * glam::DVec2::new(-0.5, 0.5);
+    (is_nadir && north_up).then(|| Georeference {
+        west: context.origin.0 + corner.x,
+        north: context.origin.1 + corner.y,
+        pixel_width: sensor.extent.x / f64::from(sensor.size.x),
+        pixel_height: sensor.extent.y / f64::from(sensor.size.y),
+    })
+}

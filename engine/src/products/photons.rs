@@ -1,0 +1,184 @@
+use super::context::{labels, numbers};
+use super::directions::axes;
+use super::{Context, Image, Product, reflectance};
+use crate::components::View;
+use crate::extract::Stage;
+use crate::film::Spread;
+use crate::transport::{
+    EnergyCounter, FluxCounter, FluxLevel, Hemisphere, LayerCounter, ViewCounter,
+};
+
+/// Values and errors of a spread, each multiplied by a factor that depends on the cell.
+fn scaled(spread: &Spread, bands: usize, factor: impl Fn(usize) -> f64) -> (Vec<f64>, Vec<f64>) {
+    let by_cell = |values: &[f64]| -> Vec<f64> {
+        values.iter().enumerate().map(|(i, value)| value * factor(i / bands)).collect()
+    };
+    (by_cell(spread.mean()), by_cell(&spread.standard_error()))
+}
+
+/// Albedo: reflected over incident flux.
+#[must_use]
+pub fn albedo(spread: &Spread, context: &Context) -> Product {
+    let errors = spread.standard_error();
+    context.product(("albedo", "1"), Vec::new(), (spread.mean(), &errors), reflectance::fraction)
+}
+
+/// BRF of each cell of the hemisphere, its mean over the cell with the weight cos θ:
+/// `π P / (E A ∫cos θ dω)` (LESS manual eq. 5 with the exact integral in place of ΔΩ cos θ).
+#[must_use]
+pub fn brf_cells(spread: &Spread, hemisphere: &Hemisphere, context: &Context) -> Product {
+    let cells: Vec<_> = hemisphere.cells().collect();
+    let (values, errors) =
+        scaled(spread, context.bands.len(), |cell| 1.0 / cells[cell].projected_solid_angle);
+    let degrees = |f: fn(&crate::transport::Cell) -> f64| {
+        cells.iter().map(move |cell| f(cell).to_degrees()).collect::<Vec<_>>()
+    };
+    let axes = vec![
+        numbers("zenith_deg", degrees(crate::transport::Cell::zenith_center)),
+        numbers("azimuth_deg", degrees(crate::transport::Cell::azimuth_center)),
+        numbers("solid_angle_cos_sr", cells.iter().map(|cell| cell.projected_solid_angle)),
+    ];
+    let name = (format!("{}_cells", context.factor()), "1");
+    context.product(name, vec![axes], (&values, &errors), reflectance::brf)
+}
+
+/// BRF towards directions by virtual photons (LESS manual eq. 8).
+#[must_use]
+pub fn brf_views(
+    spread: &Spread,
+    counter: &ViewCounter,
+    views: &[View],
+    stage: &Stage,
+    context: &Context,
+) -> Product {
+    let bands = context.bands.len();
+    let errors = spread.standard_error();
+    let (mut values, mut standard_error) = (Vec::new(), Vec::new());
+    for (projection, &cell) in counter.projections().iter().zip(counter.first_cells()) {
+        let scale = projection.radiance_of_count(stage);
+        let range = cell * bands..(cell + 1) * bands;
+        values.extend(spread.mean()[range.clone()].iter().map(|value| value * scale));
+        standard_error.extend(errors[range].iter().map(|error| error * scale));
+    }
+    let name = (format!("{}_views", context.factor()), "1");
+    context.product(name, vec![axes(views)], (&values, &standard_error), reflectance::brf)
+}
+
+/// Fraction of the incident flux that each material absorbs in each horizontal layer.
+#[must_use]
+pub fn fapar(spread: &Spread, counter: &LayerCounter, stage: &Stage, context: &Context) -> Product {
+    let errors = spread.standard_error();
+    let height = |layer: usize| counter.bottom + layer as f64 * counter.thickness;
+    let layers = vec![
+        numbers("bottom_m", (0..counter.layers).map(height)),
+        numbers("top_m", (1..=counter.layers).map(height)),
+    ];
+    let names: Vec<String> = stage.surfaces.iter().map(|surface| surface.name.clone()).collect();
+    context.product(
+        ("fapar", "1"),
+        vec![layers, vec![labels("material", &names)]],
+        (spread.mean(), &errors),
+        reflectance::fraction,
+    )
+}
+
+/// Where the energy went, as fractions of what falls on the scene's rectangle.
+///
+/// # Panics
+/// If a term of [`EnergyCounter`] has no name here.
+#[must_use]
+pub fn energy(spread: &Spread, stage: &Stage, context: &Context) -> Product {
+    let errors = spread.standard_error();
+    let mut terms: Vec<String> =
+        ["incident", "reflected", "lost", "roulette"].map(str::to_owned).into();
+    assert_eq!(terms.len(), EnergyCounter::ABSORBED, "a name for each term");
+    terms.extend(stage.surfaces.iter().map(|surface| format!("absorbed.{}", surface.name)));
+    context.product(
+        ("energy", "1"),
+        vec![vec![labels("term", &terms)]],
+        (spread.mean(), &errors),
+        reflectance::fraction,
+    )
+}
+
+/// Down- and upwelling flux density through each level: one image each.
+#[must_use]
+pub fn fluxes(
+    spread: &Spread,
+    counter: &FluxCounter,
+    stage: &Stage,
+    context: &Context,
+) -> Vec<Product> {
+    let bands = context.bands.len();
+    let errors = spread.standard_error();
+    let pixels = counter.pixels();
+    let mut products = Vec::new();
+    for (index, level) in counter.levels.iter().enumerate() {
+        let level = match level {
+            FluxLevel::Terrain => "terrain".to_owned(),
+            FluxLevel::Top => "top".to_owned(),
+            FluxLevel::Height(height) => format!("{height}m"),
+        };
+        for (is_up, direction) in [(false, "downwelling"), (true, "upwelling")] {
+            let first = counter.first_cell(index, is_up);
+            let raster = first * bands..(first + pixels) * bands;
+            let total = (first + pixels) * bands..(first + pixels + 1) * bands;
+            // Each pixel holds a share of the power on the whole rectangle.
+            let per_pixel = |values: &[f64]| -> Vec<f32> {
+                reflectance::flux_density(&values[raster.clone()], &context.irradiance)
+                    .iter()
+                    .map(|value| (value * pixels as f64) as f32)
+                    .collect()
+            };
+            let image = Image {
+                width: counter.size.x as usize,
+                height: counter.size.y as usize,
+                bands: context.bands.clone(),
+                values: per_pixel(spread.mean()),
+                standard_error: per_pixel(&errors),
+                coverage: vec![1.0; pixels],
+                georeference: Some(super::Georeference {
+                    west: context.origin.0 + stage.corner.x,
+                    north: context.origin.1 + stage.corner.y + stage.size.y,
+                    pixel_width: stage.size.x / f64::from(counter.size.x),
+                    pixel_height: stage.size.y / f64::from(counter.size.y),
+                }),
+            };
+            let mean = (&spread.mean()[total.clone()], &errors[total]);
+            let name = (format!("{direction}_{level}"), "W m-2 nm-1");
+            let product = context.product(name, Vec::new(), mean, reflectance::flux_density);
+            products.push(Product { image: Some(image), ..product });
+        }
+    }
+    products
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn cells_of_a_lambertian_surface_have_its_reflectance_and_sum_to_its_albedo() {
+        let hemisphere = Hemisphere::new(150);
+        // Share of the power that a surface of reflectance 0.4 sends into each cell.
+        let shares: Vec<f64> =
+            hemisphere.cells().map(|cell| 0.4 * cell.projected_solid_angle / PI).collect();
+        let spread = Spread::of(150, [shares.as_slice(), shares.as_slice()]);
+        let context = Context {
+            bands: vec!["b".to_owned()],
+            irradiance: vec![1.5],
+            has_sky: false,
+            origin: (0.0, 0.0),
+        };
+        let product = brf_cells(&spread, &hemisphere, &context);
+        assert!(product.values.iter().all(|brf| (brf - 0.4).abs() < 1e-12));
+        let albedo = hemisphere
+            .cells()
+            .zip(&product.values)
+            .map(|(cell, brf)| brf * cell.projected_solid_angle / PI)
+            .sum::<f64>();
+        assert!((albedo - 0.4).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,132 @@
+/// One axis of a product's values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What varies along it, unit as suffix: `zenith_deg`, `band`.
+    pub name: String,
+    /// Where its points lie.
+    pub points: AxisPoints,
+}
+
+/// Points of an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AxisPoints {
+    /// Numbers, in the unit that the axis' name ends in.
+    Numbers(Vec<f64>),
+    /// Names.
+    Labels(Vec<String>),
+}
+
+impl AxisPoints {
+    /// How many points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Labels(labels) => labels.len(),
+        }
+    }
+
+    /// Whether there is no point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// A measured quantity.
+///
+/// Several axes may run along the same dimension (zenith and azimuth of a list of views): each entry
+/// of `dimensions` is one dimension with its axes, slowest first, bands last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Product {
+    /// Its name, in the field's terms: `brf`, `albedo`.
+    pub name: String,
+    /// Its unit; `1` for a fraction.
+    pub unit: String,
+    /// Dimensions, slowest first; the last is `band` (or a label axis of a ledger).
+    pub dimensions: Vec<Vec<Axis>>,
+    /// Values in the order of `dimensions`; of an image, its mean, shape `[bands]`.
+    pub values: Vec<f64>,
+    /// Standard error of each value; NaN where there is none.
+    pub standard_error: Vec<f64>,
+    /// Pixels, where the quantity is an image.
+    pub image: Option<Image>,
+}
+
+/// Pixels of an image; row 0 is its top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Names of the bands.
+    pub bands: Vec<String>,
+    /// Values, shape `[rows, columns, bands]`; NaN where nothing was seen.
+    pub values: Vec<f32>,
+    /// Standard errors, same shape; NaN where there is none.
+    pub standard_error: Vec<f32>,
+    /// Fraction of each pixel that sees the scene, shape `[rows, columns]`.
+    pub coverage: Vec<f32>,
+    /// Where pixels lie on the ground, for nadir images with north up.
+    pub georeference: Option<Georeference>,
+}
+
+/// Place of an image on the ground, anchor included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Georeference {
+    /// Easting of the image's west edge, m.
+    pub west: f64,
+    /// Northing of the image's north edge, m.
+    pub north: f64,
+    /// Width of a pixel, m.
+    pub pixel_width: f64,
+    /// Height of a pixel, m.
+    pub pixel_height: f64,
+}
+
+/// All that one sensor measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorReport {
+    /// The sensor's name in the scene.
+    pub name: String,
+    /// Its products.
+    pub products: Vec<Product>,
+    /// Wall time, s.
+    pub seconds: f64,
+    /// Rays traced.
+    pub rays: u64,
+    /// Paths or photon packets traced.
+    pub samples: u64,
+    /// What ended the measurement, for a person: `relative error 0.0048 <= 0.005`.
+    pub ended_by: String,
+}
+
+/// All that a run measured, and how it came about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Title of the scene.
+    pub scene: String,
+    /// Hash of the resolved scene and of all files that it reads, hexadecimal.
+    pub hash: String,
+    /// Version of sunfleck.
+    pub version: String,
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// Wall time, s.
+    pub seconds: f64,
+    /// Rays traced.
+    pub rays: u64,
+    /// The bands' names.
+    pub bands: Vec<String>,
+    /// The bands' centre wavelengths, nm.
+    pub wavelengths: Vec<f64>,
+    /// Wall time of each stage, s.
+    pub stages: Vec<(String, f64)>,
+    /// What the scene did not need and was not built.
+    pub skipped: Vec<String>,
+    /// What a person should know: dropped faces, say.
+    pub warnings: Vec<String>,
+    /// What each sensor measured, in document order.
+    pub sensors: Vec<SensorReport>,
+}

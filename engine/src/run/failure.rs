@@ -1,0 +1,41 @@
+use std::path::PathBuf;
+
+use crate::accel::BuildError;
+use crate::document::{Diagnostic, Source};
+
+/// Why a scene was not run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "each variant's message names its fields")]
+pub enum Failure {
+    /// The scene's text is wrong; rendered with its lines.
+    #[error("{0}")]
+    Scene(String),
+    /// The scene is wrong, and there is no text to point into.
+    #[error("{}", .0.iter().map(one_line).collect::<Vec<_>>().join("\n"))]
+    Problems(Vec<Diagnostic>),
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error("{}: could not be read again: {source}", path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("could not start {threads} threads: {reason}")]
+    Threads { threads: usize, reason: String },
+}
+
+impl Failure {
+    /// The same with the lines of the scene that it speaks of.
+    #[must_use]
+    pub fn with_source(self, source: &Source) -> Self {
+        match self {
+            Self::Problems(problems) => Self::Scene(source.render(&problems)),
+            other => other,
+        }
+    }
+}
+
+/// A problem without the line of text that it stands in.
+pub(super) fn one_line(problem: &Diagnostic) -> String {
+    let Diagnostic { path, message, help, .. } = problem;
+    let help = help.as_ref().map_or_else(String::new, |help| format!(" ({help})"));
+    if path.is_empty() { format!("{message}{help}") } else { format!("{path}: {message}{help}") }
+}

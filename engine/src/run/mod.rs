@@ -1,0 +1,222 @@
+//! The list of stages, one call a line: text to document to world to stage to films to report.
+
+mod failure;
+mod provenance;
+mod sensors;
+
+use std::path::Path;
+use std::time::Instant;
+
+use hecs::World;
+
+use crate::accel::Boundary;
+use crate::document::{self, Diagnostic, Reading, Scene};
+use crate::extract::{Rules, Setting, extract};
+use crate::products::{Context, Report, SensorReport};
+use crate::spawn::{Spawned, spawn};
+
+pub use failure::Failure;
+
+/// What the caller decides beyond the scene.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Parameters and variant.
+    pub document: document::Options,
+    /// Threads; all that the machine has if absent.
+    pub threads: Option<usize>,
+    /// Factor on all numbers of samples, and its inverse root on relative errors: 1 is the scene as
+    /// it is written.
+    pub quality: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { document: document::Options::default(), threads: None, quality: 1.0 }
+    }
+}
+
+/// Watches a run; the library itself shows nothing.
+pub trait Progress: Sync {
+    /// A stage starts.
+    fn stage(&self, name: &str);
+    /// This part of a sensor's measurement, 0 to 1, is done.
+    fn sensor(&self, name: &str, done: f64);
+}
+
+/// Watches nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Unwatched;
+
+impl Progress for Unwatched {
+    fn stage(&self, _: &str) {}
+    fn sensor(&self, _: &str, _: f64) {}
+}
+
+/// Runs a scene file.
+///
+/// # Errors
+/// All that is wrong with the scene, rendered for a person.
+pub fn run_file(
+    path: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Report, Failure> {
+    let start = Instant::now();
+    progress.stage("reading the scene");
+    let reading = read(path, options)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let read_seconds = start.elapsed().as_secs_f64();
+    in_pool(options, || {
+        let mut report = run(&reading.scene, folder, options, progress)
+            .map_err(|failure| failure.with_source(&reading.source))?;
+        report.stages.insert(0, ("read".to_owned(), read_seconds));
+        // Reading found no error, or there would be no scene: what is left are warnings.
+        report.warnings.splice(0..0, reading.diagnostics.iter().map(failure::one_line));
+        report.seconds = start.elapsed().as_secs_f64();
+        Ok(report)
+    })
+}
+
+/// Reads and spawns a scene file without running it; returns what its author should know.
+///
+/// # Errors
+/// All that is wrong with the scene, rendered for a person.
+pub fn check_file(path: &Path, options: &Options) -> Result<Vec<String>, Failure> {
+    let reading = read(path, options)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let spawned = in_pool(options, || {
+        spawn(&reading.scene, folder)
+            .map_err(|problems| Failure::Scene(reading.source.render(&problems)))
+    })?;
+    let warnings = reading.diagnostics.iter().chain(&spawned.warnings);
+    let mut texts: Vec<String> =
+        warnings.map(|one| reading.source.render(std::slice::from_ref(one))).collect();
+    texts.extend(spawned.skipped.iter().map(|what| format!("skipped: {what}")));
+    Ok(texts)
+}
+
+/// Runs a scene that was read or built; paths in it are relative to `folder`.
+///
+/// # Errors
+/// All that is wrong with the scene.
+pub fn run(
+    scene: &Scene,
+    folder: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Report, Failure> {
+    let start = Instant::now();
+    let mut clock = Clock::start();
+    let problems = document::check(scene);
+    if problems.iter().any(Diagnostic::is_error) {
+        return Err(Failure::Problems(problems));
+    }
+    progress.stage("loading");
+    let Spawned { world, files, skipped, warnings } =
+        spawn(scene, folder).map_err(Failure::Problems)?;
+    let hash = provenance::hash(scene, &files)?;
+    clock.lap("spawn");
+    progress.stage("building");
+    let stage = extract(&world, &setting(scene))?;
+    clock.lap("build");
+    let context = Context {
+        bands: scene.bands.iter().map(|band| band.name.clone()).collect(),
+        irradiance: stage.light.irradiance.clone(),
+        has_sky: stage.light.dome.is_some(),
+        origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
+    };
+    progress.stage("tracing");
+    let reports = measure(&world, &stage, &context, options, progress);
+    clock.lap("trace");
+    Ok(Report {
+        scene: scene.title.clone(),
+        hash,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: scene.transport.seed,
+        seconds: start.elapsed().as_secs_f64(),
+        rays: reports.iter().map(|report| report.rays).sum(),
+        bands: context.bands,
+        wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
+        stages: clock.laps,
+        skipped,
+        warnings: warnings.iter().map(failure::one_line).collect(),
+        sensors: reports,
+    })
+}
+
+/// Measures every sensor of the world in document order.
+fn measure(
+    world: &World,
+    stage: &crate::extract::Stage,
+    context: &Context,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Vec<SensorReport> {
+    sensors::in_order(world)
+        .iter()
+        .map(|(name, sensor)| {
+            let watch = |done| progress.sensor(name, done);
+            sensors::measure(name, sensor, stage, context, options.quality, &watch)
+        })
+        .collect()
+}
+
+fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
+    let reading = document::read_file(path, &options.document)
+        .map_err(|error| Failure::Scene(error.to_string()))?;
+    if reading.diagnostics.iter().any(Diagnostic::is_error) {
+        // What can be found out beyond the text is reported at once with the rest.
+        return Err(Failure::Scene(reading.source.render(&reading.diagnostics)));
+    }
+    Ok(reading)
+}
+
+/// Runs in a pool of as many threads as asked for; no result depends on their number.
+fn in_pool<T: Send>(
+    options: &Options,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    match options.threads {
+        None => work(),
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| Failure::Threads { threads, reason: error.to_string() })?
+            .install(work),
+    }
+}
+
+fn setting(scene: &Scene) -> Setting {
+    let transport = &scene.transport;
+    Setting {
+        bands: scene.bands.len(),
+        boundary: match scene.boundary {
+            document::Boundary::Periodic => Boundary::Periodic,
+            document::Boundary::Isolated => Boundary::Isolated,
+        },
+        rules: Rules {
+            seed: transport.seed,
+            roulette_after: transport.roulette.after_order,
+            roulette_kill: transport.roulette.kill,
+            max_order: if transport.first_order_only { 1 } else { u32::MAX },
+        },
+    }
+}
+
+/// Wall time of stages. It is reported and decides nothing.
+struct Clock {
+    last: Instant,
+    laps: Vec<(String, f64)>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { last: Instant::now(), laps: Vec::new() }
+    }
+
+    fn lap(&mut self, name: &str) {
+        let now = Instant::now();
+        self.laps.push((name.to_owned(), (now - self.last).as_secs_f64()));
+        self.last = now;
+    }
+}

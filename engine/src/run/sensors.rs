@@ -1,0 +1,192 @@
+use std::time::Instant;
+
+use hecs::World;
+
+use crate::components::{
+    Directions, Name, Orthographic, PhotonMeasure, Photons, SceneId, Sensor, Stop, System,
+};
+use crate::extract::Stage;
+use crate::products::{self, Context, Product, SensorReport};
+use crate::sampling::Key;
+use crate::transport::{
+    AlbedoCounter, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, Hemisphere,
+    LayerCounter, Projection, ViewCounter, Watch, measure_directions, measure_image,
+    measure_image_forward, trace_photons,
+};
+
+/// All sensors in document order.
+pub(super) fn in_order(world: &World) -> Vec<(String, Sensor)> {
+    let mut query = world.query::<(&SceneId, &Name, &Sensor)>();
+    let mut sensors: Vec<_> = query.iter().collect();
+    sensors.sort_unstable_by_key(|&(id, ..)| *id);
+    sensors.into_iter().map(|(_, name, sensor)| (name.0.clone(), sensor.clone())).collect()
+}
+
+/// What a measurement gives beside its products.
+struct Measured {
+    products: Vec<Product>,
+    rays: u64,
+    samples: u64,
+    ended_by: String,
+}
+
+/// Measures one sensor.
+pub(super) fn measure(
+    name: &str,
+    sensor: &Sensor,
+    stage: &Stage,
+    context: &Context,
+    quality: f64,
+    watch: Watch<'_>,
+) -> SensorReport {
+    let start = Instant::now();
+    let key = Key::new(stage.rules.seed).path("sensors").path(name);
+    let measured = match sensor {
+        Sensor::Orthographic(sensor) => image(sensor, stage, context, (key, quality), watch),
+        Sensor::Directions(sensor) => directions(sensor, stage, context, (key, quality), watch),
+        Sensor::Photons(sensor) => photons(sensor, stage, context, (key, quality), watch),
+    };
+    SensorReport {
+        name: name.to_owned(),
+        products: measured.products,
+        seconds: start.elapsed().as_secs_f64(),
+        rays: measured.rays,
+        samples: measured.samples,
+        ended_by: measured.ended_by,
+    }
+}
+
+fn image(
+    sensor: &Orthographic,
+    stage: &Stage,
+    context: &Context,
+    (key, quality): (Key, f64),
+    watch: Watch<'_>,
+) -> Measured {
+    let projection = Projection::of_image(sensor, stage);
+    let samples = (f64::from(sensor.samples) * quality).ceil().max(2.0) as u32;
+    let outcome = match sensor.system {
+        System::Backward => measure_image(stage, &projection, samples, key, watch),
+        System::Forward => measure_image_forward(stage, &projection, samples, key, watch),
+    };
+    Measured {
+        products: products::of_image(sensor, &outcome, context),
+        rays: outcome.rays,
+        samples: outcome.samples,
+        ended_by: format!("{} samples", outcome.samples),
+    }
+}
+
+fn directions(
+    sensor: &Directions,
+    stage: &Stage,
+    context: &Context,
+    (key, quality): (Key, f64),
+    watch: Watch<'_>,
+) -> Measured {
+    let until: Vec<Stop> = sensor
+        .until
+        .iter()
+        .map(|stop| match *stop {
+            Stop::RelError(limit) => Stop::RelError(limit / quality.sqrt()),
+            Stop::Seconds(limit) => Stop::Seconds(limit * quality),
+            Stop::Samples(limit) => Stop::Samples((limit as f64 * quality).ceil() as u64),
+        })
+        .collect();
+    let start = Instant::now();
+    let elapsed = || start.elapsed().as_secs_f64();
+    let scene = (sensor.views.as_slice(), sensor.system);
+    let outcome = measure_directions(stage, scene, &until, key, &elapsed, watch);
+    let error = outcome.spread.median_relative_error();
+    Measured {
+        products: products::of_directions(&sensor.views, &sensor.measure, &outcome.spread, context),
+        rays: outcome.rays,
+        samples: outcome.samples,
+        ended_by: match outcome.ended_by {
+            Stop::RelError(limit) => {
+                format!("median relative standard error {error:.2e} at most {limit:.2e}")
+            }
+            Stop::Seconds(limit) => format!("{limit} s"),
+            Stop::Samples(_) => format!("{} samples", outcome.samples),
+        },
+    }
+}
+
+fn photons(
+    sensor: &Photons,
+    stage: &Stage,
+    context: &Context,
+    (key, quality): (Key, f64),
+    watch: Watch<'_>,
+) -> Measured {
+    let energy = EnergyCounter { surfaces: stage.surfaces.len() };
+    let kinds: Vec<Kind> = sensor.measure.iter().map(|measure| Kind::of(measure, stage)).collect();
+    let mut counters: Vec<Box<dyn Counter + '_>> = vec![Box::new(energy)];
+    counters.extend(kinds.iter().map(Kind::counter));
+    let packets = (sensor.per_area * stage.area() * quality).ceil() as u64;
+    let outcome = trace_photons(stage, &counters, packets, key, watch);
+    let mut products = Vec::new();
+    for (kind, spread) in kinds.iter().zip(&outcome.spreads[1..]) {
+        match kind {
+            Kind::Albedo(_) => products.push(products::albedo(spread, context)),
+            Kind::Cells(cells) => products.push(products::brf_cells(spread, &cells.0, context)),
+            Kind::Views(counter, views) => {
+                products.push(products::brf_views(spread, counter, views, stage, context));
+            }
+            Kind::Layers(layers) => {
+                products.push(products::fapar(spread, layers, stage, context));
+            }
+            Kind::Fluxes(fluxes) => {
+                products.extend(products::fluxes(spread, fluxes, stage, context));
+            }
+        }
+    }
+    products.push(products::energy(&outcome.spreads[0], stage, context));
+    Measured {
+        products,
+        rays: outcome.rays,
+        samples: outcome.packets,
+        ended_by: format!("{} packets", outcome.packets),
+    }
+}
+
+/// A counter with what its product needs.
+enum Kind {
+    Albedo(AlbedoCounter),
+    Cells(CellCounter),
+    Views(ViewCounter, Vec<crate::components::View>),
+    Layers(LayerCounter),
+    Fluxes(FluxCounter),
+}
+
+impl Kind {
+    fn of(measure: &PhotonMeasure, stage: &Stage) -> Self {
+        match measure {
+            PhotonMeasure::Albedo => Self::Albedo(AlbedoCounter),
+            PhotonMeasure::BrfCells(cells) => {
+                Self::Cells(CellCounter(Hemisphere::new(*cells as usize)))
+            }
+            PhotonMeasure::BrfViews(views) => {
+                let projections =
+                    views.iter().map(|&view| Projection::of_scene(view, stage)).collect();
+                Self::Views(ViewCounter::new(projections), views.clone())
+            }
+            PhotonMeasure::Fapar { layer } => Self::Layers(LayerCounter::of(stage, *layer)),
+            PhotonMeasure::Fluxes { pixel, heights } => {
+                let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
+                levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
+                Self::Fluxes(FluxCounter::of(stage, *pixel, levels))
+            }
+        }
+    }
+
+    fn counter(&self) -> Box<dyn Counter + '_> {
+        match self {
+            Self::Albedo(counter) => Box::new(*counter),
+            Self::Cells(counter) => Box::new(counter.clone()),
+            Self::Views(counter, _) => Box::new(counter.clone()),
+            Self::Layers(counter) => Box::new(*counter),
+            Self::Fluxes(counter) => Box::new(counter.clone()),
+        }
+    }
+}

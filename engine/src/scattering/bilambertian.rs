@@ -1,0 +1,113 @@
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::{Scattered, padded};
+use crate::components::SurfaceOptics;
+use crate::geometry::basis;
+use crate::sampling::cosine_hemisphere;
+
+/// Lambertian reflection of each side and Lambertian transmission: `f = ρ/π` where `wi` and `wo`
+/// lie on the same side and `τ/π` where they do not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BiLambertian {
+    front: Side,
+    back: Side,
+    transmitted: Lobe,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Side {
+    reflected: Lobe,
+    /// ρ + τ of light that arrives on this side.
+    scattered: Box<[f32]>,
+}
+
+/// A share of the incident light, shape `[lanes]`.
+#[derive(Clone, Debug, PartialEq)]
+struct Lobe {
+    spectrum: Box<[f32]>,
+    is_black: bool,
+}
+
+impl Lobe {
+    fn new(spectrum: &[f32]) -> Self {
+        let is_black = spectrum.iter().all(|&value| value == 0.0);
+        Self { spectrum: padded(spectrum.iter().copied()), is_black }
+    }
+}
+
+impl BiLambertian {
+    /// The model of these optics.
+    #[must_use]
+    pub fn new(optics: &SurfaceOptics) -> Self {
+        let tau = optics.transmittance();
+        let side = |rho: &[f32]| Side {
+            reflected: Lobe::new(rho),
+            // ρ + τ = 1 may round to an ulp above 1, which would absorb less than nothing.
+            scattered: padded(rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0))),
+        };
+        Self { front: side(optics.front()), back: side(optics.back()), transmitted: Lobe::new(tau) }
+    }
+
+    fn side(&self, normal: DVec3, wo: DVec3) -> &Side {
+        if normal.dot(wo) >= 0.0 { &self.front } else { &self.back }
+    }
+
+    pub(super) fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&[f32]> {
+        let same_side = (normal.dot(wo) >= 0.0) == (normal.dot(wi) >= 0.0);
+        let lobe = if same_side { &self.side(normal, wo).reflected } else { &self.transmitted };
+        (!lobe.is_black).then_some(&*lobe.spectrum)
+    }
+
+    pub(super) fn scattered(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+        &self.side(normal, wo).scattered
+    }
+
+    pub(super) fn reflected(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+        &self.side(normal, wo).reflected.spectrum
+    }
+
+    pub(super) fn sample(
+        &self,
+        normal: DVec3,
+        wo: DVec3,
+        throughput: &[f32],
+        [lobe, u, v]: [f64; 3],
+    ) -> Option<Scattered<'_>> {
+        let reflected = &self.side(normal, wo).reflected;
+        // Lobes are chosen by the power they would carry on, summed over the bands.
+        let power = |lobe: &Lobe| -> f64 {
+            if lobe.is_black {
+                return 0.0;
+            }
+            let products = throughput.iter().zip(&*lobe.spectrum);
+            f64::from(products.map(|(weight, share)| weight * share).sum::<f32>())
+        };
+        let (back, through) = (power(reflected), power(&self.transmitted));
+        let total = back + through;
+        if total <= 0.0 {
+            return None;
+        }
+        let reflects = lobe * total < back;
+        let (chosen, probability) =
+            if reflects { (reflected, back / total) } else { (&self.transmitted, through / total) };
+        let outward = if (normal.dot(wo) >= 0.0) == reflects { normal } else { -normal };
+        let (tangent, bitangent) = basis(outward);
+        let local = cosine_hemisphere(u, v);
+        let direction = tangent * local.x + bitangent * local.y + outward * local.z;
+        Some(Scattered { direction, spectrum: &chosen.spectrum, scale: (1.0 / probability) as f32 })
+    }
+
+    /// Density of `sample`, sr⁻¹, for tests: `P(lobe) |cos θ| / π`.
+    #[must_use]
+    pub fn pdf(&self, normal: DVec3, wo: DVec3, wi: DVec3, throughput: &[f32]) -> f64 {
+        let power = |lobe: &Lobe| -> f64 {
+            throughput.iter().zip(&*lobe.spectrum).map(|(w, s)| f64::from(w * s)).sum()
+        };
+        let (back, through) = (power(&self.side(normal, wo).reflected), power(&self.transmitted));
+        let same_side = (normal.dot(wo) >= 0.0) == (normal.dot(wi) >= 0.0);
+        let chosen = if same_side { back } else { through };
+        if chosen == 0.0 { 0.0 } else { chosen / (back + through) * normal.dot(wi).abs() / PI }
+    }
+}

@@ -1,0 +1,82 @@
+//! How surfaces scatter light: evaluation, sampling and absorption of each surface model, one file
+//! a model.
+//!
+//! `wo` points to where the path came from and `wi` to where it goes on; both are unit and point
+//! away from the surface. Values exclude the cosine. All bands ride on one path, so spectra are
+//! slices over lanes: bands, padded with zeros to whole groups of [`LANES`].
+
+mod bilambertian;
+
+use glam::DVec3;
+
+pub use bilambertian::BiLambertian;
+
+/// Bands are padded to multiples of this, so that loops over them need no remainder.
+pub const LANES: usize = 8;
+
+/// A surface model.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bsdf {
+    /// Diffuse reflection and transmission.
+    BiLambertian(BiLambertian),
+}
+
+/// A sampled direction with its weight `f |cos θ| / pdf = spectrum · scale`, per lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Scattered<'a> {
+    /// Where the path goes on.
+    pub direction: DVec3,
+    /// Spectral part of the weight, shape `[lanes]`.
+    pub spectrum: &'a [f32],
+    /// Part of the weight that all bands share.
+    pub scale: f32,
+}
+
+impl Bsdf {
+    /// `π f(wi, wo)`, shape `[lanes]`; `None` where it is zero in every band, so that nobody traces
+    /// a shadow ray for it.
+    #[must_use]
+    pub fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&[f32]> {
+        match self {
+            Self::BiLambertian(model) => model.eval(normal, wo, wi),
+        }
+    }
+
+    /// A direction for a path of this throughput, shape `[lanes]`; `None` where all is absorbed.
+    #[must_use]
+    pub fn sample(
+        &self,
+        normal: DVec3,
+        wo: DVec3,
+        throughput: &[f32],
+        u: [f64; 3],
+    ) -> Option<Scattered<'_>> {
+        match self {
+            Self::BiLambertian(model) => model.sample(normal, wo, throughput, u),
+        }
+    }
+
+    /// Share of the light from `wo` that is scattered at all, `DHR + DHT`, shape `[lanes]`.
+    #[must_use]
+    pub fn scattered(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+        match self {
+            Self::BiLambertian(model) => model.scattered(normal, wo),
+        }
+    }
+
+    /// Share of the light from `wo` that is scattered back to its side, shape `[lanes]`.
+    #[must_use]
+    pub fn reflected(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+        match self {
+            Self::BiLambertian(model) => model.reflected(normal, wo),
+        }
+    }
+}
+
+/// A spectrum padded with zeros to whole groups of [`LANES`].
+#[must_use]
+pub fn padded(spectrum: impl IntoIterator<Item = f32>) -> Box<[f32]> {
+    let mut lanes: Vec<f32> = spectrum.into_iter().collect();
+    lanes.resize(lanes.len().next_multiple_of(LANES), 0.0);
+    lanes.into()
+}

@@ -1,0 +1,82 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use hecs::World;
+
+use super::Spawner;
+use super::meshes::Prototype;
+use super::spectra::Quantity;
+use crate::components::{EnergyGain, MaterialId, Name, SceneId, SurfaceOptics};
+use crate::document::{Diagnostic, Material, Spectrum, Terrain, unknown_name};
+
+impl Spawner<'_> {
+    /// Id of a material by its name.
+    pub(super) fn material_id(&self, name: &str) -> Option<MaterialId> {
+        self.scene.materials.get_index_of(name).map(|index| MaterialId(index as u32))
+    }
+
+    /// Id of a material, or a note that there is none of this name.
+    pub(super) fn known_material(&mut self, name: &str, path: &str) -> Option<MaterialId> {
+        let id = self.material_id(name);
+        if id.is_none() {
+            let known = self.scene.materials.keys().map(String::as_str);
+            self.problems.push(unknown_name(path, "material", name, known));
+        }
+        id
+    }
+
+    /// Spawns the materials that the terrain and the parts of used meshes wear.
+    pub(super) fn materials(&mut self, meshes: &BTreeMap<u32, Prototype>, world: &mut World) {
+        let scene = self.scene;
+        let Terrain::Plane { material, .. } = &scene.terrain;
+        let mut used: BTreeSet<MaterialId> =
+            self.known_material(material, "terrain.material").into_iter().collect();
+        used.extend(meshes.values().flat_map(|mesh| mesh.materials.0.iter().copied()));
+        for (index, (name, material)) in scene.materials.iter().enumerate() {
+            if !used.contains(&MaterialId(index as u32)) {
+                self.skipped.push(format!("material `{name}`: nothing wears it"));
+                continue;
+            }
+            let path = format!("materials.{name}");
+            if let Some(optics) = self.optics(material, &path) {
+                world.spawn((SceneId(index as u32), Name(name.clone()), optics));
+            }
+        }
+    }
+
+    fn optics(&mut self, material: &Material, path: &str) -> Option<SurfaceOptics> {
+        let (reflectance, back, transmittance) = match material {
+            Material::Lambertian { reflectance, back_reflectance } => {
+                (reflectance, back_reflectance, &Spectrum::Constant(0.0))
+            }
+            Material::Leaf { reflectance, transmittance, back_reflectance } => {
+                (reflectance, back_reflectance, transmittance)
+            }
+        };
+        let at = |key: &str| format!("{path}.{key}");
+        let front = self.spectrum(reflectance, Quantity::Reflectance, &at("reflectance"));
+        let back = match back {
+            Some(back) => self.spectrum(back, Quantity::Reflectance, &at("back_reflectance")),
+            None => front.clone(),
+        };
+        let through = self.spectrum(transmittance, Quantity::Transmittance, &at("transmittance"));
+        match SurfaceOptics::new(&front?, &back?, &through?) {
+            Ok(optics) => Some(optics),
+            Err(EnergyGain { band, reflectance, transmittance }) => {
+                let band = &self.scene.bands[band].name;
+                let sum = reflectance + transmittance;
+                self.problems.push(
+                    Diagnostic::error(
+                        path,
+                        format!(
+                            "in band `{band}` reflectance {reflectance} and transmittance \
+                             {transmittance} sum to {sum:.6}: a surface cannot send out more light \
+                             than it receives"
+                        ),
+                    )
+                    .help("lower one of them so that they sum to at most 1"),
+                );
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use rayon::prelude::*;
+
+use super::Spawner;
+use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
+use crate::components::{MaterialId, Mesh, Name, PartMaterials, Placement};
+use crate::document::{self, Diagnostic, Map, unknown_name};
+
+/// A mesh with the materials of its parts.
+pub(super) struct Prototype {
+    pub(super) name: Name,
+    pub(super) mesh: Mesh,
+    pub(super) materials: PartMaterials,
+}
+
+impl Spawner<'_> {
+    /// The meshes that instances use, by their place in the document; each is read once.
+    pub(super) fn meshes(&mut self, placements: &[Placement]) -> BTreeMap<u32, Prototype> {
+        let scene = self.scene;
+        let used: BTreeSet<u32> = placements.iter().map(|p| p.prototype.0).collect();
+        let mut wanted = Vec::new();
+        for (index, (name, mesh)) in scene.meshes.iter().enumerate() {
+            if used.contains(&(index as u32)) {
+                self.note_file(mesh);
+                wanted.push((index as u32, name, mesh));
+            } else {
+                self.skipped.push(format!("mesh `{name}`: nothing stands of it"));
+            }
+        }
+        let folder = self.folder;
+        let loaded: Vec<_> = wanted.par_iter().map(|(.., mesh)| load(mesh, folder)).collect();
+        let mut prototypes = BTreeMap::new();
+        for ((id, name, mesh), loaded) in wanted.into_iter().zip(loaded) {
+            let path = format!("meshes.{name}");
+            match loaded {
+                Ok(Loaded { value, warnings }) => {
+                    let warnings = warnings.into_iter().map(|w| Diagnostic::warning(&path, w));
+                    self.problems.extend(warnings);
+                    let materials = PartMaterials(self.part_materials(mesh, &value, &path));
+                    let name = Name(name.clone());
+                    prototypes.insert(id, Prototype { name, mesh: value, materials });
+                }
+                Err(error) => {
+                    let key = if matches!(error, AssetError::Crown { .. }) { "" } else { ".file" };
+                    let problem = Diagnostic::error(format!("{path}{key}"), error.to_string());
+                    self.problems.push(problem);
+                }
+            }
+        }
+        prototypes
+    }
+
+    fn note_file(&mut self, mesh: &document::Mesh) {
+        match mesh {
+            document::Mesh::Obj { file, .. }
+            | document::Mesh::Gltf { file, .. }
+            | document::Mesh::Discs { file, .. } => {
+                self.file(file);
+            }
+            document::Mesh::Crown { .. } => {}
+        }
+    }
+
+    /// Material of each part; where one is missing a problem is noted and the first one stands in.
+    fn part_materials(
+        &mut self,
+        mesh: &document::Mesh,
+        loaded: &Mesh,
+        path: &str,
+    ) -> Vec<MaterialId> {
+        let none = Map::new();
+        let (named, rest) = match mesh {
+            document::Mesh::Obj { parts, material, .. }
+            | document::Mesh::Gltf { parts, material, .. } => (parts, material.as_ref()),
+            document::Mesh::Discs { material, .. } => (&none, Some(material)),
+            document::Mesh::Crown { leaf_material, wood_material, .. } => {
+                return self.crown_materials(leaf_material, wood_material.as_deref(), loaded, path);
+            }
+        };
+        let known = || loaded.parts.iter().map(|part| part.name.as_str());
+        for name in named.keys().filter(|name| !known().any(|part| part == *name)) {
+            let at = format!("{path}.parts.{name}");
+            self.problems.push(unknown_name(at, "part", name, known()));
+        }
+        let mut materials = Vec::new();
+        for part in &loaded.parts {
+            let (material, at) = match (named.get(&part.name), rest) {
+                (Some(material), _) => (material, format!("{path}.parts.{}", part.name)),
+                (None, Some(material)) => (material, format!("{path}.material")),
+                (None, None) => {
+                    let parts: Vec<_> = known().map(|name| format!("{name:?}: ..")).collect();
+                    self.problems.push(
+                        Diagnostic::error(path, format!("part `{}` has no material", part.name))
+                            .help(format!(
+                                "write parts: {{ {} }}, or material: \"..\" for all others",
+                                parts.join(", ")
+                            )),
+                    );
+                    continue;
+                }
+            };
+            materials.extend(self.known_material(material, &at));
+        }
+        materials.resize(loaded.parts.len(), MaterialId(0));
+        materials
+    }
+
+    fn crown_materials(
+        &mut self,
+        leaf: &str,
+        wood: Option<&str>,
+        loaded: &Mesh,
+        path: &str,
+    ) -> Vec<MaterialId> {
+        let leaf = self.known_material(leaf, &format!("{path}.leaf_material"));
+        let wood =
+            wood.and_then(|name| self.known_material(name, &format!("{path}.wood_material")));
+        let of = |part: &str| if part == "leaf" { leaf } else { wood };
+        // `document::check` asks for a wood material wherever there is wood.
+        loaded.parts.iter().map(|part| of(&part.name).unwrap_or(MaterialId(0))).collect()
+    }
+}
+
+fn load(mesh: &document::Mesh, folder: &std::path::Path) -> Result<Loaded<Mesh>, AssetError> {
+    match mesh {
+        document::Mesh::Obj { file, up, unit_m, origin, .. } => assets::read_obj(
+            &folder.join(file),
+            &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
+        ),
+        document::Mesh::Gltf { file, up, unit_m, origin, .. } => assets::read_gltf(
+            &folder.join(file),
+            &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
+        ),
+        document::Mesh::Discs { file, .. } => assets::read_discs(&folder.join(file)),
+        document::Mesh::Crown { .. } => {
+            let spec = CrownSpec::from_document(mesh).expect("a crown is a crown");
+            let value = assets::grow_crown(&spec)?;
+            Ok(Loaded { value, warnings: Vec::new() })
+        }
+    }
+}

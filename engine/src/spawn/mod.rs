@@ -1,0 +1,91 @@
+//! Document and assets to entities; every error of the scene in one pass, each with its place.
+
+mod instances;
+mod light;
+mod materials;
+mod meshes;
+mod sensors;
+mod spectra;
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use hecs::World;
+
+use crate::components::{SceneId, TerrainPatch};
+use crate::document::{Diagnostic, Scene, Terrain};
+
+/// A world, and how it came about.
+#[expect(missing_debug_implementations, reason = "a World has no Debug")]
+pub struct Spawned {
+    /// All entities of the scene.
+    pub world: World,
+    /// Files that were read, without repetition, in document order.
+    pub files: Vec<PathBuf>,
+    /// Definitions that nothing uses and that were not built.
+    pub skipped: Vec<String>,
+    /// What the author should know.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What the steps of spawning share.
+pub(crate) struct Spawner<'a> {
+    scene: &'a Scene,
+    folder: &'a Path,
+    files: Vec<PathBuf>,
+    skipped: Vec<String>,
+    problems: Vec<Diagnostic>,
+}
+
+/// Makes the world of a scene; paths in it are relative to `folder`.
+///
+/// Meshes, spectra and materials that nothing uses are neither read nor built.
+///
+/// # Errors
+/// All that is wrong with the scene.
+pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
+    let mut spawner =
+        Spawner { scene, folder, files: Vec::new(), skipped: Vec::new(), problems: Vec::new() };
+    let mut world = World::new();
+    let placements = spawner.instances();
+    let meshes = spawner.meshes(&placements);
+    spawner.materials(&meshes, &mut world);
+    for (id, mesh) in meshes {
+        world.spawn((SceneId(id), mesh.name, mesh.mesh, mesh.materials));
+    }
+    world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
+    spawner.terrain(&mut world);
+    spawner.light(&mut world);
+    spawner.sensors(&mut world);
+    let Spawner { mut files, skipped, problems, .. } = spawner;
+    let mut seen = std::collections::BTreeSet::new();
+    files.retain(|file| seen.insert(file.clone()));
+    if problems.iter().any(Diagnostic::is_error) {
+        return Err(problems);
+    }
+    Ok(Spawned { world, files, skipped, warnings: problems })
+}
+
+impl Spawner<'_> {
+    /// The path of a file that the scene names, and a note that it was read.
+    fn file(&mut self, name: &str) -> PathBuf {
+        let path = self.folder.join(name);
+        self.files.push(path.clone());
+        path
+    }
+
+    fn terrain(&self, world: &mut World) {
+        let Terrain::Plane { size_m, material, corner_m, height_m } = &self.scene.terrain;
+        // An unknown material was reported with all others.
+        let Some(material) = self.material_id(material) else { return };
+        world.spawn((
+            SceneId(0),
+            TerrainPatch {
+                corner: DVec2::from(*corner_m),
+                size: DVec2::from(*size_m),
+                height: *height_m,
+                material,
+            },
+        ));
+    }
+}

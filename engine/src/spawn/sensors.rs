@@ -1,0 +1,132 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DVec2, UVec2};
+use hecs::World;
+
+use super::Spawner;
+use crate::components::{
+    Directions, ImageMeasure, Name, Orthographic, PhotonMeasure, Photons, SceneId, Sensor, Stop,
+    System, View,
+};
+use crate::document::{self, Diagnostic, Terrain, Until, Views};
+
+impl Spawner<'_> {
+    /// Spawns the sensors.
+    pub(super) fn sensors(&mut self, world: &mut World) {
+        let scene = self.scene;
+        for (index, (name, sensor)) in scene.sensors.iter().enumerate() {
+            let path = format!("sensors.{name}");
+            if let Some(sensor) = self.sensor(sensor, &path) {
+                world.spawn((SceneId(index as u32), Name(name.clone()), sensor));
+            }
+        }
+    }
+
+    fn sensor(&mut self, sensor: &document::Sensor, path: &str) -> Option<Sensor> {
+        Some(match sensor {
+            document::Sensor::Orthographic {
+                size_px,
+                extent_m,
+                center_m,
+                zenith_deg,
+                azimuth_deg,
+                samples_per_px,
+                measure,
+                system,
+            } => {
+                let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
+                let middle = DVec2::from(*corner_m) + 0.5 * DVec2::from(*size_m);
+                Sensor::Orthographic(Orthographic {
+                    size: UVec2::from(*size_px),
+                    extent: DVec2::from(*extent_m),
+                    center: center_m.map_or(middle, DVec2::from),
+                    view: view(*zenith_deg, *azimuth_deg),
+                    samples: *samples_per_px,
+                    measure: image_measures(measure),
+                    system: system_of(system),
+                })
+            }
+            document::Sensor::Directions { views, until, measure, system } => {
+                Sensor::Directions(Directions {
+                    views: self.views(views, &format!("{path}.views"))?,
+                    until: vec![match *until {
+                        Until::RelError(limit) => Stop::RelError(limit),
+                        Until::Seconds(limit) => Stop::Seconds(limit),
+                        Until::Samples(limit) => Stop::Samples(limit),
+                    }],
+                    measure: image_measures(measure),
+                    system: system_of(system),
+                })
+            }
+            document::Sensor::Photons { per_m2, measure } => {
+                let mut measures = Vec::new();
+                for (index, measure) in measure.iter().enumerate() {
+                    let at = format!("{path}.measure[{index}]");
+                    measures.push(match measure {
+                        document::PhotonMeasure::BrfCells(cells) => PhotonMeasure::BrfCells(*cells),
+                        document::PhotonMeasure::BrfViews(views) => {
+                            PhotonMeasure::BrfViews(self.views(views, &at)?)
+                        }
+                        document::PhotonMeasure::Albedo => PhotonMeasure::Albedo,
+                        document::PhotonMeasure::Fapar { layer_m } => {
+                            PhotonMeasure::Fapar { layer: *layer_m }
+                        }
+                        document::PhotonMeasure::Fluxes { pixel_m, heights_m } => {
+                            PhotonMeasure::Fluxes { pixel: *pixel_m, heights: heights_m.clone() }
+                        }
+                    });
+                }
+                Sensor::Photons(Photons { per_area: *per_m2, measure: measures })
+            }
+        })
+    }
+
+    fn views(&mut self, views: &Views, path: &str) -> Option<Vec<View>> {
+        let (max_deg, step_deg, turn) = match views {
+            Views::List(list) => {
+                return Some(list.iter().map(|&(zenith, azimuth)| view(zenith, azimuth)).collect());
+            }
+            Views::PrincipalPlane { max_deg, step_deg } => (*max_deg, *step_deg, 0.0),
+            Views::CrossPlane { max_deg, step_deg } => (*max_deg, *step_deg, FRAC_PI_2),
+        };
+        let Some(sun) = &self.scene.sun else {
+            self.problems.push(
+                Diagnostic::error(path, "this plane is the sun's, and the scene has no sun")
+                    .help("write List([(zenith, azimuth), ..]), or give the scene a sun"),
+            );
+            return None;
+        };
+        let azimuth = sun.azimuth_deg.to_radians() + turn;
+        // From the far side to the sun's, the nadir once; 75 / 0.1 may round to just below 750.
+        let steps = (max_deg / step_deg * (1.0 + 1e-12)).floor() as i64;
+        Some(
+            (-steps..=steps)
+                .map(|step| View {
+                    zenith: (step.abs() as f64 * step_deg).to_radians(),
+                    azimuth: if step < 0 { azimuth + PI } else { azimuth },
+                })
+                .collect(),
+        )
+    }
+}
+
+fn view(zenith_deg: f64, azimuth_deg: f64) -> View {
+    View { zenith: zenith_deg.to_radians(), azimuth: azimuth_deg.to_radians() }
+}
+
+fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMeasure> {
+    measures
+        .iter()
+        .map(|measure| match measure {
+            document::ImageMeasure::Radiance => ImageMeasure::Radiance,
+            document::ImageMeasure::Brf => ImageMeasure::Brf,
+        })
+        .collect()
+}
+
+fn system_of(system: &document::System) -> System {
+    match system {
+        document::System::Backward => System::Backward,
+        document::System::Forward => System::Forward,
+    }
+}

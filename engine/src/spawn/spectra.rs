@@ -1,0 +1,119 @@
+use std::collections::BTreeSet;
+
+use super::Spawner;
+use crate::assets;
+use crate::document::{Diagnostic, Spectrum, unknown_name};
+use crate::spectral::band_mean;
+use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
+
+/// What a spectrum is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Reflectance,
+    Transmittance,
+    Irradiance,
+}
+
+impl Spawner<'_> {
+    /// Value of a spectrum in each band, shape `[bands]`; `None` if a problem was noted.
+    pub(super) fn spectrum(
+        &mut self,
+        spectrum: &Spectrum,
+        quantity: Quantity,
+        path: &str,
+    ) -> Option<Vec<f64>> {
+        match self.resolve(spectrum, quantity, path, &mut BTreeSet::new()) {
+            Ok(values) => Some(values),
+            Err(problem) => {
+                self.problems.push(*problem);
+                None
+            }
+        }
+    }
+
+    fn resolve(
+        &mut self,
+        spectrum: &Spectrum,
+        quantity: Quantity,
+        path: &str,
+        visited: &mut BTreeSet<String>,
+    ) -> Result<Vec<f64>, Box<Diagnostic>> {
+        let bands = self.scene.bands.len();
+        match spectrum {
+            Spectrum::Constant(value) => Ok(vec![*value; bands]),
+            Spectrum::Bands(values) => Ok(values.clone()),
+            Spectrum::Points(points) => self.mean_over_bands(points, path),
+            Spectrum::Table { file, wavelength, value } => {
+                let file_path = self.file(file);
+                let points = assets::read_spectrum(&file_path, wavelength, value.as_deref())
+                    .map_err(|error| Box::new(problem(&format!("{path}.file"), &error)))?;
+                self.mean_over_bands(&points, path)
+            }
+            Spectrum::Named(name) => {
+                let scene = self.scene;
+                let Some(named) = scene.spectra.get(name) else {
+                    let known = scene.spectra.keys().map(String::as_str);
+                    return Err(Box::new(unknown_name(path, "spectrum", name, known)));
+                };
+                if !visited.insert(name.clone()) {
+                    let problem =
+                        Diagnostic::error(path, format!("spectrum `{name}` names itself"));
+                    let help = "give it values: Constant, Bands, Points, Table or Prospect";
+                    return Err(Box::new(problem.help(help)));
+                }
+                self.resolve(named, quantity, &format!("spectra.{name}"), visited)
+            }
+            &Spectrum::Prospect {
+                n,
+                chlorophyll_ug_cm2,
+                carotenoid_ug_cm2,
+                anthocyanin_ug_cm2,
+                brown,
+                water_cm,
+                dry_matter_g_cm2,
+                protein_g_cm2,
+                carbon_g_cm2,
+            } => {
+                let chemistry = LeafChemistry {
+                    n,
+                    chlorophyll: chlorophyll_ug_cm2,
+                    carotenoid: carotenoid_ug_cm2,
+                    anthocyanin: anthocyanin_ug_cm2,
+                    brown,
+                    water: water_cm,
+                    dry_matter: dry_matter_g_cm2,
+                    protein: protein_g_cm2,
+                    carbon: carbon_g_cm2,
+                };
+                let leaf =
+                    leaf_spectrum(&chemistry).map_err(|error| Box::new(problem(path, &error)))?;
+                match quantity {
+                    Quantity::Reflectance => self.mean_over_bands(&leaf.reflectance, path),
+                    Quantity::Transmittance => self.mean_over_bands(&leaf.transmittance, path),
+                    Quantity::Irradiance => {
+                        let what = "Prospect gives reflectance and transmittance, no irradiance";
+                        let help = "write Constant, Bands, Points or Table";
+                        Err(Box::new(Diagnostic::error(path, what).help(help)))
+                    }
+                }
+            }
+        }
+    }
+
+    fn mean_over_bands(
+        &self,
+        points: &[(f64, f64)],
+        path: &str,
+    ) -> Result<Vec<f64>, Box<Diagnostic>> {
+        let means = self.scene.bands.iter().map(|band| {
+            band_mean(points, band.center_nm, band.width_nm).map_err(|error| {
+                Box::new(Diagnostic::error(path, format!("band `{}`: {error}", band.name)))
+            })
+        });
+        means.collect()
+    }
+}
+
+fn problem(path: &str, error: &dyn std::error::Error) -> Diagnostic {
+    Diagnostic::error(path, error.to_string())
+}

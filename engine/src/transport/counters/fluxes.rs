@@ -1,0 +1,118 @@
+use glam::{DVec2, DVec3, UVec2};
+
+use super::{Counter, Event};
+use crate::extract::Stage;
+use crate::film::Sums;
+
+/// A surface on which flux is counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FluxLevel {
+    /// The ground itself.
+    Terrain,
+    /// The reference plane at the top of the scene.
+    Top,
+    /// A horizontal plane at this height, m.
+    Height(f64),
+}
+
+/// Power down and up through levels, by square pixels; cells `[levels, down and up, rows, columns]`
+/// with row 0 in the north, each raster followed by one cell for its total.
+#[derive(Clone, Debug)]
+pub struct FluxCounter {
+    /// Levels.
+    pub levels: Vec<FluxLevel>,
+    /// Columns and rows.
+    pub size: UVec2,
+}
+
+impl FluxCounter {
+    /// Pixels of about this side, m, so that a whole number of them covers the scene's rectangle.
+    #[must_use]
+    pub fn of(stage: &Stage, pixel: f64, levels: Vec<FluxLevel>) -> Self {
+        let size = (stage.size / pixel).round().as_uvec2().max(UVec2::ONE);
+        Self { levels, size }
+    }
+
+    /// Area of a pixel, m².
+    #[must_use]
+    pub fn pixel_area(&self, stage: &Stage) -> f64 {
+        stage.area() / f64::from(self.size.x) / f64::from(self.size.y)
+    }
+
+    /// Pixels of a raster.
+    #[must_use]
+    pub const fn pixels(&self) -> usize {
+        self.size.x as usize * self.size.y as usize
+    }
+
+    /// First cell of the raster of a level.
+    #[must_use]
+    pub const fn first_cell(&self, level: usize, is_up: bool) -> usize {
+        (2 * level + is_up as usize) * (self.pixels() + 1)
+    }
+
+    /// Cells that a crossing of a level counts in, if the point lies within the scene's rectangle.
+    fn cells_at(
+        &self,
+        stage: &Stage,
+        point: DVec3,
+        level: usize,
+        is_up: bool,
+    ) -> Option<[usize; 2]> {
+        let at = stage.within(point);
+        let inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all();
+        inside.then(|| {
+            let at = (at * self.size.as_dvec2()).as_uvec2().min(self.size - 1);
+            let pixel = (self.size.y - 1 - at.y) * self.size.x + at.x;
+            let first = self.first_cell(level, is_up);
+            [first + pixel as usize, first + self.pixels()]
+        })
+    }
+}
+
+impl Counter for FluxCounter {
+    fn cells(&self) -> usize {
+        self.levels.len() * 2 * (self.pixels() + 1)
+    }
+
+    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+        for (index, &level) in self.levels.iter().enumerate() {
+            let mut add = |point, is_up, share: &dyn Fn(usize) -> f64| {
+                for cell in self.cells_at(stage, point, index, is_up).into_iter().flatten() {
+                    sums.add_with(cell, share);
+                }
+            };
+            match (level, event) {
+                (FluxLevel::Terrain, Event::Arrival { hit, wo, weight, .. })
+                    if stage.is_ground(hit) && wo.z > 0.0 =>
+                {
+                    add(hit.point, false, &|lane| weight[lane].into());
+                    let up = stage.surface(hit).bsdf.reflected(hit.normal, *wo);
+                    add(hit.point, true, &|lane| (weight[lane] * up[lane]).into());
+                }
+                // Nothing is above the top: light comes down through it once and goes up once.
+                (FluxLevel::Top, Event::Start { ray, weight }) => {
+                    let along = (stage.top() - ray.origin.z) / ray.direction.z;
+                    let point = ray.origin + ray.direction * along;
+                    add(point, false, &|lane| weight[lane].into());
+                }
+                (FluxLevel::Top, Event::Escape { ray, order: 1.., weight })
+                    if ray.direction.z > 0.0 =>
+                {
+                    let along = (stage.top() - ray.origin.z).max(0.0) / ray.direction.z;
+                    let point = ray.origin + ray.direction * along;
+                    add(point, true, &|lane| weight[lane].into());
+                }
+                (FluxLevel::Height(height), Event::Flight { ray, distance, weight }) => {
+                    let along = (height - ray.origin.z) / ray.direction.z;
+                    if along > 0.0 && along <= *distance {
+                        let point = ray.origin + ray.direction * along;
+                        add(point, ray.direction.z > 0.0, &|lane| weight[lane].into());
+                    }
+                }
+                _ => {}
+            }
+        }
+        0
+    }
+}

@@ -1,0 +1,79 @@
+//! What photon packets are counted for, one file a product.
+
+mod albedo;
+mod cells;
+mod energy;
+mod fluxes;
+mod layers;
+mod views;
+
+use glam::DVec3;
+
+use crate::accel::{Hit, Ray};
+use crate::extract::Stage;
+use crate::film::Sums;
+
+pub use albedo::AlbedoCounter;
+pub use cells::CellCounter;
+pub use energy::EnergyCounter;
+pub use fluxes::{FluxCounter, FluxLevel};
+pub use layers::LayerCounter;
+pub use views::ViewCounter;
+
+/// An event in a packet's life. Weights, shape `[lanes]`, are in units of the power that falls on
+/// the scene's rectangle over the number of packets.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// It starts.
+    Start {
+        /// From where and in which direction.
+        ray: &'a Ray,
+        /// Its weight.
+        weight: &'a [f32],
+    },
+    /// It flies.
+    Flight {
+        /// From where and in which direction.
+        ray: &'a Ray,
+        /// How far, m.
+        distance: f64,
+        /// Its weight.
+        weight: &'a [f32],
+    },
+    /// It arrives at a surface.
+    Arrival {
+        /// Where.
+        hit: &'a Hit,
+        /// Unit vector to where it comes from.
+        wo: DVec3,
+        /// How often it was scattered before.
+        order: u32,
+        /// Its weight.
+        weight: &'a [f32],
+    },
+    /// It goes on after being scattered, or does not.
+    Roulette {
+        /// The weight that is scattered, whatever direction or roulette were drawn.
+        expected: &'a [f32],
+        /// The weight that goes on.
+        kept: &'a [f32],
+    },
+    /// It leaves the scene.
+    Escape {
+        /// Its last flight.
+        ray: &'a Ray,
+        /// How often it was scattered.
+        order: u32,
+        /// Its weight.
+        weight: &'a [f32],
+    },
+}
+
+/// A product of photon tracing: cells of sums, filled from the events of all packets.
+pub trait Counter: Sync {
+    /// Number of cells.
+    fn cells(&self) -> usize;
+
+    /// Counts an event; returns the number of rays that this took.
+    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64;
+}

@@ -1,0 +1,160 @@
+use std::ops::Range;
+
+use super::forward::trace_packets;
+use super::{Counter, Path, Projection, RANDOMISATIONS, ViewCounter, Watch, blocks};
+use crate::accel::Ray;
+use crate::components::{Stop, System, View};
+use crate::extract::Stage;
+use crate::film::{Spread, Sums};
+use crate::sampling::{Key, Sampler};
+
+/// What a measurement of directions found, in units of the irradiance.
+#[derive(Clone, Debug)]
+pub struct DirectionsOutcome {
+    /// `L / E` towards each view, sr⁻¹, shape `[views, bands]`, with its standard error.
+    pub spread: Spread,
+    /// Paths a view, or photon packets.
+    pub samples: u64,
+    /// Rays traced.
+    pub rays: u64,
+    /// What ended it.
+    pub ended_by: Stop,
+}
+
+/// Samples of each randomisation in the first round.
+const FIRST_ROUND: u64 = 16;
+
+/// Measures until one of the conditions holds; `elapsed` tells the seconds since the start.
+///
+/// # Panics
+/// If there is no condition.
+#[must_use]
+pub fn measure_directions(
+    stage: &Stage,
+    (views, system): (&[View], System),
+    until: &[Stop],
+    key: Key,
+    elapsed: &dyn Fn() -> f64,
+    watch: Watch<'_>,
+) -> DirectionsOutcome {
+    assert!(!until.is_empty(), "a measurement ends");
+    let projections: Vec<Projection> =
+        views.iter().map(|&view| Projection::of_scene(view, stage)).collect();
+    let mut rows = vec![Sums::new(views.len(), stage.bands); RANDOMISATIONS as usize];
+    let mut rays = 0;
+    let mut done = 0;
+    let mut next = first_round(until);
+    loop {
+        rays += match system {
+            System::Backward => trace_paths(stage, &projections, done..next, key, &mut rows),
+            System::Forward => trace_photons_to(stage, &projections, done..next, key, &mut rows),
+        };
+        done = next;
+        let spread = spread(&rows, done);
+        let samples = done * u64::from(RANDOMISATIONS);
+        let error = spread.median_relative_error();
+        let seconds = elapsed();
+        let progress = |stop: &Stop| match *stop {
+            // The error falls as the root of the number of samples at the slowest.
+            Stop::RelError(target) => (target / error).powi(2),
+            Stop::Seconds(limit) => seconds / limit,
+            Stop::Samples(limit) => samples as f64 / limit as f64,
+        };
+        let furthest = until
+            .iter()
+            .max_by(|a, b| progress(a).total_cmp(&progress(b)))
+            .expect("there is a condition");
+        let part = progress(furthest);
+        watch(part.min(1.0));
+        if part >= 1.0 {
+            return DirectionsOutcome { spread, samples, rays, ended_by: *furthest };
+        }
+        // Aim a little past what the slowest law asks for, but never far beyond what was seen.
+        let aim = (done as f64 * (1.05 / part.max(0.1))).ceil() as u64;
+        next = match furthest {
+            Stop::Samples(limit) => limit.div_ceil(RANDOMISATIONS.into()),
+            _ => aim.clamp(done + done / 4 + 1, done * 4),
+        };
+        next = next.min(done + ROUND_LIMIT);
+    }
+}
+
+/// Samples of each randomisation between two looks at clock and error.
+const ROUND_LIMIT: u64 = 1 << 14;
+
+fn first_round(until: &[Stop]) -> u64 {
+    let limits = until.iter().filter_map(|stop| match *stop {
+        Stop::Samples(limit) => Some(limit.div_ceil(RANDOMISATIONS.into())),
+        _ => None,
+    });
+    limits.fold(FIRST_ROUND, u64::min).max(1)
+}
+
+fn spread(rows: &[Sums], samples: u64) -> Spread {
+    let means: Vec<Vec<f64>> = rows
+        .iter()
+        .map(|row| row.values().iter().map(|sum| sum / samples as f64).collect())
+        .collect();
+    Spread::of(means[0].len(), means.iter().map(Vec::as_slice))
+}
+
+/// Traces paths `range` of each randomisation from each view.
+fn trace_paths(
+    stage: &Stage,
+    projections: &[Projection],
+    range: Range<u64>,
+    key: Key,
+    rows: &mut [Sums],
+) -> u64 {
+    let mut rays = 0;
+    let views = projections.len();
+    blocks::in_order(
+        views * rows.len(),
+        256,
+        |block| {
+            let (view, randomisation) = (block % views, block / views);
+            let projection = &projections[view];
+            // All views share their points: differences between them have less noise.
+            let stream = key.index(randomisation as u64);
+            let mut path = Path::new(stage.lanes());
+            let mut sums = Sums::new(1, stage.bands);
+            for index in range.clone() {
+                let mut sampler = Sampler::new(stream, index);
+                let [u, v, ..] = sampler.next_event();
+                let origin = projection.point(glam::DVec2::new(u, v));
+                let ray = Ray { origin, direction: -projection.towards, from: None };
+                if path.trace(stage, ray, &mut sampler) {
+                    sums.add(0, path.radiance(), 1.0);
+                }
+            }
+            (sums, path.rays())
+        },
+        |block, (sums, traced)| {
+            rows[block / views].add_cell(block % views, sums.values());
+            rays += traced;
+        },
+    );
+    rays
+}
+
+/// Traces packets `range` of each randomisation and counts their virtual photons.
+fn trace_photons_to(
+    stage: &Stage,
+    projections: &[Projection],
+    range: Range<u64>,
+    key: Key,
+    rows: &mut [Sums],
+) -> u64 {
+    let counter = ViewCounter::new(projections.to_vec());
+    let cells = counter.first_cells().to_vec();
+    let counters: [Box<dyn Counter>; 1] = [Box::new(counter)];
+    trace_packets(stage, &counters, range, key, &|_| {}, |randomisation, sums| {
+        for (view, (projection, cell)) in projections.iter().zip(&cells).enumerate() {
+            let per_count = projection.radiance_of_count(stage);
+            let bands = cell * stage.bands..(cell + 1) * stage.bands;
+            let radiance: Vec<f64> =
+                sums[0].values()[bands].iter().map(|sum| sum * per_count).collect();
+            rows[randomisation].add_cell(view, &radiance);
+        }
+    })
+}

@@ -1,0 +1,156 @@
+use glam::{DVec2, DVec3};
+
+use crate::accel::Ray;
+use crate::extract::Stage;
+use crate::sampling::{Sampler, cosine_hemisphere};
+
+/// Where photon packets of sun and sky start, so that every point of the scene is lit as it would be
+/// in the open.
+///
+/// Periodic scenes are lit through their top plane. An isolated scene is lit through the faces of
+/// its bounding box: exactly its silhouette towards the sun, its flanks included.
+#[derive(Clone, Debug)]
+pub(super) struct Emission {
+    faces: Vec<Face>,
+    /// Power through all faces over that through the reference plane, per source.
+    sun_gain: f64,
+    sky_gain: f64,
+    /// Chance that a packet is the sun's.
+    sun_chance: f64,
+    /// Weight of a packet in each lane, over its gain and chance.
+    sun_share: Box<[f32]>,
+    sky_share: Box<[f32]>,
+    sun: DVec3,
+    /// How far before its face a ray starts.
+    back_off: f64,
+}
+
+/// A face of the box.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    corner: DVec3,
+    u: DVec3,
+    v: DVec3,
+    /// Unit normal into the box.
+    inward: DVec3,
+    /// Sum of chances up to and including this face.
+    sun_until: f64,
+    sky_until: f64,
+}
+
+impl Emission {
+    /// For a stage.
+    #[must_use]
+    pub(super) fn of(stage: &Stage) -> Self {
+        let (low, high) = lit_box(stage);
+        let size = high - low;
+        let (x, y, z) = (DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z);
+        let top = Face {
+            corner: DVec3::new(low.x, low.y, high.z),
+            u: x,
+            v: y,
+            inward: -DVec3::Z,
+            sun_until: 0.0,
+            sky_until: 0.0,
+        };
+        let mut faces = vec![top];
+        if !stage.periodic {
+            let side = |corner, along, inward| Face { corner, u: along, v: z, inward, ..top };
+            faces.push(side(low, y, DVec3::X));
+            faces.push(side(low + x, y, -DVec3::X));
+            faces.push(side(low, x, DVec3::Y));
+            faces.push(side(low + y, x, -DVec3::Y));
+        }
+        let sun = stage.light.beam.as_ref().map_or(DVec3::Z, |beam| beam.direction);
+        let (mut sun_power, mut sky_power) = (0.0, 0.0);
+        for face in &mut faces {
+            let area = face.u.cross(face.v).length();
+            sun_power += area * (-sun).dot(face.inward).max(0.0);
+            // Of the sky a vertical face sees half.
+            sky_power += area * if face.inward.z < 0.0 { 1.0 } else { 0.5 };
+            (face.sun_until, face.sky_until) = (sun_power, sky_power);
+        }
+        for face in &mut faces {
+            face.sun_until /= sun_power;
+            face.sky_until /= sky_power;
+        }
+        let share = |share: Option<&[f32]>| -> Box<[f32]> {
+            share.map_or_else(|| vec![0.0; stage.lanes()].into(), Into::into)
+        };
+        let sun_share = share(stage.light.beam.as_ref().map(|beam| &*beam.share));
+        let sky_share = share(stage.light.dome.as_ref().map(|dome| &*dome.share));
+        let sun_gain = sun_power / (stage.area() * sun.z);
+        let sky_gain = sky_power / stage.area();
+        // Packets go where the power is, summed over the bands.
+        let power = |share: &[f32], gain| f64::from(share.iter().sum::<f32>()) * gain;
+        let (from_sun, from_sky) = (power(&sun_share, sun_gain), power(&sky_share, sky_gain));
+        let sun_chance = from_sun / (from_sun + from_sky);
+        Self {
+            faces,
+            sun_gain,
+            sky_gain,
+            sun_chance,
+            sun_share,
+            sky_share,
+            sun,
+            back_off: 0.01 * size.max_element(),
+        }
+    }
+
+    /// Starts a packet: its ray, and its weight in each lane, in units of the power that falls on
+    /// the scene's rectangle over the number of packets.
+    pub(super) fn start(&self, sampler: &mut Sampler, weight: &mut [f32]) -> Ray {
+        let [pick, u, v, _] = sampler.next_event();
+        let (direction, face, share, factor);
+        if pick < self.sun_chance {
+            let pick = pick / self.sun_chance;
+            direction = -self.sun;
+            face = self.face(pick, |face| face.sun_until);
+            share = &self.sun_share;
+            factor = self.sun_gain / self.sun_chance;
+        } else {
+            let pick = (pick - self.sun_chance) / (1.0 - self.sun_chance);
+            face = self.face(pick, |face| face.sky_until);
+            let [u, v, ..] = sampler.next_event();
+            direction = face.sky_light(cosine_hemisphere(u, v));
+            share = &self.sky_share;
+            factor = self.sky_gain / (1.0 - self.sun_chance);
+        }
+        for (weight, share) in weight.iter_mut().zip(share) {
+            *weight = share * factor as f32;
+        }
+        let at = DVec2::new(u, v);
+        let origin = face.corner + face.u * at.x + face.v * at.y - direction * self.back_off;
+        Ray { origin, direction, from: None }
+    }
+
+    fn face(&self, pick: f64, until: impl Fn(&Face) -> f64) -> &Face {
+        let index = self.faces.partition_point(|face| until(face) <= pick);
+        &self.faces[index.min(self.faces.len() - 1)]
+    }
+}
+
+impl Face {
+    /// Direction of sky light through this face, from one about z with a cosine density. Light from
+    /// below the horizon is mirrored up: the sky is isotropic, so the flux is that of its half.
+    fn sky_light(&self, local: DVec3) -> DVec3 {
+        let tangent = if self.inward.z < 0.0 { DVec3::X } else { DVec3::Z };
+        let bitangent = self.inward.cross(tangent);
+        let direction = tangent * local.x + bitangent * local.y + self.inward * local.z;
+        // Light comes down; a horizontal ray would never end in a flat scene.
+        DVec3::new(direction.x, direction.y, -direction.z.abs().max(f64::MIN_POSITIVE))
+    }
+}
+
+/// Box of all that light can reach: the scene's rectangle and, of an isolated scene, whatever stands
+/// out of it.
+fn lit_box(stage: &Stage) -> (DVec3, DVec3) {
+    let (low, high) = stage.geometry.bounds();
+    let corner = stage.corner.extend(stage.ground);
+    let far = (stage.corner + stage.size).extend(stage.ground);
+    if stage.periodic {
+        (corner, far.truncate().extend(stage.top()))
+    } else {
+        (low.min(corner), high.max(far))
+    }
+}

@@ -1,0 +1,137 @@
+use glam::{DMat2, DMat3, DVec2, DVec3, UVec2};
+
+use crate::components::{Orthographic, View};
+use crate::extract::Stage;
+
+/// A parallel projection: a parallelogram in space through which light in one direction is seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Projection {
+    /// Unit vector towards the sensor.
+    pub towards: DVec3,
+    /// Columns and rows.
+    pub size: UVec2,
+    corner: DVec3,
+    right: DVec3,
+    down: DVec3,
+    /// Coordinates (along right, along down, along towards) of a displacement from the corner.
+    film_from_world: DMat3,
+    /// Whether it shows every point of a periodic scene exactly once.
+    covers_tile: bool,
+}
+
+impl Projection {
+    /// The image of an orthographic sensor: its middle looks at the ground point `center`.
+    ///
+    /// Up in the image is away from the sensor's side, so that a nadir view with the default azimuth
+    /// of 180° has north up and oblique views show what stands upright as upright.
+    #[must_use]
+    pub fn of_image(sensor: &Orthographic, stage: &Stage) -> Self {
+        let towards = sensor.view.direction();
+        let (sin, cos) = sensor.view.azimuth.sin_cos();
+        // Horizontal, to the right of somebody who looks from the sensor's side.
+        let right = DVec3::new(-cos, sin, 0.0);
+        let down = right.cross(towards);
+        let right = right * sensor.extent.x;
+        let down = down * sensor.extent.y;
+        let middle = sensor.center.extend(stage.ground);
+        let corner = beyond(middle, towards, stage) - 0.5 * (right + down);
+        Self::new(towards, corner, right, down, sensor.size, false)
+    }
+
+    /// The scene's whole rectangle at its top, seen in one direction.
+    #[must_use]
+    pub fn of_scene(view: View, stage: &Stage) -> Self {
+        let top = stage.top();
+        let north_west = DVec3::new(stage.corner.x, stage.corner.y + stage.size.y, top);
+        let right = DVec3::X * stage.size.x;
+        let down = -DVec3::Y * stage.size.y;
+        let towards = view.direction();
+        let corner = beyond(north_west, towards, stage);
+        Self::new(towards, corner, right, down, UVec2::ONE, stage.periodic)
+    }
+
+    fn new(
+        towards: DVec3,
+        corner: DVec3,
+        right: DVec3,
+        down: DVec3,
+        size: UVec2,
+        covers_tile: bool,
+    ) -> Self {
+        let film_from_world = DMat3::from_cols(right, down, towards).inverse();
+        Self { towards, size, corner, right, down, film_from_world, covers_tile }
+    }
+
+    /// Point of the parallelogram, from `(0, 0)` top left to `(1, 1)` bottom right.
+    #[must_use]
+    pub fn point(&self, at: DVec2) -> DVec3 {
+        self.corner + self.right * at.x + self.down * at.y
+    }
+
+    /// Number of pixels.
+    #[must_use]
+    pub const fn pixels(&self) -> usize {
+        self.size.x as usize * self.size.y as usize
+    }
+
+    /// Area of one pixel perpendicular to the view, m².
+    #[must_use]
+    pub fn pixel_area(&self) -> f64 {
+        let whole = self.right.cross(self.down).dot(self.towards).abs();
+        whole / f64::from(self.size.x) / f64::from(self.size.y)
+    }
+
+    /// `L / E` of a pixel, sr⁻¹, over what a virtual photon count gives for it: `I = c E A` leaves
+    /// the scene's rectangle `A` towards the sensor, and `L` is `I` over the pixel's area.
+    #[must_use]
+    pub fn radiance_of_count(&self, stage: &Stage) -> f64 {
+        stage.area() / self.pixel_area()
+    }
+
+    /// Calls `f` with each pixel (row by row from the top left) that shows `point` or, where the
+    /// scene is periodic, one of its copies.
+    pub fn for_each_pixel(&self, point: DVec3, stage: &Stage, mut f: impl FnMut(usize)) {
+        if self.covers_tile {
+            return f(0);
+        }
+        let at = (self.film_from_world * (point - self.corner)).truncate();
+        if !stage.periodic {
+            if let Some(pixel) = self.pixel(at) {
+                f(pixel);
+            }
+            return;
+        }
+        let step_x = (self.film_from_world * DVec3::X).truncate() * stage.size.x;
+        let step_y = (self.film_from_world * DVec3::Y).truncate() * stage.size.y;
+        // The copies whose film coordinates lie in the unit square: bound their numbers by the
+        // square's corners seen in units of the two steps.
+        let tiles_from_film = DMat2::from_cols(step_x, step_y).inverse();
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE]
+            .map(|corner| tiles_from_film * (corner - at));
+        let low = corners.into_iter().reduce(DVec2::min).unwrap_or(DVec2::ZERO).floor();
+        let high = corners.into_iter().reduce(DVec2::max).unwrap_or(DVec2::ZERO).ceil();
+        for i in low.x as i64..=high.x as i64 {
+            for j in low.y as i64..=high.y as i64 {
+                if let Some(pixel) = self.pixel(at + step_x * i as f64 + step_y * j as f64) {
+                    f(pixel);
+                }
+            }
+        }
+    }
+
+    /// Pixel at film coordinates, if they lie on the film.
+    fn pixel(&self, at: DVec2) -> Option<usize> {
+        let on_film = at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all();
+        on_film.then(|| {
+            let cell = (at * self.size.as_dvec2()).as_uvec2().min(self.size - 1);
+            (cell.y * self.size.x + cell.x) as usize
+        })
+    }
+}
+
+/// The point moved towards the sensor, beyond everything that the scene holds.
+fn beyond(point: DVec3, towards: DVec3, stage: &Stage) -> DVec3 {
+    let (low, high) = stage.geometry.bounds();
+    let reach = (high - low).length() + (point - low).length() + (point - high).length();
+    point + towards * reach
+}

@@ -1,0 +1,61 @@
+use crate::extract::Rules;
+
+/// Throughput below which a path is played for, whatever its order. A path of less weight than this
+/// changes a result by less than its noise, so most of them may end; the others stand for them.
+const WEAK: f32 = 0.05;
+
+/// Russian roulette: whether a path that was scattered `order` times goes on. The throughput of one
+/// that does is divided by its chance to do so.
+///
+/// Beyond `roulette_after` orders a path ends with the probability `roulette_kill` (LESS manual,
+/// section 2.1); at any order, one that no band carries much on ends in proportion.
+pub(super) fn survives(rules: &Rules, order: u32, throughput: &mut [f32], u: f64) -> bool {
+    let strongest = throughput.iter().copied().fold(0.0, f32::max);
+    let constant =
+        if order > rules.roulette_after { 1.0 - rules.roulette_kill as f32 } else { 1.0 };
+    let survival = constant.min(strongest / WEAK);
+    if survival >= 1.0 {
+        return true;
+    }
+    if u >= f64::from(survival) {
+        return false;
+    }
+    let gain = 1.0 / survival;
+    for weight in throughput {
+        *weight *= gain;
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::survives;
+    use crate::extract::Rules;
+
+    /// Over all outcomes the weight that goes on is the weight that came: exactly, because the
+    /// chance to survive times the gain is 1.
+    #[test]
+    fn roulette_keeps_the_mean_weight() {
+        let rules = Rules { seed: 1, roulette_after: 5, roulette_kill: 0.05, max_order: u32::MAX };
+        for (order, weight) in [(0, 1.0_f32), (6, 1.0), (1, 0.02), (9, 0.001)] {
+            let n = 200_000;
+            let carried: f64 = (0..n)
+                .map(|i| {
+                    let mut throughput = [weight, weight / 2.0];
+                    let on = survives(
+                        &rules,
+                        order,
+                        &mut throughput,
+                        (f64::from(i) + 0.5) / f64::from(n),
+                    );
+                    if on { f64::from(throughput[0]) } else { 0.0 }
+                })
+                .sum::<f64>()
+                / f64::from(n);
+            assert!(
+                (carried / f64::from(weight) - 1.0).abs() < 1e-3,
+                "{order} {weight}: {carried}"
+            );
+        }
+    }
+}

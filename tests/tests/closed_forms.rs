@@ -1,0 +1,226 @@
+//! Scenes whose answer is known exactly.
+
+use std::path::Path;
+
+use sunfleck::products::Report;
+use sunfleck::run::Options;
+use sunfleck_tests::{Estimate, measure, product};
+
+fn run(text: &str) -> Report {
+    measure(text, Path::new("."), &Options::default())
+}
+
+/// *Scene*: a Lambertian plane, isolated or periodic, under sun and sky.
+/// *Expected*: BRF, albedo and HDRF equal the reflectance, exactly in expectation; backward paths
+/// see nothing else than ρ, so there without any spread up to the rounding of f32.
+#[test]
+fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
+    for boundary in ["Isolated", "Periodic"] {
+        for sky in ["None", "Fraction([0.25, 0.5])"] {
+            let report = run(&format!(
+                r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
+    materials: {{ "soil": Lambertian(reflectance: Bands([0.127, 0.7])) }},
+    terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
+    sun: (zenith_deg: 40.0, azimuth_deg: 200.0),
+    sky: {sky},
+    boundary: {boundary},
+    sensors: {{
+        "back": Directions(views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048)),
+        "forth": Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: Forward),
+        "image": Orthographic(size_px: (8, 8), extent_m: (5.0, 5.0), samples_per_px: 16, measure: [Radiance, Brf]),
+        "photons": Photons(per_m2: 500.0, measure: [Albedo, BrfCells(30), Fapar(layer_m: 1.0), Fluxes(pixel_m: 1.0)]),
+    }},
+)"#
+            ));
+            let factor = if sky == "None" { "brf" } else { "hdrf" };
+            let rho = [0.127_f64, 0.7];
+            let sun = 40_f64.to_radians().cos();
+            for (sensor, name) in [("back", factor), ("forth", factor), ("image", factor)] {
+                let product = product(&report, sensor, name);
+                for (index, value) in product.values.iter().enumerate() {
+                    let deviation = value / rho[index % 2] - 1.0;
+                    let error = product.standard_error[index] / rho[index % 2];
+                    // A sky leaves the random choice between it and the sun.
+                    let allowed = if sky == "None" { 1e-6 } else { 4.0 * error + 1e-6 };
+                    assert!(
+                        deviation.abs() < allowed,
+                        "{boundary}, {sky}, {sensor}[{index}]: {value} +- {error}"
+                    );
+                }
+            }
+            let albedo = product(&report, "photons", "albedo");
+            for (index, &rho) in rho.iter().enumerate() {
+                let albedo = Estimate::of(albedo, index);
+                // Without a sky every packet carries the same.
+                let allowed = 4.0 * albedo.error + 1e-6;
+                assert!((albedo.value - rho).abs() < allowed, "{boundary}, {sky}: {albedo:?}");
+                // L = ρ E / π with E the horizontal irradiance.
+                let radiance = product(&report, "image", "radiance").values[index];
+                let expected = rho * sun / std::f64::consts::PI;
+                assert!((radiance / expected - 1.0).abs() < 0.02, "{radiance} {expected}");
+                let down = Estimate::of(product(&report, "photons", "downwelling_terrain"), index);
+                assert!((down.value - sun).abs() < 4.0 * down.error + 1e-6, "{down:?}");
+                let top = Estimate::of(product(&report, "photons", "downwelling_top"), index);
+                assert!((top.value - sun).abs() < 4.0 * top.error + 1e-6, "{top:?}");
+                let up = Estimate::of(product(&report, "photons", "upwelling_top"), index);
+                assert!((up.value - rho * sun).abs() < 4.0 * up.error + 1e-6, "{up:?}");
+            }
+            let cells = product(&report, "photons", &format!("{factor}_cells"));
+            let outliers = (0..cells.values.len())
+                .filter(|&index| Estimate::of(cells, index).z(rho[index % 2]).abs() > 4.0)
+                .count();
+            assert_eq!(outliers, 0, "{boundary}, {sky}: cells off by more than 4 standard errors");
+        }
+    }
+}
+
+/// *Scene*: a periodic box of leaves with ρ + τ = 1 over soil of reflectance 1.
+/// *Expected*: all light comes back: albedo 1; and under an isotropic sky the HDRF is 1 in every
+/// direction.
+#[test]
+fn a_white_furnace_sends_everything_back() {
+    let scene = |sky: &str, sun: &str| {
+        format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Constant(1.0)),
+        "leaf": Leaf(reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])),
+    }},
+    meshes: {{ "cloud": Crown(
+        shape: Box(size_m: (4.0, 4.0, 1.0)), base_m: 0.1, leaf_area_m2: 32.0,
+        leaf: Disc(radius_m: 0.05), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
+    instances: [List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])],
+    {sun}
+    sky: {sky},
+    boundary: Periodic,
+    // A constant roulette would be the only noise, and a large one: paths last for many orders.
+    transport: (roulette: (after_order: 5, kill: 0.0)),
+    sensors: {{
+        "photons": Photons(per_m2: 20000.0, measure: [Albedo]),
+        "views": Directions(views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: RelError(0.002)),
+    }},
+)"#
+        )
+    };
+    let report = run(&scene("None", "sun: (zenith_deg: 50.0, azimuth_deg: 10.0),"));
+    let albedo = product(&report, "photons", "albedo");
+    for band in 0..2 {
+        let albedo = Estimate::of(albedo, band);
+        assert!(albedo.error < 1e-4, "{albedo:?}");
+        assert!((albedo.value - 1.0).abs() < 4.0 * albedo.error + 1e-7, "{albedo:?}");
+    }
+    let report = run(&scene("Isotropic(irradiance: Constant(1.0))", ""));
+    let views = product(&report, "views", "hdrf");
+    for index in 0..views.values.len() {
+        let one = Estimate::of(views, index);
+        assert!((one.value - 1.0).abs() < 4.0 * one.error + 1e-6, "{index}: {one:?}");
+    }
+}
+
+/// *Scene*: N horizontal sheets of leaf (r, t) over soil s, wider than the tile.
+/// *Expected*: albedo by adding layers: R₁₂ = R₁ + T₁² R₂ / (1 - R₁ R₂).
+#[test]
+fn leaf_sheets_add_up_as_layers_do() {
+    let (r, t, s) = (0.45, 0.45, 0.2);
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(
+        dir.path().join("sheet.obj"),
+        "g sheet\nv -10 -10 0\nv 10 -10 0\nv 10 10 0\nv -10 10 0\nf 1 2 3 4\n",
+    )
+    .expect("a file");
+    let report = measure(
+        &format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Constant({s})),
+        "leaf": Leaf(reflectance: Constant({r}), transmittance: Constant({t})),
+    }},
+    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
+    terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
+    instances: [List(of: "sheet", at_m: [(4.0, 4.0, 1.0), (4.0, 4.0, 2.0)])],
+    sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
+    boundary: Periodic,
+    sensors: {{
+        "photons": Photons(per_m2: 10000.0, measure: [Albedo]),
+        "views": Directions(views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001)),
+    }},
+)"#
+        ),
+        dir.path(),
+        &Options::default(),
+    );
+    // Lambertian layers: what they send out is diffuse whatever came in.
+    let below = r + t * t * s / (1.0 - r * s);
+    let both = r + t * t * below / (1.0 - r * below);
+    let albedo = Estimate::of(product(&report, "photons", "albedo"), 0);
+    assert!(albedo.z(both).abs() < 4.0 && albedo.error < 1e-3 * both, "{albedo:?} for {both}");
+    for view in 0..2 {
+        let brf = Estimate::of(product(&report, "views", "brf"), view);
+        assert!(brf.z(both).abs() < 4.0, "{brf:?} for {both}");
+    }
+}
+
+/// *Scene*: a heterogeneous periodic scene under sun and sky.
+/// *Expected*: in every band incident = reflected + absorbed + lost + roulette, to 1e-9, and cells
+/// sum to the albedo.
+#[test]
+fn energy_closes_and_cells_sum_to_the_albedo() {
+    for boundary in ["Periodic", "Isolated"] {
+        let report = run(&format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
+        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
+    }},
+    meshes: {{ "tree": Crown(
+        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+        leaf: Square(side_m: 0.1), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+    sky: Fraction([0.3, 0.1]),
+    boundary: {boundary},
+    sensors: {{ "photons": Photons(per_m2: 4000.0, measure: [Albedo, BrfCells(40), Fapar(layer_m: 0.7)]) }},
+)"#
+        ));
+        let energy = product(&report, "photons", "energy");
+        let bands = 2;
+        for band in 0..bands {
+            let term = |index: usize| energy.values[index * bands + band];
+            let terms = energy.values.len() / bands;
+            let balance = term(0) - (1..terms).map(term).sum::<f64>();
+            assert!(balance.abs() < 1e-9 * term(0), "{boundary}, band {band}: {balance}");
+            let albedo = product(&report, "photons", "albedo").values[band];
+            assert!((albedo - term(1)).abs() < 1e-12, "albedo is what is reflected");
+            let cells = product(&report, "photons", "hdrf_cells");
+            let sunfleck::products::AxisPoints::Numbers(weights) = &cells.dimensions[0][2].points
+            else {
+                panic!("weights are numbers")
+            };
+            let sum: f64 = weights
+                .iter()
+                .enumerate()
+                .map(|(cell, weight)| cells.values[cell * bands + band] * weight)
+                .sum();
+            assert!(
+                (sum / std::f64::consts::PI / albedo - 1.0).abs() < 1e-9,
+                "cells sum to albedo"
+            );
+            let fapar = product(&report, "photons", "fapar");
+            let absorbed: f64 = fapar.values.iter().skip(band).step_by(bands).sum();
+            let expected: f64 = (4..terms).map(term).sum();
+            assert!((absorbed - expected).abs() < 1e-9, "layers sum to what is absorbed");
+        }
+    }
+}
