@@ -37,3 +37,8 @@ pub struct Loaded<T> {
     /// Each a sentence that names the file.
     pub warnings: Vec<String>,
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#[allow(clippy::float_cmp, reason = "what is read back is exact")]
+mod tests;

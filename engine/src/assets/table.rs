@@ -172,10 +172,11 @@ pub(super) fn missing(column: &str, names: &[String], file: &Path, line: usize) 
     }
 }
 
-/// The known name that takes the fewest changes.
+/// The known name that is most alike, above all at its beginning: units stand at the end.
 pub(super) fn nearest(name: &str, known: &[&str]) -> String {
-    let distance = |candidate: &&&str| strsim::damerau_levenshtein(name, candidate);
-    known.iter().min_by_key(distance).map_or_else(String::new, |&name| name.to_owned())
+    let alike = |candidate: &str| strsim::jaro_winkler(name, candidate);
+    let best = known.iter().min_by(|a, b| alike(b).total_cmp(&alike(a)));
+    best.map_or_else(String::new, |&name| name.to_owned())
 }
 
 #[cfg(test)]

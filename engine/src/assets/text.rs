@@ -103,6 +103,10 @@ impl Lines {
             .read_until(b'\n', &mut self.bytes)
             .map_err(|cause| AssetError::Unreadable { file: self.file.clone(), cause })?;
         self.number += usize::from(count > 0);
+        // The mark that some editors write before UTF-8 text.
+        if self.number == 1 && self.bytes.starts_with(b"\xef\xbb\xbf") {
+            self.bytes.drain(..3);
+        }
         if count > LONGEST_LINE {
             let most = LONGEST_LINE;
             return Err(AssetError::LineTooLong {
@@ -121,6 +125,6 @@ impl Lines {
             return Err(not_text());
         }
         let text = std::str::from_utf8(&self.bytes).map_err(|_invalid| not_text())?;
-        Ok(text.trim_start_matches('\u{feff}').trim())
+        Ok(text.trim())
     }
 }

@@ -175,4 +175,5 @@ fn check_branches(crown: &CrownSpec) -> Result<(), CrownError> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 mod tests;

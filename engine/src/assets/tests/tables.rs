@@ -1,0 +1,179 @@
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+
+use super::*;
+use crate::assets::{Row, read_discs, read_instances, read_spectrum};
+use crate::components::Disc;
+
+fn discs(text: &str) -> Result<Vec<Disc>, AssetError> {
+    let loaded = read_discs(file(text).path())?;
+    assert_lawful(&loaded.value);
+    assert_eq!(part_names(&loaded.value), ["discs"]);
+    Ok(loaded.value.discs)
+}
+
+fn instances(text: &str) -> Result<Vec<Row>, AssetError> {
+    read_instances(file(text).path(), None)
+}
+
+fn spectrum(text: &str) -> Result<Vec<(f64, f64)>, AssetError> {
+    read_spectrum(file(text).path(), "wavelength_nm", None)
+}
+
+const ROW: Row = Row {
+    position: DVec3::new(1.0, 2.0, 0.0),
+    yaw: 0.0,
+    tilt: 0.0,
+    tilt_azimuth: 0.0,
+    scale_horizontal: 1.0,
+    scale_vertical: 1.0,
+};
+
+#[test]
+fn discs_are_read_by_header_or_from_rami_text() {
+    let disc = Disc { center: Vec3::new(1.0, 2.0, 3.0), normal: Vec3::Z, radius: 0.1 };
+    for text in [
+        "radius,x,y,z,nx,ny,nz\n0.1,1,2,3,0,0,1\n",
+        "\u{feff}# made by hand\r\nnz; ny; nx; z; y; x; radius\r\n\r\n2; 0; 0; 3; 2; 1; .1\r\n",
+        "\"radius\"\t\"x\"\t\"y\"\t\"z\"\t\"nx\"\t\"ny\"\t\"nz\"\n0.1\t1\t2\t3\t0\t0\t1e-200\n",
+        "  0.1  1 2 3  0 0 1e200",
+        "4 0.1 1 2 3 0 0 1\n",
+        "0.1,1,2,3,0,0,1\n",
+    ] {
+        assert_eq!(discs(text).unwrap(), [disc], "{text}");
+    }
+}
+
+#[test]
+fn bad_discs_are_errors_with_their_line() {
+    let header = "radius,x,y,z,nx,ny,nz\n";
+    for (row, expected) in [
+        ("0.1,1,2,3,0,0,0\n", ":2: the normal is zero; write a direction"),
+        ("0,1,2,3,0,0,1\n", ":2: the radius is 0; write a number above 0"),
+        ("-0.1,1,2,3,0,0,1\n", ":2: the radius is -0.1; write a number above 0"),
+        ("0.1,1,2,3,0,0\n", ":2: has 6 values for 7 columns"),
+        ("0.1,1,2,3,0,0,1,5\n", ":2: has 8 values for 7 columns"),
+        (
+            "0.1,1,2,3,0,0,1\n\n0.1,nan,2,3,0,0,1\n",
+            ":4: column \"x\" is \"nan\"; write a finite number such as 1.5 or 2e-3",
+        ),
+        (
+            "0.1,1e300,2,3,0,0,1\n",
+            ":2: coordinate 1e300 m is too large to keep; check the file and the length of its unit",
+        ),
+        ("", ": holds no rows"),
+    ] {
+        let error = discs(&format!("{header}{row}")).unwrap_err();
+        assert_eq!(message(&error), expected, "{row}");
+    }
+    let error = discs("radius,x,y,z,nx,ny\n").unwrap_err();
+    assert!(message(&error).starts_with(":1: column \"nz\" is missing among"), "{error}");
+    let error = discs("radius,x,y,z,nx,ny,nz,layer\n").unwrap_err();
+    assert!(matches!(error, AssetError::UnknownColumn { .. }), "{error}");
+}
+
+#[test]
+fn instances_are_read_by_header_in_any_order_and_by_any_separator() {
+    for text in [
+        "x_m,y_m\n1,2\n",
+        "y_m;x_m\n2;1\n",
+        "x_m\ty_m\n1\t2\n",
+        "# stand\nx_m   y_m\n  1 2\n",
+        "x_m,y_m,,\n1,2,,\n",
+    ] {
+        assert_eq!(instances(text).unwrap(), [ROW], "{text}");
+    }
+    let all = "scale_vertical,scale,tilt_azimuth_deg,tilt_deg,yaw_deg,z_m,y_m,x_m\n\
+               3,2,90,45,180,5,2,1\n";
+    let full = Row {
+        position: DVec3::new(1.0, 2.0, 5.0),
+        yaw: PI,
+        tilt: PI / 4.0,
+        tilt_azimuth: PI / 2.0,
+        scale_horizontal: 2.0,
+        scale_vertical: 3.0,
+    };
+    assert_eq!(instances(all).unwrap(), [full]);
+    let rows = instances("x_m,y_m,scale,yaw_rad\n1,2,2,1.5\n1,2,0.5,0\n").unwrap();
+    assert_eq!(rows[0], Row { scale_horizontal: 2.0, scale_vertical: 2.0, yaw: 1.5, ..ROW });
+    assert_eq!(rows[1], Row { scale_horizontal: 0.5, scale_vertical: 0.5, ..ROW });
+}
+
+#[test]
+fn the_scene_may_name_the_columns_of_a_table_without_header() {
+    let names = ["x_m", "y_m", "yaw_rad"].map(str::to_owned);
+    let rows = read_instances(file("1 2 0.5\n1 2 0\n").path(), Some(&names)).unwrap();
+    assert_eq!(rows, [Row { yaw: 0.5, ..ROW }, ROW]);
+    let error = instances("1 2 0.5\n").unwrap_err();
+    assert!(message(&error).starts_with(":1: has no header; write the names"), "{error}");
+}
+
+#[test]
+fn bad_instances_are_errors_with_their_line_and_the_nearest_name() {
+    for (text, expected) in [
+        ("x_m,y_m,scale\n1,2,0\n", ":2: scale is 0; write a number above 0"),
+        ("x_m,y_m,scale_vertical\n1,2,-1\n", ":2: scale_vertical is -1; write a number above 0"),
+        ("x_m,z_m\n1,2\n", ":1: column \"y_m\" is missing among [\"x_m\", \"z_m\"]; add it"),
+        ("x_m,y_m\n1,2\n1\n", ":3: has 1 values for 2 columns"),
+        ("x_m,y_m,x_m\n1,2,3\n", ":1: columns \"x_m\" and \"x_m\" say the same; keep one"),
+        (
+            "x_m,y_m,yaw_deg,yaw_rad\n1,2,3,4\n",
+            ":1: columns \"yaw_deg\" and \"yaw_rad\" say the same; keep one",
+        ),
+        (
+            "x_m;y_m\n1,5;2\n",
+            ":2: column \"x_m\" is \"1,5\"; write a finite number such as 1.5 or 2e-3",
+        ),
+        ("x_m,y_m\n", ": holds no rows"),
+        ("# nothing\n", ": holds no rows"),
+    ] {
+        assert_eq!(message(&instances(text).unwrap_err()), expected, "{text}");
+    }
+    let error = instances("x_m,y_m,yaw\n1,2,3\n").unwrap_err();
+    assert!(message(&error).contains("no column \"yaw\"; write \"yaw_deg\" or"), "{error}");
+}
+
+#[test]
+fn spectra_are_read_by_the_names_of_their_columns() {
+    let points = [(400.0, 0.1), (500.0, 0.2)];
+    assert_eq!(spectrum("wavelength_nm,value\n400,0.1\n500,0.2\n").unwrap(), points);
+    assert_eq!(spectrum("wavelength_nm\tr\tnote\n500\t0.2\tx\n400\t.1\ty\n").unwrap(), points);
+    let text = file("name,dry,nm,wet\na,.1,400,9\nb,.2,500,9\n");
+    assert_eq!(read_spectrum(text.path(), "nm", Some("dry")).unwrap(), points);
+    assert_eq!(read_spectrum(text.path(), "nm", None).unwrap(), points);
+}
+
+#[test]
+fn bad_spectra_are_errors() {
+    for (text, expected) in [
+        (
+            "400,0.1\n",
+            ":1: has no header; write the names of its columns there: `wavelength_nm,value`",
+        ),
+        (
+            "wavelength_nm,v\n400,1\n500,1\n450,1\n",
+            ":4: wavelength 450 nm follows 500 nm; sort the rows by wavelength, each once",
+        ),
+        (
+            "wavelength_nm,v\n400,1\n400,1\n",
+            ":3: wavelength 400 nm follows 400 nm; sort the rows by wavelength, each once",
+        ),
+        ("wavelength_nm,v\n0,1\n1,1\n", ":2: the wavelength is 0; write a number above 0"),
+        ("wavelength_nm,v\n400,1\n", ": holds one wavelength; a spectrum needs two or more"),
+        (
+            "wavelength_nm\n400\n",
+            ":1: column \"value\" is missing among [\"wavelength_nm\"]; add it",
+        ),
+        (
+            "value,wavelength_nm\n400,1\n",
+            ":1: columns \"wavelength_nm\" and \"wavelength_nm\" say the same; keep one",
+        ),
+        (
+            "nm,value\n400,1\n",
+            ":1: column \"wavelength_nm\" is missing among [\"nm\", \"value\"]; add it",
+        ),
+    ] {
+        assert_eq!(message(&spectrum(text).unwrap_err()), expected, "{text}");
+    }
+}
