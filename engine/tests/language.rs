@@ -2,5 +2,9 @@
 
 #[path = "language/broken.rs"]
 mod broken;
+#[path = "language/hostile.rs"]
+mod hostile;
 #[path = "language/reading.rs"]
 mod reading;
+#[path = "language/writing.rs"]
+mod writing;

@@ -20,7 +20,11 @@ pub(super) enum Text {
 }
 
 impl Text {
+    /// `Name(key: value)`; a name alone where nothing else is to be said.
     pub(super) fn record(name: &str, items: Vec<(String, Self)>) -> Self {
+        if items.is_empty() && !name.is_empty() {
+            return Self::Leaf(name.to_owned());
+        }
         Self::Group { open: format!("{name}("), items, close: ")".to_owned() }
     }
 

@@ -33,12 +33,9 @@ pub(super) fn settle_params<'a>(
     }
     for (name, value) in &options.set {
         if !params.contains_key(name) {
-            reader.push(unknown_name(
-                "params",
-                "parameter",
-                name,
-                params.keys().map(String::as_str),
-            ));
+            let known = params.keys().map(String::as_str);
+            let message = format!("no parameter `{name}` to set");
+            reader.push(Diagnostic { message, ..unknown_name("params", "parameter", name, known) });
         } else if !value.is_finite() {
             let message = format!("`{name}` cannot be set to {value}: it must be a finite number");
             reader.push(Diagnostic::error("params", message));
@@ -208,6 +205,9 @@ fn report_bad_number(node: &Node, bad: BadNumber, reader: &mut Reader<'_>) {
 fn report_repeated<'a>(names: impl Iterator<Item = (&'a str, Span)>, reader: &mut Reader<'a>) {
     let mut seen = HashMap::new();
     for (name, span) in names {
+        if seen.contains_key(name) && !reader.has_room() {
+            continue;
+        }
         if let Some(&first) = seen.get(name) {
             let first = reader.place_of(first);
             let message = format!("the key `{name}` is given twice");

@@ -2,7 +2,7 @@
 
 use super::super::diagnostic::{nearest, suggestion};
 use super::super::syntax::{Field, Node, Span, Step, Value};
-use super::{Decode, Reader};
+use super::{Decode, ERRORS, Reader};
 
 /// The keys of a record or of a variant.
 pub(in super::super) struct Fields<'a> {
@@ -44,6 +44,9 @@ impl<'a> Fields<'a> {
     pub(in super::super) fn refuse_others(&self, reader: &mut Reader<'a>) {
         let known = self.known;
         for field in self.unknown() {
+            if !reader.has_room() {
+                continue;
+            }
             let name = field.name.as_str();
             let (message, help) = match later(self.owner, name) {
                 Some((what, instead)) => {
@@ -72,6 +75,11 @@ impl<'a> Fields<'a> {
         self.list.iter().find(|field| field.name == name)
     }
 
+    fn is_misspelt(&self, name: &str) -> bool {
+        let known = || self.known.iter().copied();
+        self.unknown().take(ERRORS).any(|field| nearest(&field.name, known()) == Some(name))
+    }
+
     pub(in super::super) fn required<T: Decode>(
         &self,
         name: &'static str,
@@ -81,10 +89,7 @@ impl<'a> Fields<'a> {
         reader.within(Step::Key(name), |reader| match self.find(name) {
             Some(field) => reader.by_example(example, |reader| T::decode(&field.value, reader)),
             // Under a name like this one it is there, and that has been reported.
-            None if self
-                .unknown()
-                .any(|f| nearest(&f.name, self.known.iter().copied()) == Some(name)) =>
-            {
+            None if self.is_misspelt(name) => {
                 reader.mark_broken();
                 T::placeholder()
             }

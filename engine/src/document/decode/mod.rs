@@ -94,16 +94,23 @@ impl<'a> Reader<'a> {
 
     /// Something wrong where reading has come to.
     pub(super) fn error(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
-        let error = Diagnostic::error(path_of(&self.path), message).at(self.place_of(span));
-        self.push(Diagnostic { help, ..error });
+        if self.has_room() {
+            let error = Diagnostic::error(path_of(&self.path), message).at(self.place_of(span));
+            self.diagnostics.push(Diagnostic { help, ..error });
+        }
     }
 
     pub(super) fn push(&mut self, diagnostic: Diagnostic) {
-        if self.diagnostics.len() < ERRORS {
+        if self.has_room() {
             self.diagnostics.push(diagnostic);
-        } else {
-            self.dropped += 1;
         }
+    }
+
+    /// Whether one more error can be kept; if not, it is counted.
+    pub(super) fn has_room(&mut self) -> bool {
+        let has_room = self.diagnostics.len() < ERRORS;
+        self.dropped += usize::from(!has_room);
+        has_room
     }
 
     pub(super) fn place_of(&self, span: Span) -> Place {

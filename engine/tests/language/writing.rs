@@ -1,0 +1,314 @@
+//! Writing: whatever a scene holds, what is read back is equal.
+
+use indexmap::IndexMap;
+use proptest::prelude::*;
+use sunfleck::document::{
+    Axis, Band, Boundary, Branches, CrownShape, Frame, ImageMeasure, Instances, LeafAngle,
+    LeafShape, Map, Material, Mesh, Options, Origin, PhotonMeasure, Roulette, Scene, Sensor, Sky,
+    Spectrum, Sun, System, Terrain, Transport, Trunk, Until, Views, read_text,
+};
+
+fn number() -> impl Strategy<Value = f64> {
+    use prop::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+    prop_oneof![0.0..100.0_f64, POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO]
+}
+
+fn text() -> impl Strategy<Value = String> {
+    prop_oneof!["[a-z]{0,8}", "=[a-z]{0,8}", any::<String>()]
+}
+
+fn list<T: std::fmt::Debug>(of: impl Strategy<Value = T>) -> impl Strategy<Value = Vec<T>> {
+    prop::collection::vec(of, 0..4)
+}
+
+fn map<T: std::fmt::Debug>(of: impl Strategy<Value = T>) -> impl Strategy<Value = Map<T>> {
+    list((text(), of)).prop_map(IndexMap::from_iter)
+}
+
+fn option<T: std::fmt::Debug>(of: impl Strategy<Value = T>) -> impl Strategy<Value = Option<T>> {
+    prop::option::of(of)
+}
+
+fn spectrum() -> BoxedStrategy<Spectrum> {
+    prop_oneof![
+        number().prop_map(Spectrum::Constant),
+        prop::collection::vec(number(), 0..60).prop_map(Spectrum::Bands),
+        prop::collection::vec((number(), number()), 0..20).prop_map(Spectrum::Points),
+        (text(), text(), option(text())).prop_map(|(file, wavelength, value)| Spectrum::Table {
+            file,
+            wavelength,
+            value
+        }),
+        text().prop_map(Spectrum::Named),
+        ((number(), number(), number(), number()), (number(), number(), number(), number()))
+            .prop_map(
+                |((n, chlorophyll_ug_cm2, carotenoid_ug_cm2, anthocyanin_ug_cm2), (a, b, c, d))| {
+                    Spectrum::Prospect {
+                        n,
+                        chlorophyll_ug_cm2,
+                        carotenoid_ug_cm2,
+                        anthocyanin_ug_cm2,
+                        brown: a,
+                        water_cm: b,
+                        dry_matter_g_cm2: c,
+                        protein_g_cm2: d,
+                        carbon_g_cm2: a,
+                    }
+                }
+            ),
+    ]
+    .boxed()
+}
+
+fn material() -> BoxedStrategy<Material> {
+    prop_oneof![
+        (spectrum(), option(spectrum())).prop_map(|(reflectance, back_reflectance)| {
+            Material::Lambertian { reflectance, back_reflectance }
+        }),
+        (spectrum(), spectrum(), option(spectrum())).prop_map(
+            |(reflectance, transmittance, back_reflectance)| Material::Leaf {
+                reflectance,
+                transmittance,
+                back_reflectance
+            }
+        ),
+    ]
+    .boxed()
+}
+
+fn from_file() -> BoxedStrategy<Mesh> {
+    let axis = prop_oneof![Just(Axis::X), Just(Axis::Y), Just(Axis::Z)];
+    let origin = prop_oneof![Just(Origin::File), Just(Origin::BaseCenter)];
+    (any::<bool>(), text(), axis, number(), map(text()), option(text()), origin)
+        .prop_map(|(obj, file, up, unit_m, parts, material, origin)| {
+            if obj {
+                Mesh::Obj { file, up, unit_m, parts, material, origin }
+            } else {
+                Mesh::Gltf { file, up, unit_m, parts, material, origin }
+            }
+        })
+        .boxed()
+}
+
+fn crown() -> BoxedStrategy<Mesh> {
+    let shape = (0..4, number(), number(), number()).prop_map(|(kind, a, b, c)| match kind {
+        0 => CrownShape::Ellipsoid { diameter_m: a, height_m: b },
+        1 => CrownShape::Cone { diameter_m: a, height_m: b },
+        2 => CrownShape::Cylinder { diameter_m: a, height_m: b },
+        _ => CrownShape::Box { size_m: (a, b, c) },
+    });
+    let angle = prop::sample::select(vec![
+        LeafAngle::Spherical,
+        LeafAngle::Uniform,
+        LeafAngle::Planophile,
+        LeafAngle::Erectophile,
+        LeafAngle::Plagiophile,
+        LeafAngle::Extremophile,
+    ]);
+    let leaf = (0..3, number(), number()).prop_map(|(kind, a, b)| match kind {
+        0 => LeafShape::Disc { radius_m: a },
+        1 => LeafShape::Square { side_m: a },
+        _ => LeafShape::Rhombus { length_m: a, width_m: b },
+    });
+    let trunk =
+        (number(), number(), number()).prop_map(|(height_m, diameter_m, tip_diameter_m)| Trunk {
+            height_m,
+            diameter_m,
+            tip_diameter_m,
+        });
+    let branches = (any::<u32>(), number(), number())
+        .prop_map(|(count, diameter_m, zenith_deg)| Branches { count, diameter_m, zenith_deg });
+    let wood = (option(trunk), option(branches), option(text()));
+    (shape, (number(), number()), angle, leaf, text(), wood, any::<u64>())
+        .prop_map(|(shape, (base_m, leaf_area_m2), leaf_angle, leaf, leaf_material, wood, seed)| {
+            Mesh::Crown {
+                shape,
+                base_m,
+                leaf_area_m2,
+                leaf_angle,
+                leaf,
+                leaf_material,
+                trunk: wood.0,
+                branches: wood.1,
+                wood_material: wood.2,
+                seed,
+            }
+        })
+        .boxed()
+}
+
+fn mesh() -> BoxedStrategy<Mesh> {
+    let discs = (text(), text()).prop_map(|(file, material)| Mesh::Discs { file, material });
+    prop_oneof![from_file(), discs, crown()].boxed()
+}
+
+fn instances() -> BoxedStrategy<Instances> {
+    let place = (number(), number(), number());
+    prop_oneof![
+        (text(), text(), option(list(text()))).prop_map(|(file, of, columns)| Instances::Table {
+            file,
+            of,
+            columns
+        }),
+        (text(), prop::collection::vec(place, 0..20), list(number()), list(number()))
+            .prop_map(|(of, at_m, yaw_deg, scale)| Instances::List { of, at_m, yaw_deg, scale }),
+    ]
+    .boxed()
+}
+
+fn views() -> BoxedStrategy<Views> {
+    prop_oneof![
+        (number(), number())
+            .prop_map(|(max_deg, step_deg)| Views::PrincipalPlane { max_deg, step_deg }),
+        (number(), number())
+            .prop_map(|(max_deg, step_deg)| Views::CrossPlane { max_deg, step_deg }),
+        list((number(), number())).prop_map(Views::List),
+    ]
+    .boxed()
+}
+
+fn sensor() -> BoxedStrategy<Sensor> {
+    let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
+    let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
+    let until = prop_oneof![
+        number().prop_map(Until::RelError),
+        number().prop_map(Until::Seconds),
+        any::<u64>().prop_map(Until::Samples),
+    ];
+    let photon = prop_oneof![
+        any::<u32>().prop_map(PhotonMeasure::BrfCells),
+        views().prop_map(PhotonMeasure::BrfViews),
+        Just(PhotonMeasure::Albedo),
+        number().prop_map(|layer_m| PhotonMeasure::Fapar { layer_m }),
+        (number(), list(number()))
+            .prop_map(|(pixel_m, heights_m)| PhotonMeasure::Fluxes { pixel_m, heights_m }),
+    ];
+    let pair = || (number(), number());
+    prop_oneof![
+        (
+            any::<(u32, u32)>(),
+            pair(),
+            option(pair()),
+            pair(),
+            any::<u32>(),
+            list(image()),
+            system()
+        )
+            .prop_map(
+                |(size_px, extent_m, center_m, angles, samples_per_px, measure, system)| {
+                    Sensor::Orthographic {
+                        size_px,
+                        extent_m,
+                        center_m,
+                        zenith_deg: angles.0,
+                        azimuth_deg: angles.1,
+                        samples_per_px,
+                        measure,
+                        system,
+                    }
+                }
+            ),
+        (views(), until, list(image()), system()).prop_map(|(views, until, measure, system)| {
+            Sensor::Directions { views, until, measure, system }
+        }),
+        (number(), list(photon)).prop_map(|(per_m2, measure)| Sensor::Photons { per_m2, measure }),
+    ]
+    .boxed()
+}
+
+fn light() -> BoxedStrategy<(Option<Sun>, Sky)> {
+    let sun = (number(), number(), spectrum()).prop_map(|(zenith_deg, azimuth_deg, irradiance)| {
+        Sun { zenith_deg, azimuth_deg, irradiance }
+    });
+    let sky = prop_oneof![
+        Just(Sky::None),
+        list(number()).prop_map(Sky::Fraction),
+        spectrum().prop_map(|irradiance| Sky::Isotropic { irradiance }),
+    ];
+    (option(sun), sky).boxed()
+}
+
+fn ground() -> BoxedStrategy<(Frame, Terrain, Boundary)> {
+    let frame = (number(), number(), number()).prop_map(|origin_m| Frame { origin_m });
+    let terrain = ((number(), number()), text(), (number(), number()), number()).prop_map(
+        |(size_m, material, corner_m, height_m)| Terrain::Plane {
+            size_m,
+            material,
+            corner_m,
+            height_m,
+        },
+    );
+    (frame, terrain, prop_oneof![Just(Boundary::Periodic), Just(Boundary::Isolated)]).boxed()
+}
+
+fn scene() -> BoxedStrategy<Scene> {
+    let band = (text(), number(), number()).prop_map(|(name, center_nm, width_nm)| Band {
+        name,
+        center_nm,
+        width_nm,
+    });
+    let transport = (any::<u64>(), any::<u32>(), number(), any::<bool>()).prop_map(
+        |(seed, after_order, kill, first_order_only)| Transport {
+            seed,
+            roulette: Roulette { after_order, kill },
+            first_order_only,
+        },
+    );
+    let names = (any::<u32>(), text(), map(number()), map(map(number())));
+    let surfaces = (list(band), map(spectrum()), map(material()), map(mesh()));
+    (names, surfaces, ground(), list(instances()), light(), map(sensor()), transport)
+        .prop_map(|(names, surfaces, ground, instances, light, sensors, transport)| {
+            let (format, title, params, variants) = names;
+            let (bands, spectra, materials, meshes) = surfaces;
+            let (frame, terrain, boundary) = ground;
+            let (sun, sky) = light;
+            Scene {
+                format,
+                title,
+                params,
+                frame,
+                bands,
+                spectra,
+                materials,
+                meshes,
+                terrain,
+                instances,
+                sun,
+                sky,
+                boundary,
+                sensors,
+                transport,
+                variants,
+            }
+        })
+        .boxed()
+}
+
+fn read_back(text: &str) -> Scene {
+    match read_text("written.ron", text, &Options::default()) {
+        Ok(reading) => reading.scene,
+        Err(error) => panic!("{error}\n{text}"),
+    }
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_reads_back_as_equal(scene in scene()) {
+        let text = scene.to_ron();
+        prop_assert_eq!(read_back(&text), scene, "{}", text);
+    }
+
+    /// The `ron` crate is a second reader, by other authors.
+    #[test]
+    fn what_is_written_is_ron(scene in scene()) {
+        let text = scene.to_ron();
+        let other: Result<ron::Value, _> = ron::from_str(&text);
+        prop_assert!(other.is_ok(), "{:?}\n{}", other, text);
+    }
+}
+
+#[test]
+fn a_scene_is_written_as_a_person_would() {
+    let text = include_str!("design.ron");
+    insta::assert_snapshot!(read_back(text).to_ron());
+}
