@@ -8,7 +8,7 @@ use super::table::{Column, Table, missing};
 /// Points (wavelength, value) of a spectrum in order of wavelength, in the table's units.
 ///
 /// `wavelength` and `value` are the headers of their columns; without `value` it is the second
-/// column. Other columns may hold anything. Rows may fall in wavelength instead of rising.
+/// column. Other columns may hold anything, and titles may stand before the header. Rows may fall in wavelength instead of rising.
 ///
 /// # Errors
 /// A file that cannot be read, is not text, has no header or not these columns; a number that is
@@ -62,6 +62,9 @@ fn columns(
     wavelength: &str,
     value: Option<&str>,
 ) -> Result<Vec<Column>, AssetError> {
+    if table.has_header() {
+        table.seek_header(wavelength)?;
+    }
     let (file, line) = (table.file().to_owned(), table.first_line);
     if !table.has_header() {
         let wanted = format!("`{wavelength},{}`", value.unwrap_or("value"));

@@ -36,15 +36,28 @@ impl Table {
         let Some((first_line, line)) = lines.next()? else {
             return Err(AssetError::NoRows { file: path.to_owned() });
         };
-        let separator = [';', ',', '\t'].into_iter().find(|&c| line.contains(c));
-        let separator = separator.map_or(Separator::WhiteSpace, Separator::Character);
-        let mut first: Vec<String> = Fields::new(line, separator).map(str::to_owned).collect();
-        // Spreadsheets fill up short rows with separators.
-        while first.last().is_some_and(String::is_empty) {
-            first.pop();
-        }
+        let (separator, first) = names(line);
         lines.hold();
         Ok(Self { lines, separator, first, first_line })
+    }
+
+    /// Moves past titles to the header that has this column; stays if there is none before the
+    /// first row of numbers.
+    pub(super) fn seek_header(&mut self, column: &str) -> Result<(), AssetError> {
+        let mut title = self.first.clone();
+        while !title.iter().any(|name| name == column) {
+            let Some((line, text)) = self.lines.next()? else { return Ok(()) };
+            let separator;
+            (separator, title) = names(text);
+            if is_number(title.first()) {
+                return Ok(());
+            }
+            if title.iter().any(|name| name == column) {
+                (self.separator, self.first, self.first_line) = (separator, title.clone(), line);
+                self.lines.hold();
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn file(&self) -> &Path {
@@ -53,7 +66,7 @@ impl Table {
 
     /// Whether the first row is one of numbers.
     pub(super) fn has_header(&self) -> bool {
-        self.first.first().is_none_or(|field| field.parse::<f64>().is_err())
+        !is_number(self.first.first())
     }
 
     /// Leaves the header behind.
@@ -96,6 +109,22 @@ impl Table {
             None => Ok(Some(line)),
         }
     }
+}
+
+fn is_number(field: Option<&String>) -> bool {
+    field.is_some_and(|field| field.parse::<f64>().is_ok())
+}
+
+/// The fields of a first row, and what stands between them.
+fn names(line: &str) -> (Separator, Vec<String>) {
+    let separator = [';', ',', '\t'].into_iter().find(|&c| line.contains(c));
+    let separator = separator.map_or(Separator::WhiteSpace, Separator::Character);
+    let mut names: Vec<String> = Fields::new(line, separator).map(str::to_owned).collect();
+    // Spreadsheets fill up short rows with separators.
+    while names.last().is_some_and(String::is_empty) {
+        names.pop();
+    }
+    (separator, names)
 }
 
 /// Splits a line; quoted fields may hold the separator, and lose their quotes.

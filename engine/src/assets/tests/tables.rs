@@ -139,6 +139,8 @@ fn spectra_are_read_by_the_names_of_their_columns() {
     let points = [(400.0, 0.1), (500.0, 0.2)];
     assert_eq!(spectrum("wavelength_nm,value\n400,0.1\n500,0.2\n").unwrap(), points);
     assert_eq!(spectrum("wavelength_nm\tr\tnote\n500\t0.2\tx\n400\t.1\ty\n").unwrap(), points);
+    let titled = "Soil 7, dry,,\nmeasured at noon\nwavelength_nm\tvalue\n400\t0.1\n500\t0.2\n";
+    assert_eq!(spectrum(titled).unwrap(), points);
     let text = file("name,dry,nm,wet\na,.1,400,9\nb,.2,500,9\n");
     assert_eq!(read_spectrum(text.path(), "nm", Some("dry")).unwrap(), points);
     assert_eq!(read_spectrum(text.path(), "nm", None).unwrap(), points);
@@ -175,5 +177,16 @@ fn bad_spectra_are_errors() {
         ),
     ] {
         assert_eq!(message(&spectrum(text).unwrap_err()), expected, "{text}");
+    }
+}
+
+#[test]
+fn the_spectra_of_the_example_scenes_are_reflectances_of_all_solar_bands() {
+    for name in ["soil.csv", "bark.csv"] {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/spectra/");
+        let points = read_spectrum(&std::path::Path::new(folder).join(name), "wavelength_nm", None);
+        let points = points.unwrap();
+        assert_eq!((points[0].0, points[points.len() - 1].0), (400.0, 2500.0));
+        assert!(points.iter().all(|&(_, value)| (0.0..=1.0).contains(&value)), "{name}");
     }
 }

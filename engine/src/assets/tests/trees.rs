@@ -1,9 +1,9 @@
-//! The collection of trees that lies beside the repository.
+//! Published files that lie beside the repository.
 
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::assets::{read_gltf, read_instances, read_obj};
+use crate::assets::{read_gltf, read_instances, read_obj, read_spectrum};
 
 fn data(place: &str) -> Option<PathBuf> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data")).join(place);
@@ -47,6 +47,15 @@ fn every_tree_of_the_collection_loads_at_a_plausible_size() {
         }
         assert!(count >= 3, "the folder holds models");
     }
+}
+
+/// The standard solar spectrum has a title before its header.
+#[test]
+fn the_standard_solar_spectrum_is_read_as_it_is_published() {
+    let Some(path) = data("solar/ASTMG173.csv") else { return };
+    let points = read_spectrum(&path, "wavelength", Some("direct")).unwrap();
+    assert_eq!(points[0], (280.0, 2.5361e-26));
+    assert_eq!(points.len(), 2002);
 }
 
 #[test]
