@@ -98,6 +98,9 @@ fn what_is_not_text_is_an_error() {
     let utf16 = file(b"\xff\xfex\0_\0m\0\n\0");
     let error = read_instances(utf16.path(), None).unwrap_err();
     assert!(message(&error).contains("UTF-16"), "{error}");
+    let unmarked = file(b"x\0_\0m\0\n\0");
+    let error = read_instances(unmarked.path(), None).unwrap_err();
+    assert!(matches!(error, AssetError::NotText { line: 1, .. }), "{error}");
 }
 
 #[test]
