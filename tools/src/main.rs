@@ -1,3 +1,24 @@
-//! The `sunfleck` command.
+//! The `sunfleck` command: arguments in, a folder of results out.
+//!
+//! Exit code 0 if all was written, 1 if the scene or the output is at fault, 2 for wrong usage.
 
-fn main() {}
+mod arguments;
+mod commands;
+mod progress;
+
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+fn main() -> ExitCode {
+    let command = arguments::Command::parse();
+    match commands::execute(&command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // If even this cannot be written, the exit code is all that is left to tell.
+            drop(writeln!(io::stderr().lock(), "{}", commands::message(&error)));
+            ExitCode::FAILURE
+        }
+    }
+}

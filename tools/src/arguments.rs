@@ -1,0 +1,118 @@
+//! What may stand on the command line.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Parser};
+
+/// Where the light of a forest goes: images, BRF, albedo and absorbed light of scenes written as text.
+#[derive(Debug, Parser)]
+#[command(
+    name = "sunfleck",
+    version,
+    arg_required_else_help = true,
+    after_help = "First steps:\n  \
+        sunfleck run scenes/birch_stand.ron                      results in out/birch_stand\n  \
+        sunfleck run scenes/birch_stand.ron --set sza=60         with another value of a parameter\n  \
+        sunfleck check scenes/birch_stand.ron                    errors and warnings only"
+)]
+pub(crate) enum Command {
+    /// Trace a scene and write what its sensors measure
+    Run(Run),
+    /// Say what is wrong with a scene, and trace nothing
+    Check(Scene),
+    /// Print a scene as it is after includes, variant and parameters
+    Expand(Scene),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Run {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+
+    /// Folder for the results [default: out/<name of the scene file>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Threads to use [default: all]; the results do not depend on it
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Multiply the number of samples: 0.05 for a quick look
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
+    pub(crate) quality: f64,
+}
+
+impl Run {
+    /// Folder for the results.
+    pub(crate) fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            Path::new("out").join(self.scene.file.file_stem().unwrap_or_default())
+        })
+    }
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Scene {
+    /// Scene file
+    #[arg(value_name = "SCENE")]
+    pub(crate) file: PathBuf,
+
+    /// Give a parameter of the scene another value; may be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
+    pub(crate) settings: Vec<(String, f64)>,
+
+    /// Apply one of the scene's variants
+    #[arg(long, value_name = "NAME")]
+    pub(crate) variant: Option<String>,
+}
+
+fn setting(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as sza=30")?;
+    let name = name.trim();
+    if name.is_empty() {
+        return Err("there is no name before `=`".to_owned());
+    }
+    match value.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((name.to_owned(), number)),
+        _ => Err(format!("{value:?} is not a number")),
+    }
+}
+
+fn quality(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(factor),
+        _ => Err("write a number above 0, such as 0.05".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_contradicts_itself_nowhere() {
+        Command::command().debug_assert();
+    }
+
+    #[test]
+    fn results_go_to_a_folder_named_after_the_scene() {
+        let folder = |line: &[&str]| match Command::parse_from(line) {
+            Command::Run(run) => run.folder(),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(folder(&["sunfleck", "run", "a/birch.ron"]), Path::new("out/birch"));
+        assert_eq!(folder(&["sunfleck", "run", "a.ron", "--out", "b"]), Path::new("b"));
+    }
+
+    #[test]
+    fn settings_are_names_with_finite_numbers() {
+        assert_eq!(setting("sza=30"), Ok(("sza".to_owned(), 30.0)));
+        assert_eq!(setting(" lai = -1e-3 "), Ok(("lai".to_owned(), -1e-3)));
+        for wrong in ["sza", "=3", "sza=", "sza=high", "sza=NaN", "sza=inf", "a=b=c"] {
+            assert!(setting(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What each command does.
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+
+use anyhow::{Context as _, bail};
+use sunfleck::{document, output, run};
+
+use crate::arguments::{Command, Run, Scene};
+use crate::progress::Bars;
+
+/// Heading of what a scene defines and does not use.
+const SKIPPED: &str = "skipped: ";
+
+/// Does what `command` asks for.
+pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
+    match command {
+        Command::Run(arguments) => trace(arguments),
+        Command::Check(scene) => check(scene),
+        Command::Expand(scene) => expand(scene),
+    }
+}
+
+/// What a person reads when a command failed.
+pub(crate) fn message(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1) {
+        // Some errors name their cause themselves.
+        let cause = cause.to_string();
+        if !text.ends_with(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    // The engine shows each diagnostic with its own heading and excerpt.
+    let headed = ["error: ", "warning: "].iter().any(|heading| text.starts_with(heading));
+    if headed { text.trim_end().to_owned() } else { format!("error: {text}") }
+}
+
+fn trace(arguments: &Run) -> anyhow::Result<()> {
+    let folder = arguments.folder();
+    // Better now than after hours of tracing.
+    output::probe(&folder)?;
+    let options = run::Options {
+        document: document_options(&arguments.scene),
+        threads: arguments.threads.map(Into::into),
+        quality: arguments.quality,
+    };
+    let bars = Bars::new();
+    let report = run::run_file(&arguments.scene.file, &options, &bars);
+    bars.clear();
+    let report = report?;
+    warn(&report.warnings);
+    let files = output::write(&report, &folder)?;
+    let mut text = output::table(&report);
+    writeln!(
+        text,
+        "\n{} files in {}: {:.3} million rays in {:.1} s",
+        files.len(),
+        folder.display(),
+        report.rays as f64 / 1e6,
+        report.seconds
+    )?;
+    print(&text)
+}
+
+fn check(scene: &Scene) -> anyhow::Result<()> {
+    let options = run::Options { document: document_options(scene), ..run::Options::default() };
+    let warnings = run::check_file(&scene.file, &options)?;
+    warn(&warnings);
+    let found = match warnings.iter().filter(|warning| !warning.starts_with(SKIPPED)).count() {
+        0 => "no errors".to_owned(),
+        1 => "no errors, 1 warning".to_owned(),
+        n => format!("no errors, {n} warnings"),
+    };
+    print(&format!("{}: {found}\n", scene.file.display()))
+}
+
+fn expand(scene: &Scene) -> anyhow::Result<()> {
+    let reading = document::read_file(&scene.file, &document_options(scene))?;
+    if !reading.is_sound() {
+        bail!(reading.render());
+    }
+    print(&reading.scene.to_ron())
+}
+
+fn document_options(scene: &Scene) -> document::Options {
+    document::Options { set: scene.settings.clone(), variant: scene.variant.clone() }
+}
+
+fn warn(warnings: &[String]) {
+    let mut stderr = io::stderr().lock();
+    for warning in warnings {
+        let headed = ["warning: ", SKIPPED].iter().any(|heading| warning.starts_with(heading));
+        let heading = if headed { "" } else { "warning: " };
+        // A warning that cannot be shown is no reason to lose the results.
+        drop(writeln!(stderr, "{heading}{}", warning.trim_end()));
+    }
+}
+
+/// Prints `text`; a reader that has gone away (`| head`) has seen enough.
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(error).context("cannot print the results")
+        }
+        _ => Ok(()),
+    }
+}

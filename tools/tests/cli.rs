@@ -1,0 +1,208 @@
+//! The command from outside: exit codes, what is said where, and what is on disk afterwards.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use tempfile::{TempDir, tempdir};
+
+/// Smallest scene that measures something: bare soil of reflectance 0.3 below the sun.
+const SOIL: &str = r#"Scene(
+    format: 1,
+    title: "Soil",
+    params: { "sza": 30.0 },
+    bands: [(name: "red", center_nm: 660.0)],
+    materials: { "soil": Lambertian(reflectance: Constant(0.3)) },
+    terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
+    sun: (zenith_deg: "=sza"),
+    boundary: Periodic,
+    sensors: {
+        "top": Orthographic(size_px: (8, 6), extent_m: (8.0, 6.0), samples_per_px: 32),
+        "views": Directions(views: List([(0.0, 0.0), (30.0, 90.0)]), until: Samples(4096)),
+    },
+    variants: { "low": { "sza": 75.0 } },
+)"#;
+
+fn sunfleck(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("sunfleck").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+fn folder_with(scene: &str) -> TempDir {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("soil.ron"), scene).unwrap();
+    folder
+}
+
+/// Exit code, stdout and stderr.
+fn outcome(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = sunfleck(folder).args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_writes_its_files_and_prints_a_table() {
+    let folder = folder_with(SOIL);
+    let (code, stdout, stderr) = outcome(folder.path(), &["run", "soil.ron"]);
+    assert_eq!((code, stderr.as_str()), (0, ""), "no bars in a pipe");
+    let expected = [
+        "summary.json",
+        "top_brf.exr",
+        "top_brf.hdr",
+        "top_brf.img",
+        "top_brf.png",
+        "views_brf.csv",
+    ];
+    assert_eq!(names(&folder.path().join("out/soil")), expected);
+    assert!(stdout.starts_with("sensor "), "{stdout}");
+    assert!(stdout.contains("views ") && stdout.contains("6 files in out/soil: "), "{stdout}");
+    let text = fs::read_to_string(folder.path().join("out/soil/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for value in summary["sensors"]["views"]["brf"]["values"].as_array().unwrap() {
+        // A Lambertian plane has the BRF of its reflectance, with no noise under a beam.
+        assert!((value.as_f64().unwrap() - 0.3).abs() < 1e-6, "{value}");
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_digit() {
+    let folder = folder_with(SOIL);
+    let values = |threads: &str| {
+        let arguments = ["run", "soil.ron", "--out", threads, "--threads", threads];
+        assert_eq!(outcome(folder.path(), &arguments).0, 0);
+        fs::read(folder.path().join(threads).join("top_brf.img")).unwrap()
+    };
+    assert_eq!(values("1"), values("3"));
+}
+
+#[test]
+fn settings_and_variants_reach_the_scene() {
+    let folder = folder_with(SOIL);
+    let expand = |more: &[&str]| {
+        let (code, stdout, stderr) =
+            outcome(folder.path(), &[&["expand", "soil.ron"], more].concat());
+        assert_eq!(code, 0, "{stderr}");
+        stdout
+    };
+    assert!(expand(&[]).contains("zenith_deg: 30.0"), "{}", expand(&[]));
+    assert!(expand(&["--variant", "low"]).contains("zenith_deg: 75.0"));
+    assert!(expand(&["--set", "sza=12.5"]).contains("zenith_deg: 12.5"));
+    assert!(expand(&["--variant", "low", "--set", "sza=60"]).contains("zenith_deg: 60.0"));
+}
+
+#[test]
+fn an_expanded_scene_is_a_scene() {
+    let folder = folder_with(SOIL);
+    let (_, text, _) = outcome(folder.path(), &["expand", "soil.ron"]);
+    fs::write(folder.path().join("again.ron"), &text).unwrap();
+    assert_eq!(outcome(folder.path(), &["check", "again.ron"]).0, 0);
+    assert_eq!(outcome(folder.path(), &["expand", "again.ron"]).1, text);
+}
+
+#[test]
+fn check_traces_nothing_and_writes_nothing() {
+    let folder = folder_with(SOIL);
+    let (code, stdout, stderr) = outcome(folder.path(), &["check", "soil.ron"]);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    assert_eq!(stdout, "soil.ron: no errors\n");
+    assert_eq!(names(folder.path()), ["soil.ron"]);
+}
+
+#[test]
+fn a_faulty_scene_fails_with_its_place_and_writes_nothing() {
+    let folder = folder_with(&SOIL.replace("material: \"soil\"", "material: \"sand\""));
+    for command in ["run", "check"] {
+        let (code, stdout, stderr) = outcome(folder.path(), &[command, "soil.ron"]);
+        assert_eq!((code, stdout.as_str()), (1, ""), "{stderr}");
+        assert!(stderr.starts_with("error: "), "{stderr}");
+        assert!(stderr.contains("soil.ron:7:") && stderr.contains("sand"), "{stderr}");
+        assert_eq!(names(folder.path()), ["soil.ron"]);
+    }
+    let folder = folder_with(&SOIL.replace("terrain:", "terain:"));
+    let (code, _, stderr) = outcome(folder.path(), &["expand", "soil.ron"]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("soil.ron:7:") && stderr.contains("terrain"), "{stderr}");
+}
+
+#[test]
+fn a_missing_scene_or_parameter_or_variant_is_an_error_that_names_it() {
+    let folder = folder_with(SOIL);
+    let cases: [(&[&str], &str); 4] = [
+        (&["run", "birch.ron"], "birch.ron"),
+        (&["run", "soil.ron", "--set", "sta=1"], "sta"),
+        (&["check", "soil.ron", "--variant", "lwo"], "lwo"),
+        (&["expand", "."], "."),
+    ];
+    for (arguments, name) in cases {
+        let (code, stdout, stderr) = outcome(folder.path(), arguments);
+        assert_eq!((code, stdout.as_str()), (1, ""), "{arguments:?}: {stderr}");
+        assert!(stderr.starts_with("error: ") && stderr.contains(name), "{stderr}");
+        assert_eq!(names(folder.path()), ["soil.ron"]);
+    }
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_is_an_error_before_tracing() {
+    let folder = folder_with(SOIL);
+    let (code, stdout, stderr) = outcome(folder.path(), &["run", "soil.ron", "--out", "soil.ron"]);
+    assert_eq!((code, stdout.as_str()), (1, ""));
+    assert_eq!(stderr, "error: soil.ron is a file: name a folder for the output\n");
+    let below = ["run", "soil.ron", "--out", "soil.ron/out"];
+    let (code, _, stderr) = outcome(folder.path(), &below);
+    assert_eq!(code, 1);
+    assert!(stderr.starts_with("error: cannot make the folder soil.ron/out: "), "{stderr}");
+    assert_eq!(fs::read_to_string(folder.path().join("soil.ron")).unwrap(), SOIL);
+}
+
+#[test]
+fn wrong_usage_has_its_own_exit_code() {
+    let folder = folder_with(SOIL);
+    let cases: [&[&str]; 9] = [
+        &[],
+        &["trace"],
+        &["run"],
+        &["run", "soil.ron", "--fast"],
+        &["run", "soil.ron", "--set", "sza"],
+        &["run", "soil.ron", "--set", "sza=high"],
+        &["run", "soil.ron", "--threads", "0"],
+        &["run", "soil.ron", "--quality", "0"],
+        &["check", "soil.ron", "--out", "x"],
+    ];
+    for arguments in cases {
+        let (code, stdout, stderr) = outcome(folder.path(), arguments);
+        assert_eq!((code, stdout.as_str()), (2, ""), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("--help") || stderr.contains("Usage: "), "{arguments:?}: {stderr}");
+        assert_eq!(names(folder.path()), ["soil.ron"]);
+    }
+}
+
+#[test]
+fn help_tells_every_command_and_option() {
+    let folder = tempdir().unwrap();
+    let (code, stdout, _) = outcome(folder.path(), &["--help"]);
+    assert_eq!(code, 0);
+    for word in ["run", "check", "expand", "First steps:"] {
+        assert!(stdout.contains(word), "no {word} in\n{stdout}");
+    }
+    let (code, stdout, _) = outcome(folder.path(), &["run", "--help"]);
+    assert_eq!(code, 0);
+    for option in
+        ["--out", "--set", "--variant", "--threads", "--quality", "out/<name of the scene"]
+    {
+        assert!(stdout.contains(option), "no {option} in\n{stdout}");
+    }
+    let (code, stdout, _) = outcome(folder.path(), &["--version"]);
+    assert_eq!((code, stdout.as_str()), (0, concat!("sunfleck ", env!("CARGO_PKG_VERSION"), "\n")));
+}
