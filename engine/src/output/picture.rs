@@ -9,6 +9,8 @@ use crate::products::Image;
 
 /// Shares of the pixels that end up at black and at full brightness.
 const STRETCH: (f64, f64) = (0.01, 0.99);
+/// Least full brightness of a false colour, as a share of that of the brightest.
+const FAINTEST: f32 = 0.5;
 /// Of the display.
 const GAMMA: f32 = 2.2;
 /// Wavelengths that red, green and blue stand for where the image reaches the near infrared, nm:
@@ -127,12 +129,13 @@ impl Composite {
 
     fn stretches(&self, image: &Image) -> [Stretch; 3] {
         let [r, g, b] = self.bands.map(|band| Stretch::between_percentiles(image, band));
-        if !self.natural {
-            return [r, g, b];
-        }
         let low = r.low.min(g.low).min(b.low);
         let high = r.high.max(g.high).max(b.high);
-        [Stretch { low, high }; 3]
+        if self.natural {
+            return [Stretch { low, high }; 3];
+        }
+        // A dim band stretched in full would drown the others: bare soil in cyan.
+        [r, g, b].map(|one| Stretch { high: one.high.max(FAINTEST * high), ..one })
     }
 }
 
@@ -202,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn stretch_keeps_hues_of_natural_colours_only() {
+    fn natural_colours_keep_their_hues_and_false_ones_gain_contrast() {
         let image = Image {
             width: 2,
             height: 1,
@@ -216,7 +219,7 @@ mod tests {
         let grey = |fraction: f32| (255.0 * fraction.powf(1.0 / 2.2)).round() as u8;
         assert_eq!(natural.rgba[4..], [grey(0.5), 255, grey(0.25), 255]);
         let false_colour = Picture::quicklook(&image, &[550.0, 650.0, 850.0]);
-        assert_eq!(false_colour.rgba[4..], [255; 4]);
+        assert_eq!(false_colour.rgba[4..], [255, 255, grey(0.5), 255]);
     }
 
     #[test]
