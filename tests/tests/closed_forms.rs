@@ -68,27 +68,24 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
                 assert!((up.value - rho * sun).abs() < 4.0 * up.error + 1e-6, "{up:?}");
             }
             let cells = product(&report, "photons", &format!("{factor}_cells"));
-            let outliers = (0..cells.values.len())
-                .filter(|&index| Estimate::of(cells, index).z(rho[index % 2]).abs() > 4.0)
-                .count();
-            assert_eq!(outliers, 0, "{boundary}, {sky}: cells off by more than 4 standard errors");
+            // 240 cells in all: with 31 degrees of freedom one in 1000 such runs has |t| > 5.5.
+            for (index, value) in cells.values.iter().enumerate() {
+                let z = Estimate::of(cells, index).z(rho[index % 2]);
+                assert!(z.abs() < 5.5, "{boundary}, {sky}: cell value {index} is {value}, z = {z}");
+            }
         }
     }
 }
 
-/// *Scene*: a periodic box of leaves with ρ + τ = 1 over soil of reflectance 1.
-/// *Expected*: all light comes back: albedo 1; and under an isotropic sky the HDRF is 1 in every
-/// direction.
-#[test]
-fn a_white_furnace_sends_everything_back() {
-    let scene = |sky: &str, sun: &str| {
-        format!(
-            r#"Scene(
+/// A periodic box of leaves with ρ + τ = 1 over soil of reflectance 1.
+fn furnace(leaf: &str, light: &str, roulette: &str, sensor: &str) -> Report {
+    run(&format!(
+        r#"Scene(
     format: 1,
     bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
     materials: {{
         "soil": Lambertian(reflectance: Constant(1.0)),
-        "leaf": Leaf(reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])),
+        "leaf": Leaf({leaf}),
     }},
     meshes: {{ "cloud": Crown(
         shape: Box(size_m: (4.0, 4.0, 1.0)), base_m: 0.1, leaf_area_m2: 32.0,
@@ -96,30 +93,44 @@ fn a_white_furnace_sends_everything_back() {
     ) }},
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
     instances: [List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])],
-    {sun}
-    sky: {sky},
+    {light}
     boundary: Periodic,
-    // A constant roulette would be the only noise, and a large one: paths last for many orders.
-    transport: (roulette: (after_order: 5, kill: 0.0)),
-    sensors: {{
-        "photons": Photons(per_m2: 20000.0, measure: [Albedo]),
-        "views": Directions(views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: RelError(0.002)),
-    }},
+    transport: (roulette: (after_order: 5, kill: {roulette})),
+    sensors: {{ "sensor": {sensor} }},
 )"#
-        )
-    };
-    let report = run(&scene("None", "sun: (zenith_deg: 50.0, azimuth_deg: 10.0),"));
-    let albedo = product(&report, "photons", "albedo");
-    for band in 0..2 {
-        let albedo = Estimate::of(albedo, band);
-        assert!(albedo.error < 1e-4, "{albedo:?}");
-        assert!((albedo.value - 1.0).abs() < 4.0 * albedo.error + 1e-7, "{albedo:?}");
+    ))
+}
+
+/// *Scene*: the furnace under the sun. *Expected*: albedo 1. With bands alike and no constant
+/// roulette a packet keeps its weight until it leaves, so that there is next to no noise; bands that
+/// differ and the roulette of the manual bring noise, and no bias.
+#[test]
+fn a_white_furnace_has_albedo_1() {
+    let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0),";
+    let alike = "reflectance: Constant(0.6), transmittance: Constant(0.4)";
+    let unlike = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
+    for (leaf, roulette, most) in [(alike, "0.0", 1e-4), (unlike, "0.05", 2e-3)] {
+        let photons = "Photons(per_m2: 10000.0, measure: [Albedo])";
+        let report = furnace(leaf, sun, roulette, photons);
+        for band in 0..2 {
+            let albedo = Estimate::of(product(&report, "sensor", "albedo"), band);
+            assert!(albedo.error < most, "{albedo:?}");
+            // Weights are f32: after hundreds of orders they are 1 to some 1e-6.
+            assert!((albedo.value - 1.0).abs() < 4.0 * albedo.error + 1e-5, "{albedo:?}");
+        }
     }
-    let report = run(&scene("Isotropic(irradiance: Constant(1.0))", ""));
-    let views = product(&report, "views", "hdrf");
+}
+
+/// *Scene*: the furnace under an isotropic sky. *Expected*: an HDRF of 1 in every direction.
+#[test]
+fn a_white_furnace_under_an_isotropic_sky_looks_like_the_sky() {
+    let leaf = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
+    let views = "Directions(views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: RelError(0.002))";
+    let report = furnace(leaf, "sky: Isotropic(irradiance: Constant(1.0)),", "0.05", views);
+    let views = product(&report, "sensor", "hdrf");
     for index in 0..views.values.len() {
         let one = Estimate::of(views, index);
-        assert!((one.value - 1.0).abs() < 4.0 * one.error + 1e-6, "{index}: {one:?}");
+        assert!((one.value - 1.0).abs() < 4.0 * one.error, "{index}: {one:?}");
     }
 }
 

@@ -37,9 +37,9 @@ impl Placement {
         if self.tilt == 0.0 {
             return upright;
         }
-        // Leaning towards azimuth a turns about the horizontal axis 90° clockwise of it.
+        // Leaning towards azimuth a turns about the horizontal axis 90° counter-clockwise of it.
         let (sin, cos) = f64::from(self.tilt_azimuth).sin_cos();
-        DMat3::from_axis_angle(DVec3::new(cos, -sin, 0.0), self.tilt.into()) * upright
+        DMat3::from_axis_angle(DVec3::new(-cos, sin, 0.0), self.tilt.into()) * upright
     }
 }
 
