@@ -1,5 +1,7 @@
 //! The scene language: what a scene file may say, and what a person reads where it says it wrong.
 
+#[path = "language/advice.rs"]
+mod advice;
 #[path = "language/broken.rs"]
 mod broken;
 #[path = "language/hostile.rs"]

@@ -1,7 +1,7 @@
 //! Formulas over a scene's parameters: `2*PI/n`, `sqrt(lai)*scale`.
 //!
-//! Ours, because exmex (0.21) reads `-2^2` as 4, does not read `1e-3`, takes a parameter called
-//! `e` for Euler's number and does not say where a formula is wrong.
+//! Ours, because exmex (0.21) reads `-2^2` as 4, reads neither `1e-3` nor `max(1, max(2, 3))`, takes
+//! a parameter called `e` for Euler's number and does not say where a formula is wrong.
 
 use std::f64::consts;
 use std::ops::Range;
@@ -290,7 +290,9 @@ impl Parser<'_> {
 
 #[cfg(test)]
 mod tests {
+    use exmex::Express as _;
     use indexmap::IndexMap;
+    use proptest::prelude::*;
 
     use super::{FormulaError, evaluate};
 
@@ -317,6 +319,7 @@ mod tests {
             ("e", 0.5),
             ("7 % 4", 3.0),
             ("max(1, n) + min(1, n)", 4.0),
+            ("max(1, max(n, 2))", 3.0),
             ("cos(radians(60)) * 2", 2.0 * 60_f64.to_radians().cos()),
             ("sqrt( n ^ 2 )", 3.0),
             (".5 + 1.", 1.5),
@@ -348,5 +351,42 @@ mod tests {
         }
         let sum = "1+".repeat(600);
         assert!(error(&sum).message.is_some_and(|m| m.contains("longer")));
+    }
+
+    /// A formula with parentheses around every operation: precedence, where exmex differs, is left
+    /// out.
+    fn formula() -> BoxedStrategy<String> {
+        let leaf = prop_oneof![
+            Just("n".to_owned()),
+            Just("PI".to_owned()),
+            (0_u32..1000).prop_map(|value| value.to_string()),
+            (0.0..10.0_f64).prop_map(|value| format!("{value:.3}")),
+        ];
+        let grow = |inner: BoxedStrategy<String>| {
+            let operator = prop::sample::select(vec!["+", "-", "*", "/", "^"]);
+            let function = prop::sample::select(vec!["sin", "cos", "sqrt", "exp", "abs", "floor"]);
+            prop_oneof![
+                (inner.clone(), operator, inner.clone())
+                    .prop_map(|(a, o, b)| format!("({a} {o} {b})")),
+                (function, inner.clone()).prop_map(|(f, a)| format!("{f}({a})")),
+                inner.prop_map(|a| format!("(-{a})")),
+            ]
+        };
+        leaf.prop_recursive(4, 20, 2, grow).boxed()
+    }
+
+    proptest! {
+        /// The exmex crate is a second evaluator, by other authors.
+        #[test]
+        fn both_evaluators_agree(formula in formula()) {
+            let params = IndexMap::from([("n".to_owned(), 3.0)]);
+            let other = exmex::parse::<f64>(&formula).expect("a formula");
+            let names = vec![3.0; other.var_names().len()];
+            let other = other.eval(&names).expect("a value");
+            match evaluate(&formula, &params) {
+                Ok(own) => prop_assert_eq!(own.to_bits(), other.to_bits(), "{}", formula),
+                Err(error) => prop_assert!(!other.is_finite(), "{formula}: {error:?}"),
+            }
+        }
     }
 }
