@@ -175,7 +175,9 @@ fn unknown_params_and_variants_of_the_options_are_errors() {
 
 #[test]
 fn a_path_leads_to_its_place_or_to_its_nearest_ancestor() {
-    let text = DESIGN.replace("\"crown\": Discs", "\"birch.crown\": Discs");
+    let text = DESIGN
+        .replace("\"tree\": Obj", "\"birch\": Obj")
+        .replace("\"crown\": Discs", "\"birch.crown\": Discs");
     let source = read(&text).source;
     let at = |path: &str| {
         let place = source.place(path).unwrap_or_else(|| panic!("{path} has no place"));
@@ -192,7 +194,7 @@ fn a_path_leads_to_its_place_or_to_its_nearest_ancestor() {
     assert_eq!(at("materials.leaf.reflectance[0]"), "0.0546");
     assert_eq!(at("sensors.flux.measure[2].layer_m"), "1.0");
     assert_eq!(at("meshes.birch.crown.material"), "\"leaf\"", "names may hold dots");
-    assert_eq!(at("meshes.tree.origin"), "Obj", "not written: its owner");
+    assert_eq!(at("meshes.birch.origin"), "Obj", "not written: its owner");
     assert_eq!(at("instances[7].of"), "[");
     assert_eq!(at("nowhere.at.all"), "Scene");
     assert_eq!(at(""), "Scene");
