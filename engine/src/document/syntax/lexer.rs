@@ -114,6 +114,12 @@ impl<'a> Lexer<'a> {
         Ok(Token { span: Span::new(start, self.at), kind })
     }
 
+    /// The first character of the next token.
+    pub(super) fn first(&mut self) -> Result<Option<char>> {
+        self.skip_blank()?;
+        Ok(self.peek())
+    }
+
     /// Skips a header such as `#![enable(implicit_some)]`.
     pub(super) fn skip_headers(&mut self) -> Result<()> {
         loop {

@@ -59,18 +59,12 @@ impl Parser<'_> {
         Ok(Node { span: token.span, value })
     }
 
-    fn peek(&self) -> Result<Token> {
-        let mut ahead = self.lexer;
-        ahead.next()
-    }
-
     fn named(&mut self, name: String, name_span: Span) -> Result<Node> {
-        let body = match self.peek()?.kind {
-            Kind::Mark('(') => {
-                let open = self.lexer.next()?;
-                Some(self.parentheses(open.span)?)
-            }
-            _ => None,
+        let body = if self.lexer.first()? == Some('(') {
+            let open = self.lexer.next()?;
+            Some(self.parentheses(open.span)?)
+        } else {
+            None
         };
         let end = body.as_ref().map_or(name_span.end, |body| body.span.end);
         let span = Span { start: name_span.start, end };
@@ -79,8 +73,11 @@ impl Parser<'_> {
 
     /// After `(`: a record if a word and a colon follow, else a tuple.
     fn parentheses(&mut self, open: Span) -> Result<Node> {
+        let may_be_key = |c: char| c == '_' || c == '"' || c.is_alphabetic();
+        let starts_like_a_key = self.lexer.first()?.is_some_and(may_be_key);
         let mut ahead = self.lexer;
-        let is_record = matches!(ahead.next()?.kind, Kind::Word(_) | Kind::Text(_))
+        let is_record = starts_like_a_key
+            && matches!(ahead.next()?.kind, Kind::Word(_) | Kind::Text(_))
             && ahead.next().is_ok_and(|token| token.kind == Kind::Mark(':'));
         if is_record {
             let (fields, span) = self.items(open, '(', ')', Self::field)?;
@@ -148,8 +145,7 @@ impl Parser<'_> {
         self.open.push((bracket, open.start as usize));
         let mut items = Vec::new();
         loop {
-            let ahead = self.peek()?;
-            if ahead.kind != Kind::Mark(close) {
+            if self.lexer.first()? != Some(close) {
                 items.push(item(self)?);
             }
             let token = self.lexer.next()?;
