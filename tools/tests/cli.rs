@@ -77,6 +77,19 @@ fn a_run_writes_its_files_and_prints_a_table() {
 }
 
 #[test]
+fn the_first_scene_of_the_readme_runs() {
+    let readme = concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md");
+    let text = fs::read_to_string(readme).unwrap();
+    let scene = text.split("```ron\n").nth(1).unwrap().split("```").next().unwrap();
+    let folder = folder_with(scene);
+    let (code, stdout, _) = outcome(folder.path(), &["check", "soil.ron", "--set", "sza=50"]);
+    assert_eq!((code, stdout.as_str()), (0, "soil.ron: no errors\n"));
+    let (code, _, stderr) = outcome(folder.path(), &["run", "soil.ron", "--quality", "0.01"]);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    assert!(folder.path().join("out/soil/nadir_brf.png").is_file());
+}
+
+#[test]
 fn the_number_of_threads_changes_no_digit() {
     let folder = folder_with(SOIL);
     let values = |threads: &str| {

@@ -4,8 +4,9 @@ use super::length;
 use super::rows::indices;
 use crate::products::{Axis, AxisPoints, Product, Report};
 
-/// Rows of one product: points, and bands at each.
+/// Rows of one product: points, named points (terms of a ledger), and bands at each.
 const POINTS: usize = 5;
+const NAMES: usize = 12;
 const BANDS: usize = 6;
 
 /// Sensor, product, band and value ± standard error, in aligned columns. Long products are
@@ -59,11 +60,13 @@ fn product_rows(product: &Product, rows: &mut Vec<Row>) {
         return;
     }
     let points = product.values.len() / bands;
+    let named = down.iter().flatten().all(|axis| matches!(axis.points, AxisPoints::Labels(_)));
+    let shown = spread(points, if named { NAMES } else { POINTS });
     let mut title = match product.unit.as_str() {
         "" | "1" => product.name.clone(),
         unit => format!("{} [{unit}]", product.name),
     };
-    for point in spread(points, POINTS) {
+    for &point in &shown {
         let mut place = match &product.image {
             Some(image) => format!("mean of {} x {} px", image.width, image.height),
             None => place(down, point),
@@ -86,7 +89,7 @@ fn product_rows(product: &Product, rows: &mut Vec<Row>) {
             rows.push(Row { band: format!("({hidden} more)"), ..Row::default() });
         }
     }
-    let hidden = points - spread(points, POINTS).len();
+    let hidden = points - shown.len();
     if hidden > 0 {
         rows.push(Row { point: format!("({hidden} more)"), ..Row::default() });
     }
