@@ -73,7 +73,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
     staging.commit()
 }
 
-/// Tries whether [`write`] could write into `folder`, and leaves everything as it was.
+/// Tries whether [`write()`] could write into `folder`, and leaves everything as it was.
 ///
 /// # Errors
 /// If the folder cannot be made, or no file in it.
