@@ -5,12 +5,12 @@ use glam::{DVec3, Vec3};
 use crate::{components::Mesh, geometry::Bounds};
 
 use super::{
-    BuildError, MeshInput,
+    BuildError, MeshInput, planar,
     simd::{Lanes, Words},
     tree::{self, Box3, Plan, Ref, Tree},
 };
 
-/// Set in a lane's id when the lane is a parallelogram: triangle `id` and the one after it.
+/// Set in a lane's id when the lane is a parallelogram.
 pub(super) const PARALLELOGRAM: u32 = 1 << 31;
 
 /// Coordinates beyond this would overflow the products of the traversal, m.
@@ -29,7 +29,7 @@ pub(super) struct PlanarBlock {
     pub corners: [[Lanes; 3]; 3],
     /// Length of the longer of the two edges at the first corner; negative in an unused lane.
     pub edge: Lanes,
-    /// Triangle in the mesh, with [`PARALLELOGRAM`].
+    /// Triangle in the mesh, the first of two with [`PARALLELOGRAM`].
     pub id: Words,
 }
 
@@ -52,6 +52,8 @@ pub(super) struct MeshTree {
     pub tree: Tree,
     pub planar: Vec<PlanarBlock>,
     pub discs: Vec<DiscBlock>,
+    /// Second triangle of each lane of each planar block; empty if there is no parallelogram.
+    seconds: Vec<[u32; 8]>,
     /// Box around all primitives, not padded.
     pub bounds: Box3,
     /// Largest absolute coordinate.
@@ -66,16 +68,26 @@ pub(super) struct MeshTree {
 
 /// A primitive before it has a place in a block.
 #[derive(Clone, Copy)]
-enum Primitive {
-    Planar { corners: [Vec3; 3], id: u32 },
-    Disc { center: Vec3, normal: Vec3, radius: f32, id: u32 },
+pub(super) enum Primitive {
+    /// A triangle, or, with a second one, a parallelogram.
+    Planar {
+        corners: [Vec3; 3],
+        first: u32,
+        second: Option<u32>,
+    },
+    Disc {
+        center: Vec3,
+        normal: Vec3,
+        radius: f32,
+        id: u32,
+    },
 }
 
 impl MeshTree {
     pub(super) fn build(number: usize, input: &MeshInput<'_>) -> Result<Self, BuildError> {
         let MeshInput { mesh, surfaces } = *input;
         check(number, mesh, surfaces)?;
-        let mut primitives = planar_primitives(mesh);
+        let mut primitives = planar::primitives(mesh);
         let triangles = mesh.triangles.len() as u32;
         primitives.extend(mesh.discs.iter().enumerate().filter_map(|(id, disc)| {
             let normal = disc.normal.as_dvec3().try_normalize()?.as_vec3();
@@ -85,16 +97,28 @@ impl MeshTree {
         let boxes: Vec<_> = primitives.iter().map(Primitive::bounds).collect();
         let bounds = boxes.iter().copied().fold(Box3::EMPTY, Box3::union);
         let reach = if boxes.is_empty() { 0.0 } else { bounds.reach() };
-        let plan = Plan { leaf: 8, leaf_cost: 1.0, pad: pad(reach), reinsertion: 1.0 };
-        let (mut planar, mut discs) = (Vec::new(), Vec::new());
+        let plan = Plan { leaf: 8, leaf_cost: 0.5, pad: pad(reach), reinsertion: 1.0 };
+        let (mut blocks, mut discs, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
+        let pairs =
+            primitives.iter().any(|p| matches!(p, Primitive::Planar { second: Some(_), .. }));
         let is_disc = |p: u32| matches!(primitives[p as usize], Primitive::Disc { .. });
         let tree = tree::build(&boxes, plan, is_disc, &mut |leaf: &[u32]| {
             if is_disc(leaf[0]) {
                 discs.push(DiscBlock::new(leaf.iter().map(|&p| primitives[p as usize])));
                 Ref(Ref::LEAF | Ref::OTHER | (discs.len() as u32 - 1))
             } else {
-                planar.push(PlanarBlock::new(leaf.iter().map(|&p| primitives[p as usize])));
-                Ref(Ref::LEAF | (planar.len() as u32 - 1))
+                let members = leaf.iter().map(|&p| primitives[p as usize]);
+                if pairs {
+                    let mut lanes = [0; 8];
+                    for (lane, member) in lanes.iter_mut().zip(members.clone()) {
+                        if let Primitive::Planar { second: Some(second), .. } = member {
+                            *lane = second;
+                        }
+                    }
+                    seconds.push(lanes);
+                }
+                blocks.push(PlanarBlock::new(members));
+                Ref(Ref::LEAF | (blocks.len() as u32 - 1))
             }
         });
         let ends = |end: fn(&crate::components::Part) -> u32| {
@@ -102,8 +126,9 @@ impl MeshTree {
         };
         Ok(Self {
             tree,
-            planar,
+            planar: blocks,
             discs,
+            seconds,
             bounds,
             reach,
             triangles,
@@ -118,6 +143,11 @@ impl MeshTree {
         let Box3 { min, max } = self.bounds;
         let bounds = Bounds { min: min.as_dvec3() - room, max: max.as_dvec3() + room };
         bounds.clip(origin, direction).map(|(enter, _)| enter)
+    }
+
+    /// The second triangle of a parallelogram.
+    pub(super) fn second(&self, block: Ref, lane: u8) -> u32 {
+        self.seconds[block.index()][usize::from(lane & 7)]
     }
 
     /// The surface of a primitive, counted as in [`super::Hit::primitive`].
@@ -181,64 +211,12 @@ fn check(number: usize, mesh: &Mesh, surfaces: &[u32]) -> Result<(), BuildError>
     Ok(())
 }
 
-/// Triangles that have an area, two at a time where they form a parallelogram.
-fn planar_primitives(mesh: &Mesh) -> Vec<Primitive> {
-    let mut uses = vec![0_u8; mesh.vertices.len()];
-    for &corner in mesh.triangles.iter().flatten() {
-        uses[corner as usize] = uses[corner as usize].saturating_add(1);
-    }
-    let mut found = Vec::with_capacity(mesh.triangles.len());
-    let mut parts = mesh.parts.iter().map(|part| part.triangles.end as usize).peekable();
-    let mut index = 0;
-    while index < mesh.triangles.len() {
-        while parts.next_if(|&end| end <= index).is_some() {}
-        let within = parts.peek().is_some_and(|&end| index + 1 < end);
-        if let Some(corners) = within.then(|| parallelogram(mesh, index, &uses)).flatten() {
-            found.push(Primitive::Planar { corners, id: index as u32 | PARALLELOGRAM });
-            index += 2;
-            continue;
-        }
-        let corners = mesh.corners(index);
-        if has_area(corners) {
-            found.push(Primitive::Planar { corners, id: index as u32 });
-        }
-        index += 1;
-    }
-    found
-}
-
-fn has_area(corners: [Vec3; 3]) -> bool {
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
-    (b - a).cross(c - a).length_squared() > 0.0
-}
-
-/// The first three corners of the parallelogram that a triangle and the next one form: the
-/// triangle's apex, then the diagonal in the triangle's own sense.
-///
-/// The fourth corner is `b + c - a` exactly, or within rounding if no other triangle uses it: else
-/// a ray could pass between this parallelogram and a neighbour.
-fn parallelogram(mesh: &Mesh, index: usize, uses: &[u8]) -> Option<[Vec3; 3]> {
-    let (own, next) = (mesh.triangles[index], mesh.triangles[index + 1]);
-    let (turn, far) = (0..3).find_map(|i| {
-        let (b, c) = (own[(i + 1) % 3], own[(i + 2) % 3]);
-        (0..3).find(|&k| next[k] == c && next[(k + 1) % 3] == b).map(|k| (i, next[(k + 2) % 3]))
-    })?;
-    let corners = [0, 1, 2].map(|k| mesh.vertices[own[(turn + k) % 3] as usize]);
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
-    let corner = mesh.vertices[far as usize];
-    let ideal = b + c - a;
-    let rounding = f64::from(f32::EPSILON) * (a.abs() + b.abs() + c.abs());
-    let exact = ideal == corner.as_dvec3();
-    let close = (ideal - corner.as_dvec3()).abs().cmple(rounding).all();
-    (has_area(corners) && (exact || close && uses[far as usize] == 1)).then_some(corners)
-}
-
 impl Primitive {
     fn bounds(&self) -> Box3 {
         match *self {
-            Self::Planar { corners: [a, b, c], id } => {
+            Self::Planar { corners: [a, b, c], second, .. } => {
                 let three = Box3 { min: a.min(b).min(c), max: a.max(b).max(c) };
-                if id & PARALLELOGRAM == 0 {
+                if second.is_none() {
                     return three;
                 }
                 let fourth = b.as_dvec3() + c.as_dvec3() - a.as_dvec3();
@@ -271,7 +249,7 @@ impl PlanarBlock {
         let zero = Lanes([0.0; 8]);
         let mut block = Self { corners: [[zero; 3]; 3], edge: Lanes([-1.0; 8]), id: Words([0; 8]) };
         for (lane, primitive) in primitives.enumerate() {
-            let Primitive::Planar { corners, id } = primitive else { continue };
+            let Primitive::Planar { corners, first, second } = primitive else { continue };
             for (to, from) in block.corners.iter_mut().zip(corners) {
                 for (axis, lanes) in to.iter_mut().enumerate() {
                     lanes.0[lane] = from[axis];
@@ -280,7 +258,7 @@ impl PlanarBlock {
             let [a, b, c] = corners.map(Vec3::as_dvec3);
             let edge = (b - a).length().max((c - a).length());
             block.edge.0[lane] = crate::geometry::round_up(edge);
-            block.id.0[lane] = id;
+            block.id.0[lane] = if second.is_some() { first | PARALLELOGRAM } else { first };
         }
         block
     }

@@ -9,6 +9,7 @@ mod error;
 mod exact;
 mod instance;
 mod mesh;
+mod planar;
 mod scene;
 mod simd;
 mod tile;

@@ -201,7 +201,9 @@ impl Scene {
                 let at = origin + found.distance * (object_from_world * query.direction);
                 // Beyond the diagonal, the sum of the barycentric coordinates is above 1.
                 let beyond = (corners[2] - corners[1]).cross(at - corners[1]).dot(front) < 0.0;
-                primitive += u32::from(beyond);
+                if beyond {
+                    primitive = mesh.second(found.block, found.lane);
+                }
             }
             (front, ab.length() * ac.length() / front.length())
         };

@@ -32,7 +32,6 @@ pub(super) trait Isa: Copy {
     fn splat(self, value: f32) -> Self::F;
     fn load(self, from: &Lanes) -> Self::F;
     fn load_bits(self, from: &Words) -> Self::F;
-    fn store(self, value: Self::F) -> Lanes;
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
@@ -52,6 +51,20 @@ pub(super) trait Isa: Copy {
     fn le(self, a: Self::F, b: Self::F) -> u32;
     /// `!(a > b)`; true for NaN.
     fn not_gt(self, a: Self::F, b: Self::F) -> u32;
+    /// The lanes of a node's children whose box is entered before it is left, in the order
+    /// `order`: how many, where they are entered, and the children.
+    fn arrange(
+        self,
+        order: u32,
+        enter: Self::F,
+        leave: Self::F,
+        child: &Words,
+    ) -> (usize, Self::F, Self::F);
+    /// Writes all lanes, as words.
+    ///
+    /// # Safety
+    /// There must be room for eight words.
+    unsafe fn write(self, value: Self::F, to: *mut u32);
 }
 
 /// What any processor can do.
@@ -83,10 +96,6 @@ impl Isa for Portable {
     #[inline(always)]
     fn load_bits(self, from: &Words) -> Lanes {
         Lanes(from.0.map(f32::from_bits))
-    }
-    #[inline(always)]
-    fn store(self, value: Lanes) -> Lanes {
-        value
     }
     #[inline(always)]
     fn add(self, a: Lanes, b: Lanes) -> Lanes {
@@ -140,6 +149,29 @@ impl Isa for Portable {
     #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must pass")]
     fn not_gt(self, a: Lanes, b: Lanes) -> u32 {
         Self::mask(a, b, |a, b| !(a > b))
+    }
+    #[inline(always)]
+    fn arrange(
+        self,
+        order: u32,
+        enter: Lanes,
+        leave: Lanes,
+        child: &Words,
+    ) -> (usize, Lanes, Lanes) {
+        let (mut near, mut children) = (Lanes([0.0; 8]), Lanes([0.0; 8]));
+        let mut count = 0;
+        for place in 0..8 {
+            let lane = (order >> (3 * place) & 7) as usize;
+            near.0[count] = enter.0[lane];
+            children.0[count] = f32::from_bits(child.0[lane]);
+            count += usize::from(enter.0[lane] <= leave.0[lane]);
+        }
+        (count, near, children)
+    }
+    #[inline(always)]
+    unsafe fn write(self, value: Lanes, to: *mut u32) {
+        // SAFETY: the caller's.
+        unsafe { to.cast::<[f32; 8]>().write_unaligned(value.0) };
     }
 }
 
@@ -265,13 +297,6 @@ mod x86 {
                 unsafe { _mm256_load_ps(from.0.as_ptr().cast()) }
             }
             #[inline(always)]
-            fn store(self, value: __m256) -> Lanes {
-                let mut lanes = Lanes([0.0; 8]);
-                // SAFETY: `Lanes` is 32 bytes at a 32-byte boundary.
-                unsafe { _mm256_store_ps(lanes.0.as_mut_ptr(), value) };
-                lanes
-            }
-            #[inline(always)]
             fn add(self, a: __m256, b: __m256) -> __m256 {
                 // SAFETY: see `splat`.
                 unsafe { _mm256_add_ps(a, b) }
@@ -326,7 +351,68 @@ mod x86 {
                 // SAFETY: see `splat`.
                 unsafe { _mm256_blendv_ps(a, b, by) }
             }
+            #[inline(always)]
+            unsafe fn write(self, value: __m256, to: *mut u32) {
+                // SAFETY: the caller's.
+                unsafe { _mm256_storeu_ps(to.cast(), value) };
+            }
+            #[inline(always)]
+            fn arrange(
+                self,
+                order: u32,
+                enter: __m256,
+                leave: __m256,
+                child: &Words,
+            ) -> (usize, __m256, __m256) {
+                // SAFETY: see `splat`; `Words` is 32 bytes at a 32-byte boundary.
+                unsafe {
+                    let shifts = _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21);
+                    // Permutations heed the lowest three bits of each lane only.
+                    let lanes = _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), shifts);
+                    let hit = self.le(
+                        _mm256_permutevar8x32_ps(enter, lanes),
+                        _mm256_permutevar8x32_ps(leave, lanes),
+                    );
+                    let lanes = Self::compress(hit, lanes);
+                    let children = _mm256_load_ps(child.0.as_ptr().cast());
+                    (
+                        hit.count_ones() as usize,
+                        _mm256_permutevar8x32_ps(enter, lanes),
+                        _mm256_permutevar8x32_ps(children, lanes),
+                    )
+                }
+            }
         };
+    }
+
+    impl Avx2 {
+        /// The lanes of a mask, moved to the front.
+        ///
+        /// # Safety
+        /// A value of this type must exist.
+        #[inline(always)]
+        unsafe fn compress(mask: u32, value: __m256i) -> __m256i {
+            // SAFETY: the caller's value proves the features.
+            unsafe {
+                // Each bit of the mask becomes a byte, and picks the byte that counts its lane.
+                let bytes = _pdep_u64(mask.into(), 0x0101_0101_0101_0101) * 0xFF;
+                let lanes = _pext_u64(0x0706_0504_0302_0100, bytes);
+                let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(lanes as i64));
+                _mm256_permutevar8x32_epi32(value, lanes)
+            }
+        }
+    }
+
+    impl Avx512 {
+        /// The lanes of a mask, moved to the front.
+        ///
+        /// # Safety
+        /// A value of this type must exist.
+        #[inline(always)]
+        unsafe fn compress(mask: u32, value: __m256i) -> __m256i {
+            // SAFETY: the caller's value proves the features.
+            unsafe { _mm256_maskz_compress_epi32(mask as u8, value) }
+        }
     }
 
     impl Isa for Avx2 {
@@ -362,16 +448,32 @@ mod x86 {
 /// limits.
 pub(super) const STACK: usize = 512;
 
-/// What a ray has still to visit.
-pub(super) struct Stack {
-    items: [MaybeUninit<u64>; STACK],
+/// What a ray has still to visit, nearest last.
+///
+/// The memory is the caller's, so that the length stays in a register.
+pub(super) struct Stack<'a> {
+    space: &'a mut Space,
     len: usize,
 }
 
-impl Stack {
+/// Memory of a [`Stack`].
+pub(super) struct Space {
+    refs: [MaybeUninit<u32>; STACK + 8],
+    near: [MaybeUninit<u32>; STACK + 8],
+}
+
+impl Space {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self { items: [const { MaybeUninit::uninit() }; STACK], len: 0 }
+        let empty = [const { MaybeUninit::uninit() }; STACK + 8];
+        Self { refs: empty, near: empty }
+    }
+}
+
+impl<'a> Stack<'a> {
+    #[inline(always)]
+    pub(super) fn new(space: &'a mut Space) -> Self {
+        Self { space, len: 0 }
     }
 
     #[inline(always)]
@@ -380,37 +482,38 @@ impl Stack {
     }
 
     #[inline(always)]
-    pub(super) fn push(&mut self, item: u64) {
-        self.items[self.len] = MaybeUninit::new(item);
+    pub(super) fn push(&mut self, item: u32, near: f32) {
+        self.space.refs[self.len] = MaybeUninit::new(item);
+        self.space.near[self.len] = MaybeUninit::new(near.to_bits());
         self.len += 1;
     }
 
-    /// Puts an entry below all that are less among those from `start` on, which are in
-    /// descending order.
+    /// Pushes the first `count` of eight lanes.
     #[inline(always)]
-    pub(super) fn insert_descending(&mut self, start: usize, item: u64) {
-        self.push(item);
-        let mut at = self.len - 1;
-        while at > start {
-            // SAFETY: `start < at < len`, and `push` wrote every entry below `len`.
-            let before = unsafe { self.items.get_unchecked(at - 1).assume_init() };
-            if before >= item {
-                break;
-            }
-            self.items[at] = MaybeUninit::new(before);
-            at -= 1;
+    pub(super) fn extend<I: Isa>(&mut self, isa: I, (count, near, refs): (usize, I::F, I::F)) {
+        assert!(self.len <= STACK, "the builder limits the depth of trees");
+        // SAFETY: there is room for eight beyond `STACK`.
+        unsafe {
+            isa.write(refs, self.space.refs.as_mut_ptr().add(self.len).cast());
+            isa.write(near, self.space.near.as_mut_ptr().add(self.len).cast());
         }
-        self.items[at] = MaybeUninit::new(item);
+        self.len += count.min(8);
     }
 
     /// The newest entry above the first `base`.
     #[inline(always)]
-    pub(super) fn pop(&mut self, base: usize) -> Option<u64> {
+    pub(super) fn pop(&mut self, base: usize) -> Option<(u32, f32)> {
         if self.len <= base {
             return None;
         }
         self.len -= 1;
-        // SAFETY: every entry below the old `len` was written by `push`, which checks the bound.
-        Some(unsafe { self.items.get_unchecked(self.len).assume_init() })
+        // SAFETY: every entry below the old `len` was written by `push`, which checks the bound,
+        // or by `extend`.
+        unsafe {
+            Some((
+                self.space.refs.get_unchecked(self.len).assume_init(),
+                f32::from_bits(self.space.near.get_unchecked(self.len).assume_init()),
+            ))
+        }
     }
 }

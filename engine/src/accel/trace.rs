@@ -16,7 +16,7 @@ use super::{
     exact,
     mesh::{DiscBlock, MeshTree, PARALLELOGRAM, PlanarBlock},
     scene::Scene,
-    simd::{Isa, Lanes, Stack},
+    simd::{Isa, Lanes, Space, Stack},
     tree::{Node, Ref},
     types::Departure,
 };
@@ -53,6 +53,8 @@ struct BoxRay<I: Isa> {
     shift: [I::F; 3],
     /// 1 where the ray runs down an axis.
     side: [usize; 3],
+    /// The same as bits.
+    octant: usize,
 }
 
 impl<I: Isa> BoxRay<I> {
@@ -62,16 +64,19 @@ impl<I: Isa> BoxRay<I> {
         let [x, y, z] = direction.map(f32::abs);
         let least = x.max(y).max(z) * 1e-18;
         let inverse = direction.map(|d| 1.0 / if d.abs() < least { least.copysign(d) } else { d });
+        let side = direction.map(|d| usize::from(d.is_sign_negative()));
         Self {
             inverse: inverse.map(|i| isa.splat(i)),
             shift: [0, 1, 2].map(|axis| isa.splat(-origin[axis] * inverse[axis])),
-            side: direction.map(|d| usize::from(d.is_sign_negative())),
+            octant: side[0] | side[1] << 1 | side[2] << 2,
+            side,
         }
     }
 
-    /// Which children's boxes the ray meets between 0 and `limit`, and where it enters them.
+    /// Where the ray enters and leaves the boxes of children, between 0 and `limit`; it meets those
+    /// that it enters first.
     #[inline(always)]
-    fn children(&self, isa: I, node: &Node, limit: I::F) -> (u32, I::F) {
+    fn children(&self, isa: I, node: &Node, limit: I::F) -> (I::F, I::F) {
         let plane = |axis: usize, side: usize| {
             let bounds = isa.load(&node.bounds[axis][side & 1]);
             isa.mul_add(bounds, self.inverse[axis], self.shift[axis])
@@ -81,69 +86,39 @@ impl<I: Isa> BoxRay<I> {
             isa.max(isa.max(plane(0, sx), plane(1, sy)), isa.max(plane(2, sz), isa.splat(0.0)));
         let leave =
             isa.min(isa.min(plane(0, sx ^ 1), plane(1, sy ^ 1)), isa.min(plane(2, sz ^ 1), limit));
-        (isa.le(enter, leave), enter)
+        (enter, leave)
     }
 }
 
 /// Walks down from the newest entry of a stack until it meets a leaf that may be closer than
-/// `limit`, nearest child first; `None` when nothing above `base` is left.
+/// `limit`, near children first; `None` when nothing above `base` is left.
+///
+/// Nothing here branches on how many children are hit or in which order: what the processor cannot
+/// foresee costs it more than the work that it saves.
 #[inline(always)]
-fn next_leaf<I: Isa, const ANY: bool>(
+fn next_leaf<I: Isa>(
     isa: I,
     nodes: &[Node],
     ray: &BoxRay<I>,
     limit: f32,
-    stack: &mut Stack,
+    stack: &mut Stack<'_>,
     base: usize,
 ) -> Option<(Ref, f32)> {
     let wide_limit = isa.splat(limit);
-    loop {
-        let item = stack.pop(base)?;
-        let mut near = f32::from_bits((item >> 32) as u32);
+    while let Some((at, near)) = stack.pop(base) {
         if near > limit {
             continue;
         }
-        let mut at = Ref(item as u32);
-        while at.is_inner() {
-            let node = &nodes[at.index()];
-            let (mut mask, enter) = ray.children(isa, node, wide_limit);
-            if mask == 0 {
-                break;
-            }
-            let enter = isa.store(enter);
-            let entry = |lane: usize| {
-                u64::from(enter.0[lane & 7].to_bits()) << 32 | u64::from(node.child.0[lane & 7])
-            };
-            let first = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            if mask == 0 {
-                at = Ref(node.child.0[first & 7]);
-                near = enter.0[first & 7];
-                continue;
-            }
-            let mut best = entry(first);
-            if ANY {
-                while mask != 0 {
-                    stack.push(entry(mask.trailing_zeros() as usize));
-                    mask &= mask - 1;
-                }
-            } else {
-                // Insertion from the farthest to the nearest: two or three children are usual.
-                let start = stack.len();
-                while mask != 0 {
-                    let next = entry(mask.trailing_zeros() as usize);
-                    mask &= mask - 1;
-                    stack.insert_descending(start, next.max(best));
-                    best = best.min(next);
-                }
-            }
-            at = Ref(best as u32);
-            near = f32::from_bits((best >> 32) as u32);
-        }
+        let at = Ref(at);
         if !at.is_inner() {
             return Some((at, near));
         }
+        let node = &nodes[at.index()];
+        let (enter, leave) = ray.children(isa, node, wide_limit);
+        let order = node.order.0[ray.octant & 7];
+        stack.extend(isa, isa.arrange(order, enter, leave, &node.child));
     }
+    None
 }
 
 /// The closest primitive, or any if `ANY`.
@@ -154,17 +129,19 @@ pub(super) fn trace<I: Isa, const ANY: bool>(isa: I, query: &Query<'_>) -> Optio
     let start = query.origin + enter * query.direction - scene.center();
     let ray = BoxRay::new(isa, start.as_vec3().to_array(), query.direction.as_vec3().to_array());
     let mut best = Best { limit: query.limit, found: None };
-    let mut stack = Stack::new();
-    stack.push(u64::from(scene.instances().root.0));
-    while let Some((leaf, near)) = {
-        let limit = round_up(best.limit - enter);
-        next_leaf::<I, ANY>(isa, &scene.instances().nodes, &ray, limit, &mut stack, 0)
-    } {
+    let mut space = Space::new();
+    let mut stack = Stack::new(&mut space);
+    stack.push(scene.instances().root.0, 0.0);
+    let mut limit = round_up(best.limit - enter);
+    while let Some((leaf, near)) =
+        next_leaf::<I>(isa, &scene.instances().nodes, &ray, limit, &mut stack, 0)
+    {
         let record = leaf.index() as u32;
         trace_mesh::<I, ANY>(isa, query, record, enter + f64::from(near), &mut best, &mut stack);
         if ANY && best.found.is_some() {
             break;
         }
+        limit = round_up(best.limit - enter);
     }
     best.found
 }
@@ -254,7 +231,7 @@ fn trace_mesh<I: Isa, const ANY: bool>(
     record: u32,
     start: f64,
     best: &mut Best,
-    stack: &mut Stack,
+    stack: &mut Stack<'_>,
 ) {
     let scene = query.scene;
     let mesh = scene.mesh_of(record);
@@ -268,12 +245,9 @@ fn trace_mesh<I: Isa, const ANY: bool>(
     };
     let (skip_block, skip_lanes) = scene.skipped(query, record);
     let base = stack.len();
-    stack.push(u64::from(mesh.tree.root.0));
-    while let Some((block, _)) = {
-        let limit = round_up(best.limit - ray.start).min(ray.beyond);
-        next_leaf::<I, ANY>(isa, &mesh.tree.nodes, &boxes, limit, stack, base)
-    } {
-        let limit = round_up(best.limit - ray.start).min(ray.beyond);
+    stack.push(mesh.tree.root.0, 0.0);
+    let mut limit = round_up(best.limit - ray.start).min(ray.beyond);
+    while let Some((block, _)) = next_leaf::<I>(isa, &mesh.tree.nodes, &boxes, limit, stack, base) {
         let (perhaps, sure) = if block.is_other() {
             wide.discs(isa, &mesh.discs[block.index()], &ray, limit)
         } else {
@@ -304,6 +278,7 @@ fn trace_mesh<I: Isa, const ANY: bool>(
                 if ANY && best.found.is_some() {
                     return;
                 }
+                limit = round_up(best.limit - ray.start).min(ray.beyond);
             }
         }
     }

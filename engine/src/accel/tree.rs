@@ -70,10 +70,13 @@ impl Ref {
 
 /// Boxes of eight children, lower and upper bound of each axis apart, and where they are.
 #[derive(Clone, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct Node {
     pub bounds: [[Lanes; 2]; 3],
     pub child: Words,
+    /// For rays of each octant, bit `i` of which is set where they run down axis `i`: the children
+    /// from the farthest to the nearest, three bits each.
+    pub order: Words,
 }
 
 impl Node {
@@ -81,6 +84,24 @@ impl Node {
         Self {
             bounds: [[Lanes([f32::INFINITY; 8]), Lanes([f32::NEG_INFINITY; 8])]; 3],
             child: Words([Ref::NONE.0; 8]),
+            order: Words([0; 8]),
+        }
+    }
+
+    /// Fixes the order of the children, once all are set.
+    fn arrange(&mut self) {
+        for octant in 0..8 {
+            let distance = |slot: usize| -> f32 {
+                let along = |axis: usize| {
+                    let [low, high] = self.bounds[axis].map(|bounds| bounds.0[slot]);
+                    if octant >> axis & 1 == 0 { low + high } else { -low - high }
+                };
+                along(0) + along(1) + along(2)
+            };
+            let mut slots = [0, 1, 2, 3, 4, 5, 6, 7];
+            slots.sort_by(|&a, &b| distance(b).total_cmp(&distance(a)));
+            self.order.0[octant] =
+                slots.iter().rev().fold(0, |packed, &slot| packed << 3 | slot as u32);
         }
     }
 
@@ -256,6 +277,9 @@ impl<K: Fn(u32) -> bool, L: FnMut(&[u32]) -> Ref> Collapse<'_, K, L> {
         }
         let mut children = Vec::with_capacity(8);
         self.roots(at, 7, true, &mut children);
+        // The largest first: a search for any hit visits children in this order.
+        let area = |child: &u32| self.binary.nodes[*child as usize].aabb().half_area();
+        children.sort_by(|a, b| area(b).total_cmp(&area(a)));
         let index = self.nodes.len();
         self.nodes.push(Node::new());
         for (slot, &child) in children.iter().enumerate() {
@@ -264,6 +288,7 @@ impl<K: Fn(u32) -> bool, L: FnMut(&[u32]) -> Ref> Collapse<'_, K, L> {
             let reference = self.emit(child, depth + 1);
             self.nodes[index].set(slot, bounds.padded(self.plan.pad), reference);
         }
+        self.nodes[index].arrange();
         Ref(index as u32)
     }
 
@@ -315,6 +340,7 @@ impl<K: Fn(u32) -> bool, L: FnMut(&[u32]) -> Ref> Collapse<'_, K, L> {
             let reference = self.emit_evenly(part);
             self.nodes[index].set(slot, bounds.padded(self.plan.pad), reference);
         }
+        self.nodes[index].arrange();
         Ref(index as u32)
     }
 }
