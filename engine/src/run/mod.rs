@@ -13,7 +13,7 @@ use crate::accel::Boundary;
 use crate::document::{self, Diagnostic, Reading, Scene};
 use crate::extract::{Rules, Setting, extract};
 use crate::products::{Context, Report, SensorReport};
-use crate::spawn::{Spawned, spawn};
+use crate::spawn::{Spawned, missing_files, spawn};
 
 pub use failure::Failure;
 
@@ -64,7 +64,7 @@ pub fn run_file(
     let start = Instant::now();
     progress.stage("reading the scene");
     let reading = read(path, options)?;
-    let folder = path.parent().unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let read_seconds = start.elapsed().as_secs_f64();
     in_pool(options, || {
         let mut report = run(&reading.scene, folder, options, progress)
@@ -83,7 +83,7 @@ pub fn run_file(
 /// All that is wrong with the scene, rendered for a person.
 pub fn check_file(path: &Path, options: &Options) -> Result<Vec<String>, Failure> {
     let reading = read(path, options)?;
-    let folder = path.parent().unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let spawned = in_pool(options, || {
         spawn(&reading.scene, folder)
             .map_err(|problems| Failure::Scene(reading.source.render(&problems)))
@@ -164,11 +164,21 @@ fn measure(
 fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
     let reading = document::read_file(path, &options.document)
         .map_err(|error| Failure::Scene(error.to_string()))?;
-    if reading.diagnostics.iter().any(Diagnostic::is_error) {
-        // What can be found out beyond the text is reported at once with the rest.
-        return Err(Failure::Scene(reading.source.render(&reading.diagnostics)));
+    if reading.is_sound() {
+        return Ok(reading);
     }
-    Ok(reading)
+    // What can be found out beyond the text is reported at once with the rest.
+    let mut problems = reading.diagnostics;
+    // A path that could not be read is a placeholder, and its error is known.
+    let known: Vec<String> = problems.iter().map(|problem| problem.path.clone()).collect();
+    let missing = missing_files(&reading.scene, folder_of(path)).into_iter();
+    problems.extend(missing.filter(|m| !known.iter().any(|path| m.path.starts_with(path))));
+    Err(Failure::Scene(reading.source.render(&problems)))
+}
+
+/// Folder that paths in a scene file are relative to.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }
 
 /// Runs in a pool of as many threads as asked for; no result depends on their number.

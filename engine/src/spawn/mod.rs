@@ -1,5 +1,6 @@
 //! Document and assets to entities; every error of the scene in one pass, each with its place.
 
+mod files;
 mod instances;
 mod light;
 mod materials;
@@ -14,6 +15,8 @@ use hecs::World;
 
 use crate::components::{SceneId, TerrainPatch};
 use crate::document::{Diagnostic, Scene, Terrain};
+
+pub use files::missing_files;
 
 /// A world, and how it came about.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
@@ -44,6 +47,10 @@ pub(crate) struct Spawner<'a> {
 /// # Errors
 /// All that is wrong with the scene.
 pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
+    let missing = missing_files(scene, folder);
+    if !missing.is_empty() {
+        return Err(missing);
+    }
     let mut spawner =
         Spawner { scene, folder, files: Vec::new(), skipped: Vec::new(), problems: Vec::new() };
     let mut world = World::new();
