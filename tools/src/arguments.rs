@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser};
+use clap::{Args, Parser, Subcommand};
 
 /// Where the light of a forest goes: images, BRF, albedo and absorbed light of scenes written as text.
 #[derive(Debug, Parser)]
@@ -21,8 +21,35 @@ pub(crate) enum Command {
     Run(Run),
     /// Say what is wrong with a scene, and trace nothing
     Check(Scene),
+    /// Measure how fast this machine is on a scene
+    #[command(subcommand)]
+    Bench(Bench),
     /// Print a scene as it is after includes, variant and parameters
     Expand(Scene),
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Bench {
+    /// Rate of the rays of path tracing, build time and memory of the ray engine
+    Rays(Rays),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Rays {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+
+    /// Threads to use [default: all]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Paths whose rays are traced
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    pub(crate) paths: u64,
+
+    /// Times that each measurement is repeated
+    #[arg(long, value_name = "N", default_value_t = 7)]
+    pub(crate) rounds: usize,
 }
 
 #[derive(Args, Debug)]

@@ -6,7 +6,8 @@ use std::io::{self, Write as _};
 use anyhow::{Context as _, bail};
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Command, Run, Scene};
+use crate::arguments::{Bench, Command, Run, Scene};
+use crate::bench;
 use crate::progress::Bars;
 
 /// Heading of what a scene defines and does not use.
@@ -18,6 +19,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Run(arguments) => trace(arguments),
         Command::Check(scene) => check(scene),
         Command::Expand(scene) => expand(scene),
+        Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
     }
 }
 
@@ -83,7 +85,7 @@ fn expand(scene: &Scene) -> anyhow::Result<()> {
     print(&reading.scene.to_ron())
 }
 
-fn document_options(scene: &Scene) -> document::Options {
+pub(crate) fn document_options(scene: &Scene) -> document::Options {
     document::Options { set: scene.settings.clone(), variant: scene.variant.clone() }
 }
 

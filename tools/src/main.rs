@@ -3,6 +3,7 @@
 //! Exit code 0 if all was written, 1 if the scene or the output is at fault, 2 for wrong usage.
 
 mod arguments;
+mod bench;
 mod commands;
 mod progress;
 

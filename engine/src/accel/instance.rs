@@ -121,6 +121,16 @@ pub(super) struct Images {
 }
 
 impl Images {
+    /// Number of images.
+    pub(super) fn count(&self) -> usize {
+        self.of.len()
+    }
+
+    /// Memory of the table, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.of)
+    }
+
     /// Adds the images that reach into the tile, and cuts every box to the tile: what lies outside
     /// is found as itself by a ray that has left the tile.
     pub(super) fn add(

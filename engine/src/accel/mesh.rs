@@ -84,6 +84,17 @@ pub(super) enum Primitive {
 }
 
 impl MeshTree {
+    /// Triangles and discs of the mesh that can be hit or were dropped as degenerate.
+    pub(super) fn primitives(&self) -> usize {
+        let discs = self.disc_surfaces.last().map_or(0, |&(end, _)| end);
+        self.triangles as usize + discs as usize
+    }
+
+    /// Memory of the primitives, bytes, the tree's nodes not counted.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.planar) + size_of_val(&*self.discs) + size_of_val(&*self.seconds)
+    }
+
     pub(super) fn build(number: usize, input: &MeshInput<'_>) -> Result<Self, BuildError> {
         let MeshInput { mesh, surfaces } = *input;
         check(number, mesh, surfaces)?;

@@ -22,4 +22,4 @@ mod tests;
 
 pub use error::BuildError;
 pub use scene::Scene;
-pub use types::{Boundary, Departure, Domain, Hit, InstanceInput, MeshInput, Ray};
+pub use types::{Boundary, Departure, Domain, Hit, InstanceInput, Memory, MeshInput, Ray};

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use crate::geometry::Bounds;
 
 use super::{
-    BuildError, Departure, Domain, Hit, InstanceInput, MeshInput, Ray,
+    BuildError, Departure, Domain, Hit, InstanceInput, Memory, MeshInput, Ray,
     instance::{self, Images, Record},
     mesh::{self, MeshTree, PARALLELOGRAM, outward},
     simd::Level,
@@ -103,6 +103,20 @@ impl Scene {
             return (DVec3::ZERO, DVec3::ZERO);
         }
         (self.bounds.min, self.bounds.max)
+    }
+
+    /// What the scene keeps in memory, all told.
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        let nodes = |tree: &Tree| size_of_val(&*tree.nodes);
+        Memory {
+            primitives: self.meshes.iter().map(MeshTree::primitives).sum(),
+            mesh_bytes: self.meshes.iter().map(|mesh| mesh.bytes() + nodes(&mesh.tree)).sum(),
+            instances: self.records.len() - self.images.count(),
+            instance_bytes: size_of_val(&*self.records)
+                + self.images.bytes()
+                + nodes(&self.instances),
+        }
     }
 
     /// The first surface on a ray at a distance above 0.

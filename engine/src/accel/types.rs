@@ -100,3 +100,16 @@ impl Hit {
         Ray { origin: self.point + side * self.normal, direction, from: Some(self.departure) }
     }
 }
+
+/// Memory that a scene keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// Triangles and discs in meshes; each counts once, however many instances there are.
+    pub primitives: usize,
+    /// Bytes of all meshes: primitives, ids and the nodes above them.
+    pub mesh_bytes: usize,
+    /// Instances; images of border crossers are not counted.
+    pub instances: usize,
+    /// Bytes of all instances, their images and the nodes above them.
+    pub instance_bytes: usize,
+}

@@ -11,7 +11,7 @@ use hecs::World;
 
 use crate::accel::Boundary;
 use crate::document::{self, Diagnostic, Reading, Scene};
-use crate::extract::{Rules, Setting, extract};
+use crate::extract::{Rules, Setting, Stage, extract};
 use crate::products::{Context, Report, SensorReport};
 use crate::spawn::{Spawned, missing_files, spawn};
 
@@ -95,6 +95,35 @@ pub fn check_file(path: &Path, options: &Options) -> Result<Vec<String>, Failure
     Ok(texts)
 }
 
+/// A scene ready to be traced, and how long that took; for benchmarks.
+#[derive(Debug)]
+pub struct Ready {
+    /// The stage.
+    pub stage: Stage,
+    /// Seconds to read and spawn the scene.
+    pub load_seconds: f64,
+    /// Seconds to build the stage, the ray engine's trees above all.
+    pub build_seconds: f64,
+}
+
+/// Reads, spawns and builds a scene file, and traces nothing.
+///
+/// # Errors
+/// All that is wrong with the scene, rendered for a person.
+pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
+    let mut clock = Clock::start();
+    let reading = read(path, options)?;
+    in_pool(options, || {
+        let spawned = spawn(&reading.scene, folder_of(path))
+            .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
+        clock.lap("load");
+        let stage = extract(&spawned.world, &setting(&reading.scene))?;
+        clock.lap("build");
+        let seconds = |lap: usize| clock.laps[lap].1;
+        Ok(Ready { stage, load_seconds: seconds(0), build_seconds: seconds(1) })
+    })
+}
+
 /// Runs a scene that was read or built; paths in it are relative to `folder`.
 ///
 /// # Errors
@@ -147,7 +176,7 @@ pub fn run(
 /// Measures every sensor of the world in document order.
 fn measure(
     world: &World,
-    stage: &crate::extract::Stage,
+    stage: &Stage,
     context: &Context,
     options: &Options,
     progress: &dyn Progress,

@@ -12,13 +12,42 @@ pub struct Path {
     throughput: Vec<f32>,
     radiance: Vec<f32>,
     rays: u64,
+    log: Option<Vec<Traced>>,
+}
+
+/// A ray that a path traced, for benchmarks of the ray engine.
+#[derive(Clone, Copy, Debug)]
+pub struct Traced {
+    /// The ray.
+    pub ray: Ray,
+    /// Whether any hit would do, as for a shadow ray, or the closest was asked for.
+    pub any: bool,
 }
 
 impl Path {
     /// For stages with this many lanes.
     #[must_use]
     pub fn new(lanes: usize) -> Self {
-        Self { throughput: vec![0.0; lanes], radiance: vec![0.0; lanes], rays: 0 }
+        Self { throughput: vec![0.0; lanes], radiance: vec![0.0; lanes], rays: 0, log: None }
+    }
+
+    /// The same, with a log of all rays.
+    #[must_use]
+    pub fn logged(lanes: usize) -> Self {
+        Self { log: Some(Vec::new()), ..Self::new(lanes) }
+    }
+
+    /// All rays so far, if they are logged.
+    #[must_use]
+    pub fn into_log(self) -> Vec<Traced> {
+        self.log.unwrap_or_default()
+    }
+
+    fn note(&mut self, ray: Ray, any: bool) {
+        self.rays += 1;
+        if let Some(log) = &mut self.log {
+            log.push(Traced { ray, any });
+        }
     }
 
     /// Rays traced so far.
@@ -41,7 +70,7 @@ impl Path {
         // Scattering events between the sensor and the ray.
         let mut order = 0;
         loop {
-            self.rays += 1;
+            self.note(ray, false);
             let Some(hit) = stage.geometry.closest(&ray) else {
                 if order > 0 && ray.direction.z > 0.0 {
                     self.add_sky(&stage.light);
@@ -57,8 +86,9 @@ impl Path {
             if let Some(beam) = &stage.light.beam
                 && let Some(scattering) = bsdf.eval(hit.normal, wo, beam.direction)
             {
-                self.rays += 1;
-                if !stage.geometry.occluded(&hit.leave(beam.direction)) {
+                let shadow = hit.leave(beam.direction);
+                self.note(shadow, true);
+                if !stage.geometry.occluded(&shadow) {
                     // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
                     let cosine = hit.normal.dot(beam.direction).abs();
                     let scale = (cosine / beam.direction.z * Light::RADIANCE_OF_SHARE) as f32;

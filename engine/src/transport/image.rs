@@ -1,6 +1,8 @@
 use glam::{DVec2, UVec2};
 
-use super::{Counter, Path, Projection, RANDOMISATIONS, ViewCounter, Watch, blocks, trace_photons};
+use super::{
+    Counter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter, Watch, blocks, trace_photons,
+};
 use crate::accel::Ray;
 use crate::extract::Stage;
 use crate::film::{Sums, ratio};
@@ -168,6 +170,21 @@ pub fn measure_image_forward(
         samples: outcome.packets,
         rays: outcome.rays,
     }
+}
+
+/// All rays of `paths` paths through the image, in the order in which a run traces them: what a
+/// benchmark of the ray engine should be fed with.
+#[must_use]
+pub fn path_rays(stage: &Stage, projection: &Projection, paths: u64, key: Key) -> Vec<Traced> {
+    let mut path = Path::logged(stage.lanes());
+    for index in 0..paths {
+        let mut sampler = Sampler::new(key, index);
+        let [u, v, ..] = sampler.next_event();
+        let origin = projection.point(DVec2::new(u, v));
+        let ray = Ray { origin, direction: -projection.towards, from: None };
+        path.trace(stage, ray, &mut sampler);
+    }
+    path.into_log()
 }
 
 fn trace_tile(

@@ -14,7 +14,7 @@ mod image;
 mod projection;
 mod roulette;
 
-pub use backward::Path;
+pub use backward::{Path, Traced};
 pub use counters::{
     AlbedoCounter, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, LayerCounter,
     ViewCounter,
@@ -22,7 +22,7 @@ pub use counters::{
 pub use directions::{DirectionsOutcome, measure_directions};
 pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
-pub use image::{ImageOutcome, measure_image, measure_image_forward};
+pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
 pub use projection::Projection;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread

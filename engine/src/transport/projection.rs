@@ -38,6 +38,15 @@ impl Projection {
         Self::new(towards, corner, right, down, sensor.size, false)
     }
 
+    /// The middle half of the scene's rectangle, each way, seen straight down.
+    #[must_use]
+    pub fn of_middle(stage: &Stage) -> Self {
+        let corner = stage.corner + stage.size * DVec2::new(0.25, 0.75);
+        let corner = beyond(corner.extend(stage.top()), DVec3::Z, stage);
+        let (right, down) = (DVec3::X * stage.size.x * 0.5, -DVec3::Y * stage.size.y * 0.5);
+        Self::new(DVec3::Z, corner, right, down, UVec2::ONE, false)
+    }
+
     /// The scene's whole rectangle at its top, seen in one direction.
     #[must_use]
     pub fn of_scene(view: View, stage: &Stage) -> Self {

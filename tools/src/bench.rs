@@ -1,0 +1,101 @@
+//! How fast this machine is on a scene.
+
+use std::fmt::Write as _;
+use std::thread;
+use std::time::Instant;
+
+use sunfleck::extract::Stage;
+use sunfleck::run;
+use sunfleck::sampling::Key;
+use sunfleck::transport::{Projection, Traced, path_rays};
+
+use crate::arguments::Rays;
+use crate::commands::document_options;
+
+/// Rays that a thread takes at a time: enough that taking them costs nothing.
+const SHARE: usize = 4096;
+
+/// Rates of closest-hit and any-hit rays of paths that start straight down over the middle half of
+/// the scene, build time and memory.
+pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
+    let threads = match arguments.threads {
+        Some(threads) => threads.get(),
+        None => thread::available_parallelism()?.get(),
+    };
+    let options = run::Options {
+        document: document_options(&arguments.scene),
+        threads: Some(threads),
+        quality: 1.0,
+    };
+    let ready = run::stage_file(&arguments.scene.file, &options)?;
+    let stage = &ready.stage;
+    let rays = path_rays(stage, &Projection::of_middle(stage), arguments.paths, Key::new(1));
+    let (any, closest): (Vec<Traced>, Vec<Traced>) = rays.iter().partition(|ray| ray.any);
+    let memory = stage.geometry.memory();
+    let mut text = String::new();
+    writeln!(text, "load         {:9.3} s", ready.load_seconds)?;
+    writeln!(text, "build        {:9.3} s", ready.build_seconds)?;
+    writeln!(
+        text,
+        "triangles    {:9} in meshes, {:.1} bytes each",
+        memory.primitives,
+        memory.mesh_bytes as f64 / memory.primitives.max(1) as f64
+    )?;
+    writeln!(
+        text,
+        "instances    {:9}, {:.1} bytes each",
+        memory.instances,
+        memory.instance_bytes as f64 / memory.instances.max(1) as f64
+    )?;
+    if let Some(peak) = peak_memory() {
+        writeln!(text, "peak memory  {:9.1} MiB", peak / f64::from(1 << 20))?;
+    }
+    for (name, rays) in [("closest hit", &closest), ("any hit", &any), ("paths", &rays)] {
+        let mut rates: Vec<f64> =
+            (0..arguments.rounds.max(1)).map(|_| rate(stage, rays, threads)).collect();
+        rates.sort_by(f64::total_cmp);
+        writeln!(
+            text,
+            "{name:12} {:9.3} Mrays/s, median of {} rounds ({:.3} to {:.3}) of {} rays on {threads} threads",
+            rates[rates.len() / 2],
+            rates.len(),
+            rates[0],
+            rates[rates.len() - 1],
+            rays.len(),
+        )?;
+    }
+    Ok(text)
+}
+
+/// Million rays a second.
+fn rate(stage: &Stage, rays: &[Traced], threads: usize) -> f64 {
+    let shares: Vec<&[Traced]> = rays.chunks(SHARE).collect();
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    let start = Instant::now();
+    thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(share) =
+                    shares.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
+                {
+                    for Traced { ray, any } in *share {
+                        if *any {
+                            std::hint::black_box(stage.geometry.occluded(ray));
+                        } else {
+                            std::hint::black_box(stage.geometry.closest(ray));
+                        }
+                    }
+                }
+            });
+        }
+    });
+    rays.len() as f64 / start.elapsed().as_secs_f64() / 1e6
+}
+
+/// The most memory that this process has held, bytes, where the system tells (Linux).
+fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kibibytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kibibytes * 1024.0)
+}
