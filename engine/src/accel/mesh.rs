@@ -1,6 +1,9 @@
 //! The tree of one mesh: its primitives in blocks of eight, found and checked when it is built.
 
+use std::num::NonZeroU32;
+
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use crate::{components::Mesh, geometry::Bounds};
 
@@ -98,27 +101,28 @@ impl MeshTree {
     pub(super) fn build(number: usize, input: &MeshInput<'_>) -> Result<Self, BuildError> {
         let MeshInput { mesh, surfaces } = *input;
         check(number, mesh, surfaces)?;
-        let mut primitives = planar::primitives(mesh);
+        let primitives = Primitives::of(mesh);
         let triangles = mesh.triangles.len() as u32;
-        primitives.extend(mesh.discs.iter().enumerate().filter_map(|(id, disc)| {
-            let normal = disc.normal.as_dvec3().try_normalize()?.as_vec3();
-            let radius = (disc.radius > 0.0).then_some(disc.radius)?;
-            Some(Primitive::Disc { center: disc.center, normal, radius, id: id as u32 })
-        }));
-        let boxes: Vec<_> = primitives.iter().map(Primitive::bounds).collect();
-        let bounds = boxes.iter().copied().fold(Box3::EMPTY, Box3::union);
+        let boxes: Vec<_> =
+            (0..primitives.len()).into_par_iter().map(|p| primitives.one(p).bounds()).collect();
+        let bounds = boxes.par_iter().copied().reduce(|| Box3::EMPTY, Box3::union);
         let reach = if boxes.is_empty() { 0.0 } else { bounds.reach() };
-        let plan = Plan { leaf: 8, leaf_cost: 0.5, pad: pad(reach), reinsertion: 1.0 };
+        let plan = Plan { leaf: 8, leaf_cost: 0.6, pad: pad(reach), reinsertion: 1.0 };
         let (mut blocks, mut discs, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
-        let pairs =
-            primitives.iter().any(|p| matches!(p, Primitive::Planar { second: Some(_), .. }));
-        let is_disc = |p: u32| matches!(primitives[p as usize], Primitive::Disc { .. });
-        let tree = tree::build(&boxes, plan, is_disc, &mut |leaf: &[u32]| {
-            if is_disc(leaf[0]) {
-                discs.push(DiscBlock::new(leaf.iter().map(|&p| primitives[p as usize])));
-                Ref(Ref::LEAF | Ref::OTHER | (discs.len() as u32 - 1))
-            } else {
-                let members = leaf.iter().map(|&p| primitives[p as usize]);
+        let pairs = primitives.planar.iter().any(|&(_, second)| second.is_some());
+        let is_disc = |p: u32| p >= primitives.planar.len() as u32;
+        let tree = tree::build(boxes, plan, is_disc, |leaves| {
+            if primitives.discs.is_empty() {
+                blocks.reserve_exact(leaves);
+            }
+            let (blocks, discs, seconds) = (&mut blocks, &mut discs, &mut seconds);
+            let (primitives, is_disc) = (&primitives, &is_disc);
+            move |leaf: &[u32]| {
+                let members = leaf.iter().map(|&p| primitives.one(p));
+                if is_disc(leaf[0]) {
+                    discs.push(DiscBlock::new(members));
+                    return Ref(Ref::LEAF | Ref::OTHER | (discs.len() as u32 - 1));
+                }
                 if pairs {
                     let mut lanes = [0; 8];
                     for (lane, member) in lanes.iter_mut().zip(members.clone()) {
@@ -220,6 +224,40 @@ fn check(number: usize, mesh: &Mesh, surfaces: &[u32]) -> Result<(), BuildError>
         return Err(BuildError::Parts { mesh: number, triangles, discs });
     }
     Ok(())
+}
+
+/// The primitives of a mesh that have an area: planar ones, then discs.
+struct Primitives<'a> {
+    mesh: &'a Mesh,
+    planar: Vec<(u32, Option<NonZeroU32>)>,
+    discs: Vec<u32>,
+}
+
+impl<'a> Primitives<'a> {
+    fn of(mesh: &'a Mesh) -> Self {
+        let has_area = |&id: &u32| {
+            let disc = &mesh.discs[id as usize];
+            disc.radius > 0.0 && disc.normal.as_dvec3().try_normalize().is_some()
+        };
+        let discs = (0..mesh.discs.len() as u32).filter(has_area).collect();
+        Self { mesh, planar: planar::primitives(mesh), discs }
+    }
+
+    fn len(&self) -> u32 {
+        (self.planar.len() + self.discs.len()) as u32
+    }
+
+    fn one(&self, index: u32) -> Primitive {
+        if let Some(&(first, second)) = self.planar.get(index as usize) {
+            let second = second.map(NonZeroU32::get);
+            let corners = planar::corners(self.mesh, first, second);
+            return Primitive::Planar { corners, first, second };
+        }
+        let id = self.discs[index as usize - self.planar.len()];
+        let disc = &self.mesh.discs[id as usize];
+        let normal = disc.normal.as_dvec3().normalize_or_zero().as_vec3();
+        Primitive::Disc { center: disc.center, normal, radius: disc.radius, id }
+    }
 }
 
 impl Primitive {

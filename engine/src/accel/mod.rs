@@ -5,6 +5,8 @@
               enables it"
 )]
 
+mod binary;
+mod collapse;
 mod error;
 mod exact;
 mod instance;

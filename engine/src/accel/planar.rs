@@ -1,30 +1,31 @@
 //! Triangles with an area, two at a time where they form a parallelogram.
 
+use std::num::NonZeroU32;
+
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::components::Mesh;
 
-use super::mesh::Primitive;
-
-/// The planar primitives of a mesh, in the order of their first triangles.
-pub(super) fn primitives(mesh: &Mesh) -> Vec<Primitive> {
+/// The planar primitives of a mesh, in the order of their first triangles: each one's triangle, and
+/// the second one of a parallelogram.
+pub(super) fn primitives(mesh: &Mesh) -> Vec<(u32, Option<NonZeroU32>)> {
     let seconds = pairs(mesh);
-    let mut found = Vec::with_capacity(mesh.triangles.len());
-    for (first, &second) in seconds.iter().enumerate() {
-        let second = match second {
-            TAKEN => continue,
-            ALONE => None,
-            second => Some(second),
-        };
-        let corners = match second {
-            Some(second) => parallelogram(mesh, first, second as usize).map(|(corners, _)| corners),
-            None => Some(mesh.corners(first)).filter(|&corners| has_area(corners)),
-        };
-        let first = first as u32;
-        found.extend(corners.map(|corners| Primitive::Planar { corners, first, second }));
-    }
-    found
+    let triangles = seconds.par_iter().enumerate();
+    triangles
+        .filter_map(|(first, &second)| match second {
+            TAKEN => None,
+            ALONE => has_area(mesh.corners(first)).then_some((first as u32, None)),
+            second => Some((first as u32, NonZeroU32::new(second))),
+        })
+        .collect()
+}
+
+/// The corners of a triangle, or those of a parallelogram but the fourth.
+pub(super) fn corners(mesh: &Mesh, first: u32, second: Option<u32>) -> [Vec3; 3] {
+    second
+        .and_then(|second| parallelogram(mesh, first as usize, second as usize))
+        .map_or_else(|| mesh.corners(first as usize), |(corners, _)| corners)
 }
 
 /// By how much of its shorter edge a parallelogram's fourth corner may be off, where rounding to

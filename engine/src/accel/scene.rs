@@ -73,9 +73,12 @@ impl Scene {
             .collect();
         let reach = boxes.par_iter().map(|b| b.reach()).reduce(|| 0.0, f32::max);
         let plan = Plan { leaf: 1, leaf_cost: 1.0, pad: mesh::pad(reach), reinsertion: 0.5 };
-        let instances = tree::build(&boxes, plan, |_| false, &mut |leaf: &[u32]| {
-            Ref(Ref::LEAF | present[leaf[0] as usize])
-        });
+        let instances = tree::build(
+            boxes,
+            plan,
+            |_| false,
+            |_| |leaf: &[u32]| Ref(Ref::LEAF | present[leaf[0] as usize]),
+        );
         // The tree's boxes are padded for f32; this is padded for f64.
         let room = DVec3::splat(f64::from(reach) * (-40_f64).exp2());
         let covered = Bounds { min: covered.min - room, max: covered.max + room };

@@ -1,14 +1,14 @@
 //! Eight-wide trees: built by obvhs as binary trees, collapsed here by cost.
 
 use glam::Vec3;
-use obvhs::{
-    Boundable,
-    aabb::Aabb,
-    bvh2::{Bvh2, reinsertion::ReinsertionOptimizer},
-    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
-};
+use obvhs::{Boundable, aabb::Aabb};
+use rayon::prelude::*;
 
-use super::simd::{Lanes, Words};
+use super::{
+    binary,
+    collapse::{self, Part},
+    simd::{Lanes, Words},
+};
 
 /// An `f32` box; boxes handed to the builder must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +26,16 @@ impl Box3 {
 
     pub(super) fn padded(self, by: f32) -> Self {
         Self { min: self.min - by, max: self.max + by }
+    }
+
+    pub(super) fn half_area(self) -> f32 {
+        let size = (self.max - self.min).max(Vec3::ZERO);
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+
+    /// Twice the centre.
+    pub(super) fn middle(self) -> Vec3 {
+        self.min + self.max
     }
 
     /// Largest absolute coordinate.
@@ -80,7 +90,7 @@ pub(super) struct Node {
 }
 
 impl Node {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             bounds: [[Lanes([f32::INFINITY; 8]), Lanes([f32::NEG_INFINITY; 8])]; 3],
             child: Words([Ref::NONE.0; 8]),
@@ -89,7 +99,7 @@ impl Node {
     }
 
     /// Fixes the order of the children, once all are set.
-    fn arrange(&mut self) {
+    pub(super) fn arrange(&mut self) {
         for octant in 0..8 {
             let distance = |slot: usize| -> f32 {
                 let along = |axis: usize| {
@@ -105,7 +115,7 @@ impl Node {
         }
     }
 
-    fn set(&mut self, slot: usize, bounds: Box3, child: Ref) {
+    pub(super) fn set(&mut self, slot: usize, bounds: Box3, child: Ref) {
         for axis in 0..3 {
             self.bounds[axis][0].0[slot] = bounds.min[axis];
             self.bounds[axis][1].0[slot] = bounds.max[axis];
@@ -134,213 +144,125 @@ pub(super) struct Tree {
     pub nodes: Vec<Node>,
 }
 
-/// Levels of wide nodes that follow the binary tree; below them a subtree is cut evenly, so that no
-/// input, however odd, makes a tree deeper than this plus the logarithm of its primitives.
-const DEEPEST: u32 = 24;
+/// Primitives that one binary tree is built over: it bounds the memory that building takes, and
+/// lets parts be built at once.
+const PART: usize = 1 << 18;
 
-/// Builds the tree over `boxes`. `kind` tells primitives apart that may not share a leaf;
-/// `make_leaf` takes the primitives of one leaf, all of a kind, and says where it put them.
+/// Builds the tree over `boxes`. `kind` tells primitives apart that may not share a leaf.
+/// `make_leaves` is told how many leaves there will be and gives what takes the primitives of one
+/// leaf, all of a kind, and says where it put them.
 ///
 /// The order of leaves and nodes is that of a depth-first walk.
-pub(super) fn build(
-    boxes: &[Box3],
+pub(super) fn build<L: FnMut(&[u32]) -> Ref>(
+    boxes: Vec<Box3>,
     plan: Plan,
-    kind: impl Fn(u32) -> bool,
-    make_leaf: &mut impl FnMut(&[u32]) -> Ref,
+    kind: impl Fn(u32) -> bool + Sync,
+    make_leaves: impl FnOnce(usize) -> L,
 ) -> Tree {
-    let mut tree = Tree { root: Ref::NONE, nodes: Vec::new() };
     if boxes.is_empty() {
-        return tree;
+        return Tree { root: Ref::NONE, nodes: Vec::new() };
     }
-    let binary = binary_tree(boxes, plan.reinsertion);
-    let mut collapse = Collapse {
-        costs: costs(&binary, plan, &kind),
-        binary: &binary,
-        boxes,
-        plan,
-        kind,
-        make_leaf,
-        nodes: Vec::new(),
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut parts = Vec::new();
+    let top = halve(&boxes, &mut order, &mut parts);
+    let parts: Vec<(Box3, Part)> = parts
+        .into_par_iter()
+        .map(|members| {
+            let tree = binary::build(&boxes, members, plan, &kind);
+            (tree.bounds(), collapse::collapse(&boxes, tree, plan, &kind))
+        })
+        .collect();
+    drop(boxes);
+    drop(order);
+    let leaves = parts.iter().map(|(_, part)| part.leaves.len()).sum();
+    let inner: usize = parts.iter().map(|(_, part)| part.nodes.len()).sum();
+    let mut join = Join {
+        make_leaf: make_leaves(leaves),
+        nodes: Vec::with_capacity(inner + parts.len()),
+        pad: plan.pad,
+        parts: parts.into_iter().map(Some).collect(),
     };
-    tree.root = collapse.emit(0, 0);
-    tree.nodes = collapse.nodes;
-    tree
+    let root = join.emit(&top).1;
+    Tree { root, nodes: join.nodes }
 }
 
-fn binary_tree(boxes: &[Box3], reinsertion: f32) -> Bvh2 {
-    let indices = (0..boxes.len() as u32).collect();
-    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        boxes,
-        indices,
-        SortPrecision::U64,
-        1,
-    );
-    ReinsertionOptimizer::default().run(&mut binary, reinsertion, None);
-    binary
+/// How the primitives were shared out: a part, or two halves.
+enum Half {
+    Part(usize),
+    Two(Box<[Self; 2]>),
 }
 
-/// Least cost of a subtree as a forest of at most 1 to 8 trees, and what it holds.
-#[derive(Clone, Copy)]
-struct Cost {
-    /// `forest[i]`: of at most `i + 1` trees.
-    forest: [f32; 8],
-    /// As one leaf; infinite when it cannot be one.
-    leaf: f32,
-    count: u32,
-    kind: Kind,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    First,
-    Second,
-    Mixed,
-}
-
-/// The surface-area cost of every subtree, children first.
-///
-/// Source: Ylitie, Karras and Laine (2017), Efficient incoherent ray traversal on GPUs through
-/// compressed wide BVHs, section 3.1.
-fn costs(binary: &Bvh2, plan: Plan, kind: &impl Fn(u32) -> bool) -> Vec<Cost> {
-    let empty = Cost { forest: [0.0; 8], leaf: 0.0, count: 0, kind: Kind::Mixed };
-    let mut costs = vec![empty; binary.nodes.len()];
-    let mut order = Vec::with_capacity(binary.nodes.len());
-    let mut waiting = vec![0_u32];
-    while let Some(at) = waiting.pop() {
-        order.push(at);
-        let node = &binary.nodes[at as usize];
-        if !node.is_leaf() {
-            waiting.extend([node.first_index, node.first_index + 1]);
-        }
+/// Cuts at the median of the longest axis of the centres until parts are small enough.
+fn halve<'a>(boxes: &[Box3], order: &'a mut [u32], parts: &mut Vec<&'a mut [u32]>) -> Half {
+    if order.len() <= PART {
+        parts.push(order);
+        return Half::Part(parts.len() - 1);
     }
-    for &at in order.iter().rev() {
-        let node = &binary.nodes[at as usize];
-        let area = node.aabb().half_area();
-        costs[at as usize] = if node.is_leaf() {
-            let primitive = binary.primitive_indices[node.first_index as usize];
-            let kind = if kind(primitive) { Kind::Second } else { Kind::First };
-            let leaf = area * plan.leaf_cost;
-            Cost { forest: [leaf; 8], leaf, count: 1, kind }
-        } else {
-            let left = costs[node.first_index as usize];
-            let right = costs[node.first_index as usize + 1];
-            let count = left.count + right.count;
-            let kind = if left.kind == right.kind { left.kind } else { Kind::Mixed };
-            let fits = count <= plan.leaf && kind != Kind::Mixed;
-            let leaf = if fits { area * plan.leaf_cost } else { f32::INFINITY };
-            let mut forest = [0.0; 8];
-            for (trees, cost) in forest.iter_mut().enumerate().skip(1) {
-                *cost = split(&left, &right, trees).1;
-            }
-            forest[0] = leaf.min(area + forest[7]);
-            for trees in 1..8 {
-                forest[trees] = forest[trees].min(forest[trees - 1]);
-            }
-            Cost { forest, leaf, count, kind }
-        };
-    }
-    costs
+    let middle = |index: u32| boxes[index as usize].middle();
+    let around = order.iter().fold(Box3::EMPTY, |around, &index| {
+        let at = middle(index);
+        around.union(Box3 { min: at, max: at })
+    });
+    let axis = (around.max - around.min).max_position();
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&a, &b| {
+        middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(&b))
+    });
+    let (low, high) = order.split_at_mut(half);
+    Half::Two(Box::new([halve(boxes, low, parts), halve(boxes, high, parts)]))
 }
 
-/// The best way to share `trees + 1` trees between two subtrees: the left one's number less one,
-/// and the cost.
-fn split(left: &Cost, right: &Cost, trees: usize) -> (usize, f32) {
-    (0..trees)
-        .map(|own| (own, left.forest[own] + right.forest[trees - 1 - own]))
-        .reduce(|best, next| if next.1 < best.1 { next } else { best })
-        .unwrap_or((0, f32::INFINITY))
-}
-
-struct Collapse<'a, K, L> {
-    binary: &'a Bvh2,
-    costs: Vec<Cost>,
-    boxes: &'a [Box3],
-    plan: Plan,
-    kind: K,
-    make_leaf: &'a mut L,
+/// Puts the trees of all parts into one.
+struct Join<L> {
+    make_leaf: L,
     nodes: Vec<Node>,
+    pad: f32,
+    parts: Vec<Option<(Box3, Part)>>,
 }
 
-impl<K: Fn(u32) -> bool, L: FnMut(&[u32]) -> Ref> Collapse<'_, K, L> {
-    /// Writes the subtree of a binary node as one wide tree.
-    fn emit(&mut self, at: u32, depth: u32) -> Ref {
-        let cost = &self.costs[at as usize];
-        if cost.leaf <= cost.forest[0] {
-            let primitives = self.primitives(at);
-            return (self.make_leaf)(&primitives);
+impl<L: FnMut(&[u32]) -> Ref> Join<L> {
+    fn emit(&mut self, half: &Half) -> (Box3, Ref) {
+        let mut open = vec![half];
+        if let Half::Part(part) = *half {
+            let Some((bounds, part)) = self.parts[part].take() else {
+                return (Box3::EMPTY, Ref::NONE);
+            };
+            return (bounds, self.append(part));
         }
-        if depth >= DEEPEST {
-            let mut primitives = self.primitives(at);
-            primitives.sort_by_key(|&primitive| (self.kind)(primitive));
-            return self.emit_evenly(&primitives);
-        }
-        let mut children = Vec::with_capacity(8);
-        self.roots(at, 7, true, &mut children);
-        // The largest first: a search for any hit visits children in this order.
-        let area = |child: &u32| self.binary.nodes[*child as usize].aabb().half_area();
-        children.sort_by(|a, b| area(b).total_cmp(&area(a)));
-        let index = self.nodes.len();
-        self.nodes.push(Node::new());
-        for (slot, &child) in children.iter().enumerate() {
-            let aabb = self.binary.nodes[child as usize].aabb();
-            let bounds = Box3 { min: aabb.min.into(), max: aabb.max.into() };
-            let reference = self.emit(child, depth + 1);
-            self.nodes[index].set(slot, bounds.padded(self.plan.pad), reference);
-        }
-        self.nodes[index].arrange();
-        Ref(index as u32)
-    }
-
-    /// The roots of the cheapest forest of at most `trees + 1` trees; `open` when the node itself
-    /// may not be one of them.
-    fn roots(&self, at: u32, mut trees: usize, open: bool, roots: &mut Vec<u32>) {
-        let cost = &self.costs[at as usize];
-        let node = &self.binary.nodes[at as usize];
-        if !open {
-            while trees > 0 && cost.forest[trees - 1] <= cost.forest[trees] {
-                trees -= 1;
+        // Halves are of equal size, so that opening the first of all keeps them so.
+        while let Some(at) = open.iter().position(|half| matches!(half, Half::Two(_))) {
+            if open.len() == 8 {
+                break;
             }
-            if trees == 0 {
-                roots.push(at);
-                return;
+            if let Half::Two(halves) = open.remove(at) {
+                open.extend(halves.iter());
             }
-        }
-        let (left, right) = (node.first_index, node.first_index + 1);
-        let own = split(&self.costs[left as usize], &self.costs[right as usize], trees).0;
-        self.roots(left, own, false, roots);
-        self.roots(right, trees - 1 - own, false, roots);
-    }
-
-    fn primitives(&self, at: u32) -> Vec<u32> {
-        let mut found = Vec::with_capacity(self.costs[at as usize].count as usize);
-        let mut waiting = vec![at];
-        while let Some(at) = waiting.pop() {
-            let node = &self.binary.nodes[at as usize];
-            if node.is_leaf() {
-                found.push(self.binary.primitive_indices[node.first_index as usize]);
-            } else {
-                waiting.extend([node.first_index + 1, node.first_index]);
-            }
-        }
-        found
-    }
-
-    /// A tree of the least depth, whatever its cost; the primitives are sorted by kind.
-    fn emit_evenly(&mut self, primitives: &[u32]) -> Ref {
-        let one_kind = (self.kind)(primitives[0]) == (self.kind)(primitives[primitives.len() - 1]);
-        if primitives.len() <= self.plan.leaf as usize && one_kind {
-            return (self.make_leaf)(primitives);
         }
         let index = self.nodes.len();
         self.nodes.push(Node::new());
-        for (slot, part) in primitives.chunks(primitives.len().div_ceil(8)).enumerate() {
-            let bounds =
-                part.iter().map(|&p| self.boxes[p as usize]).fold(Box3::EMPTY, Box3::union);
-            let reference = self.emit_evenly(part);
-            self.nodes[index].set(slot, bounds.padded(self.plan.pad), reference);
+        let mut around = Box3::EMPTY;
+        for (slot, half) in open.into_iter().enumerate() {
+            let (bounds, child) = self.emit(half);
+            around = around.union(bounds);
+            self.nodes[index].set(slot, bounds.padded(self.pad), child);
         }
         self.nodes[index].arrange();
-        Ref(index as u32)
+        (around, Ref(index as u32))
+    }
+
+    fn append(&mut self, part: Part) -> Ref {
+        let first = self.nodes.len() as u32;
+        let made: Vec<Ref> =
+            part.leaves.iter().map(|leaf| (self.make_leaf)(&part.order[leaf.clone()])).collect();
+        let moved = |child: Ref| match child {
+            Ref::NONE => Ref::NONE,
+            child if child.is_inner() => Ref(child.0 + first),
+            child => made[child.index()],
+        };
+        self.nodes.extend(part.nodes.into_iter().map(|mut node| {
+            node.child = Words(node.child.0.map(|child| moved(Ref(child)).0));
+            node
+        }));
+        moved(part.root)
     }
 }
