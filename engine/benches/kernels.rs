@@ -32,11 +32,14 @@ fn scene(mesh: &Mesh) -> Scene {
         .map(|i| InstanceInput {
             mesh: 0,
             linear: DMat3::from_rotation_z(f64::from(i)),
-            translation: DVec3::new(f64::from(i % 5) * 4.0 + 2.0, f64::from(i / 5) * 4.0 + 2.0, 0.0),
+            translation: DVec3::new(
+                f64::from(i % 5) * 4.0 + 2.0,
+                f64::from(i / 5) * 4.0 + 2.0,
+                0.0,
+            ),
         })
         .collect();
-    let domain =
-        Domain { min: DVec2::ZERO, max: DVec2::splat(20.0), boundary: Boundary::Periodic };
+    let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(20.0), boundary: Boundary::Periodic };
     let surfaces = vec![0; mesh.parts.len()];
     Scene::build(&[MeshInput { mesh, surfaces: &surfaces }], &instances, domain)
         .expect("a lawful scene")
