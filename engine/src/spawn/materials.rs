@@ -24,7 +24,8 @@ impl Spawner<'_> {
         id
     }
 
-    /// Spawns the materials that the terrain and the parts of used meshes wear.
+    /// Spawns the materials that the terrain and the parts of used meshes wear. Others are looked at
+    /// as far as that takes no file: what is wrong with them should not wait until they are used.
     pub(super) fn materials(&mut self, meshes: &BTreeMap<u32, Prototype>, world: &mut World) {
         let scene = self.scene;
         let Terrain::Plane { material, .. } = &scene.terrain;
@@ -32,13 +33,16 @@ impl Spawner<'_> {
             self.known_material(material, "terrain.material").into_iter().collect();
         used.extend(meshes.values().flat_map(|mesh| mesh.materials.0.iter().copied()));
         for (index, (name, material)) in scene.materials.iter().enumerate() {
-            if !used.contains(&MaterialId(index as u32)) {
-                self.skipped.push(format!("material `{name}`: nothing wears it"));
+            let path = format!("materials.{name}");
+            if used.contains(&MaterialId(index as u32)) {
+                if let Some(optics) = self.optics(material, &path) {
+                    world.spawn((SceneId(index as u32), Name(name.clone()), optics));
+                }
                 continue;
             }
-            let path = format!("materials.{name}");
-            if let Some(optics) = self.optics(material, &path) {
-                world.spawn((SceneId(index as u32), Name(name.clone()), optics));
+            self.skipped.push(format!("material `{name}`: nothing wears it"));
+            if !spectra_of(material).into_iter().any(|spectrum| self.reads_file(spectrum)) {
+                self.optics(material, &path);
             }
         }
     }
@@ -77,6 +81,18 @@ impl Spawner<'_> {
                 );
                 None
             }
+        }
+    }
+}
+
+/// All spectra of a material.
+fn spectra_of(material: &Material) -> Vec<&Spectrum> {
+    match material {
+        Material::Lambertian { reflectance, back_reflectance } => {
+            std::iter::once(reflectance).chain(back_reflectance).collect()
+        }
+        Material::Leaf { reflectance, transmittance, back_reflectance } => {
+            [reflectance, transmittance].into_iter().chain(back_reflectance).collect()
         }
     }
 }

@@ -31,6 +31,17 @@ impl Spawner<'_> {
         }
     }
 
+    /// Whether a spectrum comes from a file, perhaps by way of names.
+    pub(super) fn reads_file<'s>(&'s self, mut spectrum: &'s Spectrum) -> bool {
+        // Names that go in a circle end after as many steps as there are names.
+        for _ in 0..=self.scene.spectra.len() {
+            let Spectrum::Named(name) = spectrum else { break };
+            let Some(named) = self.scene.spectra.get(name) else { break };
+            spectrum = named;
+        }
+        matches!(spectrum, Spectrum::Table { .. })
+    }
+
     fn resolve(
         &mut self,
         spectrum: &Spectrum,

@@ -1,0 +1,62 @@
+//! What a person reads of errors that show only when files are read and values resolved.
+
+use std::fs;
+use std::path::Path;
+
+use sunfleck::run::{Options, Unwatched, run_file};
+
+const SCENE: &str = r#"Scene(
+    format: 1,
+    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0)],
+    materials: {
+        "leaf": Leaf(reflectance: Bands([0.5, 0.6]), transmittance: Constant(0.45)),
+        "soil": Lambertian(reflectance: Table(file: "soil.csv")),
+    },
+    meshes: { "tree": Obj(file: "t.obj", up: Z, unit_m: 1.0, parts: { "laef": "leaf" }) },
+    terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0)])],
+    sun: (zenith_deg: 20.0, azimuth_deg: 270.0),
+    sensors: { "a": Photons(per_m2: 100.0) },
+)
+"#;
+
+/// Lines of the failure that say where something is: `line:column (path)`.
+fn places(folder: &Path) -> Vec<String> {
+    let path = folder.join("scene.ron");
+    let failure = run_file(&path, &Options::default(), &Unwatched).expect_err("the scene is wrong");
+    let text = failure.to_string();
+    let places = text.lines().filter_map(|line| line.trim().strip_prefix("--> "));
+    places.map(|place| place.rsplit_once("scene.ron:").expect("a place").1.to_owned()).collect()
+}
+
+#[test]
+fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    fs::write(dir.path().join("scene.ron"), SCENE).expect("a file");
+    // Files first: nothing else can be told before they are there.
+    assert_eq!(
+        places(dir.path()),
+        ["8:33 (meshes.tree.file)", "6:53 (materials.soil.reflectance.file)"]
+    );
+    fs::write(dir.path().join("soil.csv"), "wavelength_nm,value\n400,0.1\n700,0.2\n")
+        .expect("a file");
+    fs::write(dir.path().join("t.obj"), "g leaf\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+        .expect("a file");
+    // A face that names no vertex, ρ + τ above 1 although the mesh is not there to wear it, and a
+    // band beyond the spectrum.
+    assert_eq!(
+        places(dir.path()),
+        ["8:33 (meshes.tree.file)", "5:17 (materials.leaf)", "6:41 (materials.soil.reflectance)"]
+    );
+    fs::write(dir.path().join("t.obj"), "g leaf\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        .expect("a file");
+    assert_eq!(
+        places(dir.path()),
+        [
+            "8:79 (meshes.tree.parts.laef)",
+            "8:23 (meshes.tree)",
+            "5:17 (materials.leaf)",
+            "6:41 (materials.soil.reflectance)"
+        ]
+    );
+}
