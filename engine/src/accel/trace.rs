@@ -203,7 +203,7 @@ impl MeshRay {
             point = origin + start * direction;
         }
         // Rounding the ray moves it by 2⁻²⁴ of its coordinates; the products of the tests below
-        // then add less than 60 roundings of that size, relative to edges and distances.
+        // then add less than 128 roundings of that size, relative to edges and distances.
         let size = (reach + point.abs().max_element()) as f32;
         let length = direction.length() as f32;
         Some(Self {
@@ -221,8 +221,8 @@ impl MeshRay {
     }
 }
 
-/// 64 roundings of `f32`.
-const ROUNDING: f32 = 64.0 / (1 << 24) as f32;
+/// 128 roundings of `f32`.
+const ROUNDING: f32 = 128.0 / (1 << 24) as f32;
 
 #[inline(always)]
 fn trace_mesh<I: Isa, const ANY: bool>(
