@@ -1,6 +1,8 @@
 //! Spectra as functions of wavelength (nm), and what a band sees of them.
 
 mod band;
+mod planck;
 pub mod prospect;
 
 pub use band::{BandWindow, OutsideSpectrum, band_mean};
+pub use planck::{brightness_temperature, planck, planck_mean, planck_mean_slope};
