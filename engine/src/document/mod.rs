@@ -11,6 +11,7 @@ mod params;
 mod read;
 mod scene;
 mod source;
+mod sun;
 mod syntax;
 
 pub use check::check;

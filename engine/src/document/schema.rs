@@ -2,7 +2,7 @@
 //! error with its place, unknown keys with the nearest known one) and its writer.
 //!
 //! `key: Type` must be written, `key: Type = default` may be. The text behind the type's name is
-//! what a person calls it; that behind `=>` shows how a key is written where it is missing.
+//! what a person calls it; that behind `=>` shows how a key is written where it is missing; a key that has both stands in examples.
 
 macro_rules! record {
     ($(#[$meta:meta])* pub struct $name:ident ($kind:literal) {
@@ -131,7 +131,10 @@ macro_rules! example_of_key {
     ($field:ident: $type:ty) => {
         Some((stringify!($field), <$type>::example()))
     };
-    ($field:ident: $type:ty $(=> $example:literal)? = $default:expr) => {
+    ($field:ident: $type:ty => $example:literal = $default:expr) => {
+        Some((stringify!($field), $example.to_owned()))
+    };
+    ($field:ident: $type:ty = $default:expr) => {
         None
     };
 }
@@ -143,7 +146,9 @@ macro_rules! decode_key {
     ($fields:ident, $reader:ident, $field:ident: $type:ty) => {
         $fields.required::<$type>(stringify!($field), None, $reader)
     };
-    ($fields:ident, $reader:ident, $field:ident: $type:ty = $default:expr) => {
+    ($fields:ident, $reader:ident, $field:ident: $type:ty
+        $(=> $example:literal)? = $default:expr
+    ) => {
         $fields.optional::<$type>(stringify!($field), || $default, $reader)
     };
 }

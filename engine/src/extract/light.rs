@@ -1,9 +1,10 @@
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use hecs::World;
 
 use crate::components::{Sky, Sun};
+use crate::sampling::{Sampler, concentric_disc};
 use crate::scattering::padded;
 
 /// What lights a stage, in units of the total irradiance on the horizontal plane, band by band.
@@ -23,10 +24,59 @@ pub struct Light {
 /// The sun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beam {
-    /// Unit vector towards the sun.
+    /// Unit vector towards the sun's middle.
     pub direction: DVec3,
+    /// The sun's disc; without one its light is parallel.
+    pub disc: Option<Disc>,
     /// Its share of the total horizontal irradiance, shape `[lanes]`.
     pub share: Box<[f32]>,
+}
+
+/// A solar disc of even radiance, wholly above the horizon.
+///
+/// Seen from above, the cap of directions that it fills is an ellipse. A uniform point of that
+/// ellipse has, as a direction, the density `cos θ` that makes all directions give the horizontal
+/// plane the same flux: its irradiance is exact, whatever is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    middle: DVec2,
+    /// Semi-axes of the ellipse: across the sun's azimuth, and along it.
+    across: DVec2,
+    along: DVec2,
+}
+
+impl Disc {
+    /// About this direction, with this angular radius, rad; `None` for a radius of 0.
+    #[must_use]
+    pub fn new(direction: DVec3, radius: f64) -> Option<Self> {
+        let (sin, cos) = radius.sin_cos();
+        let horizontal = direction.truncate().try_normalize().unwrap_or(DVec2::Y);
+        (radius > 0.0).then_some(Self {
+            middle: direction.truncate() * cos,
+            across: horizontal.perp() * sin,
+            along: horizontal * (sin * direction.z),
+        })
+    }
+
+    /// Direction towards a point of the disc, from two uniform numbers, with a density in
+    /// proportion to the cosine of its zenith angle.
+    #[must_use]
+    pub fn direction(&self, u: f64, v: f64) -> DVec3 {
+        let at = concentric_disc(u, v);
+        let plan = self.middle + self.across * at.x + self.along * at.y;
+        plan.extend((1.0 - plan.length_squared()).max(f64::MIN_POSITIVE).sqrt())
+    }
+}
+
+impl Beam {
+    /// Unit vector towards a point of the sun. Light of a horizontal irradiance `E` from there gives
+    /// a surface with the normal `n` the irradiance `E |n·ω| / ω_z`.
+    pub fn towards(&self, sampler: &mut Sampler) -> DVec3 {
+        self.disc.as_ref().map_or(self.direction, |disc| {
+            let [u, v, ..] = sampler.next_event();
+            disc.direction(u, v)
+        })
+    }
 }
 
 /// The isotropic sky.
@@ -59,9 +109,11 @@ impl Light {
         let beam_share = share(&beam_irradiance);
         let sky_share = share(&sky_irradiance);
         Self {
-            beam: sun
-                .filter(|_| shines(&beam_share))
-                .map(|sun| Beam { direction: sun.direction, share: beam_share }),
+            beam: sun.filter(|_| shines(&beam_share)).map(|sun| Beam {
+                direction: sun.direction,
+                disc: Disc::new(sun.direction, sun.radius),
+                share: beam_share,
+            }),
             dome: shines(&sky_share).then_some(Dome { share: sky_share }),
             irradiance,
         }

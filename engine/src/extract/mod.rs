@@ -14,7 +14,7 @@ use crate::components::{
 };
 use crate::scattering::{BiLambertian, Bsdf};
 
-pub use light::{Beam, Dome, Light};
+pub use light::{Beam, Disc, Dome, Light};
 pub use stage::{Rules, Stage, Surface};
 
 /// What the document decides beyond entities.

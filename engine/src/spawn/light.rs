@@ -12,10 +12,11 @@ impl Spawner<'_> {
         let sun = scene.sun.as_ref().and_then(|sun| {
             let irradiance =
                 self.spectrum(&sun.irradiance, Quantity::Irradiance, "sun.irradiance")?;
-            let direction =
-                View { zenith: sun.zenith_deg.to_radians(), azimuth: sun.azimuth_deg.to_radians() }
-                    .direction();
-            Some(Sun { direction, irradiance })
+            // `document::check` asks for a position.
+            let (zenith, azimuth) = sun.angles_deg()?;
+            let view = View { zenith: zenith.to_radians(), azimuth: azimuth.to_radians() };
+            let radius = 0.5 * sun.disc_deg.to_radians();
+            Some(Sun { direction: view.direction(), radius, irradiance })
         });
         let (sun, sky) = match &scene.sky {
             document::Sky::None => (sun, None),

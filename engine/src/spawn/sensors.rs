@@ -8,7 +8,7 @@ use crate::components::{
     Directions, ImageMeasure, Name, Orthographic, PhotonMeasure, Photons, SceneId, Sensor, Stop,
     System, View,
 };
-use crate::document::{self, Diagnostic, Terrain, Until, Views};
+use crate::document::{self, Diagnostic, Sun, Terrain, Until, Views};
 
 impl Spawner<'_> {
     /// Spawns the sensors.
@@ -89,14 +89,14 @@ impl Spawner<'_> {
             Views::PrincipalPlane { max_deg, step_deg } => (*max_deg, *step_deg, 0.0),
             Views::CrossPlane { max_deg, step_deg } => (*max_deg, *step_deg, FRAC_PI_2),
         };
-        let Some(sun) = &self.scene.sun else {
+        let Some((_, azimuth)) = self.scene.sun.as_ref().and_then(Sun::angles_deg) else {
             self.problems.push(
                 Diagnostic::error(path, "this plane is the sun's, and the scene has no sun")
                     .help("write List([(zenith, azimuth), ..]), or give the scene a sun"),
             );
             return None;
         };
-        let azimuth = sun.azimuth_deg.to_radians() + turn;
+        let azimuth = azimuth.to_radians() + turn;
         // From the far side to the sun's, the nadir once; 75 / 0.1 may round to just below 750.
         let steps = (max_deg / step_deg * (1.0 + 1e-12)).floor() as i64;
         Some(

@@ -83,15 +83,16 @@ impl Path {
             order += 1;
             let bsdf = &stage.surface(&hit).bsdf;
             let wo = -ray.direction;
-            if let Some(beam) = &stage.light.beam
-                && let Some(scattering) = bsdf.eval(hit.normal, wo, beam.direction)
+            let sun = stage.light.beam.as_ref().map(|beam| (beam, beam.towards(sampler)));
+            if let Some((beam, towards)) = sun
+                && let Some(scattering) = bsdf.eval(hit.normal, wo, towards)
             {
-                let shadow = hit.leave(beam.direction);
+                let shadow = hit.leave(towards);
                 self.note(shadow, true);
                 if !stage.geometry.occluded(&shadow) {
                     // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
-                    let cosine = hit.normal.dot(beam.direction).abs();
-                    let scale = (cosine / beam.direction.z * Light::RADIANCE_OF_SHARE) as f32;
+                    let cosine = hit.normal.dot(towards).abs();
+                    let scale = (cosine / towards.z * Light::RADIANCE_OF_SHARE) as f32;
                     let light = beam.share.iter().zip(scattering);
                     let paths = self.radiance.iter_mut().zip(&self.throughput);
                     for ((radiance, weight), (sun, f)) in paths.zip(light) {

@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::accel::Ray;
-use crate::extract::Stage;
+use crate::extract::{Disc, Stage};
 use crate::sampling::{Sampler, cosine_hemisphere};
 
 /// Where photon packets of sun and sky start, so that every point of the scene is lit as it would be
@@ -21,6 +21,9 @@ pub(super) struct Emission {
     sun_share: Box<[f32]>,
     sky_share: Box<[f32]>,
     sun: DVec3,
+    disc: Option<Disc>,
+    /// Area of the scene's rectangle, m².
+    area: f64,
     /// How far before its face a ray starts.
     back_off: f64,
 }
@@ -93,6 +96,8 @@ impl Emission {
             sun_share,
             sky_share,
             sun,
+            disc: stage.light.beam.as_ref().and_then(|beam| beam.disc),
+            area: stage.area(),
             back_off: 0.01 * size.max_element(),
         }
     }
@@ -104,10 +109,11 @@ impl Emission {
         let (direction, face, share, factor);
         if pick < self.sun_chance {
             let pick = pick / self.sun_chance;
-            direction = -self.sun;
-            face = self.face(pick, |face| face.sun_until);
+            let (sun, lit, gain) = self.sun(pick, sampler);
+            direction = -sun;
+            face = lit;
             share = &self.sun_share;
-            factor = self.sun_gain / self.sun_chance;
+            factor = gain / self.sun_chance;
         } else {
             let pick = (pick - self.sun_chance) / (1.0 - self.sun_chance);
             face = self.face(pick, |face| face.sky_until);
@@ -122,6 +128,25 @@ impl Emission {
         let at = DVec2::new(u, v);
         let origin = face.corner + face.u * at.x + face.v * at.y - direction * self.back_off;
         Ray { origin, direction, from: None }
+    }
+
+    /// Direction towards a point of the sun, the face that its light comes through, and the power
+    /// through all faces from there over that through the reference plane.
+    fn sun(&self, pick: f64, sampler: &mut Sampler) -> (DVec3, &Face, f64) {
+        let Some(disc) = &self.disc else {
+            return (self.sun, self.face(pick, |face| face.sun_until), self.sun_gain);
+        };
+        let [u, v, ..] = sampler.next_event();
+        let sun = disc.direction(u, v);
+        let power = |face: &Face| face.u.cross(face.v).length() * (-sun).dot(face.inward).max(0.0);
+        let total: f64 = self.faces.iter().map(power).sum();
+        let mut left = pick * total;
+        let lit = self.faces.iter().position(|face| {
+            left -= power(face);
+            left < 0.0
+        });
+        // The top is the first face, and no sun is below the horizon.
+        (sun, &self.faces[lit.unwrap_or(0)], total / (self.area * sun.z))
     }
 
     fn face(&self, pick: f64, until: impl Fn(&Face) -> f64) -> &Face {

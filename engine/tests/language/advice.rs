@@ -19,7 +19,7 @@ const EMPTY: &str = "Scene(
     },
     terrain: Plane,
     instances: [Table, List],
-    sun: (),
+    sun: (position: Spa),
     sky: Isotropic,
     sensors: {
         \"a\": Orthographic, \"b\": Directions,

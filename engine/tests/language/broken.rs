@@ -49,6 +49,10 @@ broken! {
     spectra
     string_never_closed
     sun_below_the_horizon
+    sun_in_no_month
+    sun_nowhere
+    sun_on_the_horizon
+    sun_position
     terrain
     text_behind_the_scene
     unit_behind_a_number

@@ -66,7 +66,14 @@ fn the_example_of_the_design_reads_as_written() {
         Material::Lambertian { reflectance, back_reflectance: None }
     );
     let irradiance = Spectrum::Bands(vec![1.0, 1.0]);
-    assert_eq!(scene.sun, Some(Sun { zenith_deg: 30.0, azimuth_deg: 270.0, irradiance }));
+    let sun = Sun {
+        zenith_deg: Some(30.0),
+        azimuth_deg: 270.0,
+        position: None,
+        disc_deg: 0.0,
+        irradiance,
+    };
+    assert_eq!(scene.sun, Some(sun));
     assert_eq!(scene.sky, Sky::Fraction(vec![0.1, 0.05]));
     assert_eq!(scene.boundary, Boundary::Periodic);
     let names: Vec<_> = scene.sensors.keys().collect();
@@ -79,7 +86,9 @@ fn the_example_of_the_design_reads_as_written() {
 fn keys_that_are_left_out_have_their_defaults() {
     let scene = sound(&small("0.2", ""));
     let irradiance = Spectrum::Constant(1.0);
-    assert_eq!(scene.sun, Some(Sun { zenith_deg: 30.0, azimuth_deg: 0.0, irradiance }));
+    let sun =
+        Sun { zenith_deg: Some(30.0), azimuth_deg: 0.0, position: None, disc_deg: 0.0, irradiance };
+    assert_eq!(scene.sun, Some(sun));
     assert_eq!(scene.transport.roulette.after_order, 5);
     assert!(matches!(scene.sensors["albedo"], Sensor::Photons { per_m2: 1000.0, .. }));
 }

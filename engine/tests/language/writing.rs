@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sunfleck::document::{
     Axis, Band, Boundary, Branches, CrownShape, Frame, ImageMeasure, Instances, LeafAngle,
     LeafShape, Map, Material, Mesh, Options, Origin, PhotonMeasure, Roulette, Scene, Sensor, Sky,
-    Spectrum, Sun, System, Terrain, Transport, Trunk, Until, Views, read_text,
+    Spectrum, Sun, SunPosition, System, Terrain, Transport, Trunk, Until, Views, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -217,9 +217,32 @@ fn sensor() -> BoxedStrategy<Sensor> {
 }
 
 fn light() -> BoxedStrategy<(Option<Sun>, Sky)> {
-    let sun = (number(), number(), spectrum()).prop_map(|(zenith_deg, azimuth_deg, irradiance)| {
-        Sun { zenith_deg, azimuth_deg, irradiance }
-    });
+    let position = (
+        (0..3000_u32, 1..13_u32, 1..32_u32),
+        (number(), number(), number()),
+        (number(), number(), number(), number()),
+        (number(), number(), option(number())),
+    )
+        .prop_map(|(date, time, place, air)| SunPosition::Spa {
+            date,
+            time,
+            utc_offset_h: place.0,
+            latitude_deg: place.1,
+            longitude_deg: place.2,
+            altitude_m: place.3,
+            pressure_hpa: air.0,
+            temperature_c: air.1,
+            delta_t_s: air.2,
+        });
+    let sun = (option(number()), number(), option(position), number(), spectrum()).prop_map(
+        |(zenith_deg, azimuth_deg, position, disc_deg, irradiance)| Sun {
+            zenith_deg,
+            azimuth_deg,
+            position,
+            disc_deg,
+            irradiance,
+        },
+    );
     let sky = prop_oneof![
         Just(Sky::None),
         list(number()).prop_map(Sky::Fraction),

@@ -1,14 +1,48 @@
 //! Sun and sky.
 
-use super::super::scene::{Scene, Sky};
+use super::super::scene::{Scene, Sky, Sun};
 use super::Report;
 use super::spectrum::{Quantity, check_band_count, check_spectrum};
 
 pub(super) fn check_sun(scene: &Scene, report: &mut Report<'_>) {
     let Some(sun) = &scene.sun else { return };
-    report.zenith("sun.zenith_deg", sun.zenith_deg);
-    report.azimuth("sun.azimuth_deg", sun.azimuth_deg);
+    check_position(sun, report);
     check_spectrum("sun.irradiance", &sun.irradiance, Quantity::Irradiance, scene, report);
+}
+
+fn check_position(sun: &Sun, report: &mut Report<'_>) {
+    report.azimuth("sun.azimuth_deg", sun.azimuth_deg);
+    match (&sun.zenith_deg, &sun.position) {
+        (Some(zenith), None) => report.zenith("sun.zenith_deg", *zenith),
+        (None, Some(_)) if sun.azimuth_deg == 0.0 => {}
+        (None, None) if report.is_whole("sun") => {
+            let help = "write, for example, `zenith_deg: 30.0`";
+            report.error("sun", "nothing says where the sun is", help);
+        }
+        (None, None) => {}
+        _ => {
+            let message = "the sun's place is given both by angles and by `position`";
+            report.error("sun.position", message, "take one of the two out");
+        }
+    }
+    if sun.position.is_some()
+        && report.is_whole("sun.position")
+        && let Err(problem) = sun.placed()
+    {
+        report.push(*problem);
+    }
+    let disc = sun.disc_deg;
+    if !(0.0..=10.0).contains(&disc) {
+        let message = format!("expected an angular diameter from 0 to 10°, found {disc}");
+        report.error("sun.disc_deg", message, "the real sun has 0.533; 0 is a parallel beam");
+    } else if let Some((zenith, _)) = sun.angles_deg()
+        && zenith < 90.0
+        && zenith + 0.5 * disc >= 90.0
+    {
+        let message = format!("the horizon cuts the disc of a sun at zenith {zenith}°");
+        let help = "raise the sun by half the disc, or write `disc_deg: 0.0`";
+        report.error("sun.disc_deg", message, help);
+    }
 }
 
 pub(super) fn check_sky(scene: &Scene, report: &mut Report<'_>) {

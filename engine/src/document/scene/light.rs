@@ -11,12 +11,46 @@ record! {
     /// The sun.
     pub struct Sun ("the sun") {
         /// Angle from the vertical, degrees, below 90.
-        zenith_deg: f64 => "30.0",
+        zenith_deg: Option<f64> => "30.0" = None,
         /// Where the sun is, clockwise from north, degrees.
         azimuth_deg: f64 = 0.0,
+        /// Where the sun is, in place of both angles.
+        position: Option<SunPosition> = None,
+        /// Angular diameter of the disc, degrees, of even radiance; 0 is a parallel beam, and the real
+        /// sun has 0.533.
+        disc_deg: f64 = 0.0,
         /// Irradiance on a plane perpendicular to the beam, W m⁻² nm⁻¹; with `sky: Fraction(..)`
         /// that of sun and sky together.
         irradiance: Spectrum = Spectrum::Constant(1.0),
+    }
+}
+
+choice! {
+    /// How the sun's position is known.
+    pub enum SunPosition ("a position of the sun") {
+        /// From place and time by the Solar Position Algorithm, good to 0.0003°.
+        ///
+        /// Source: Reda and Andreas (2004), Solar Energy 76, 577-589.
+        Spa {
+            /// Year, month and day.
+            date: (u32, u32, u32) => "(2026, 6, 21)",
+            /// Hour, minute and second, each with a fraction if need be: `(12.5, 0, 0)`.
+            time: (f64, f64, f64) => "(12, 0, 0)",
+            /// Hours that the clock is ahead of UTC: 1 in Berlin in winter, -7 in Denver.
+            utc_offset_h: f64 = 0.0,
+            /// North is positive, degrees.
+            latitude_deg: f64 => "52.5",
+            /// East is positive, degrees.
+            longitude_deg: f64 => "13.4",
+            /// Above sea level, m.
+            altitude_m: f64 = 0.0,
+            /// Air pressure of the refraction, hPa; 0 leaves refraction out.
+            pressure_hpa: f64 = 1013.25,
+            /// Air temperature of the refraction, °C.
+            temperature_c: f64 = 15.0,
+            /// Terrestrial time less universal time, s; estimated from the date if absent.
+            delta_t_s: Option<f64> = None,
+        },
     }
 }
 

@@ -15,7 +15,7 @@ use super::encode::{Encode, Text, differs};
 use super::syntax::Node;
 
 pub use ground::{Boundary, Instances, Terrain};
-pub use light::{Sky, Sun};
+pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
 pub use sensor::{ImageMeasure, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views};
 pub use spectrum::{Material, Spectrum};

@@ -1,0 +1,155 @@
+use solar_positioning::time::JulianDate;
+use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
+
+use super::Diagnostic;
+use super::scene::{Sun, SunPosition};
+
+const AT: &str = "sun.position";
+
+impl Sun {
+    /// Zenith angle and azimuth clockwise from north, degrees; `None` where the scene does not say,
+    /// or where the sun is not above the horizon.
+    #[must_use]
+    pub fn angles_deg(&self) -> Option<(f64, f64)> {
+        match &self.position {
+            None => self.zenith_deg.map(|zenith| (zenith, self.azimuth_deg)),
+            Some(_) => self.placed().ok(),
+        }
+    }
+
+    /// Zenith angle and azimuth from place and time.
+    pub(super) fn placed(&self) -> Result<(f64, f64), Box<Diagnostic>> {
+        let Some(position) = &self.position else {
+            return Err(Box::new(Diagnostic::error(AT, "there is no position")));
+        };
+        let (zenith, azimuth) = spa(position)?;
+        if zenith >= 90.0 {
+            let below = zenith - 90.0;
+            let message = format!("the sun is {below:.2}° below the horizon then");
+            let help = "write a time of day, or leave the sun out and write a sky";
+            return Err(Box::new(Diagnostic::error(AT, message).help(help)));
+        }
+        Ok((zenith, azimuth))
+    }
+}
+
+/// Topocentric zenith angle, refraction included, and azimuth clockwise from north, degrees.
+///
+/// Source: Reda and Andreas (2004), Solar Energy 76, 577-589.
+fn spa(position: &SunPosition) -> Result<(f64, f64), Box<Diagnostic>> {
+    let &SunPosition::Spa {
+        date: (year, month, day),
+        time: (hour, minute, second),
+        utc_offset_h,
+        latitude_deg,
+        longitude_deg,
+        altitude_m,
+        pressure_hpa,
+        temperature_c,
+        delta_t_s,
+    } = position;
+    let within = |key: &str, value: f64, (low, high): (f64, f64)| {
+        if (low..=high).contains(&value) {
+            return Ok(());
+        }
+        let message = format!("expected a number from {low} to {high}, found {value}");
+        Err(Box::new(Diagnostic::error(format!("{AT}.{key}"), message)))
+    };
+    within("date[0]", f64::from(year), (0.0, 6000.0))?;
+    within("date[1]", f64::from(month), (1.0, 12.0))?;
+    within("date[2]", f64::from(day), (1.0, 31.0))?;
+    within("time[0]", hour, (0.0, 24.0))?;
+    within("time[1]", minute, (0.0, 60.0))?;
+    within("time[2]", second, (0.0, 60.0))?;
+    within("utc_offset_h", utc_offset_h, (-18.0, 18.0))?;
+    within("latitude_deg", latitude_deg, (-90.0, 90.0))?;
+    within("longitude_deg", longitude_deg, (-180.0, 180.0))?;
+    within("altitude_m", altitude_m, (-500.0, 100_000.0))?;
+    within("pressure_hpa", pressure_hpa, (0.0, 1200.0))?;
+    within("temperature_c", temperature_c, (-150.0, 100.0))?;
+    within("delta_t_s", delta_t_s.unwrap_or(0.0), (-8000.0, 8000.0))?;
+    let no = |key: &'static str| {
+        move |error: solar_positioning::Error| {
+            Box::new(Diagnostic::error(format!("{AT}{key}"), error.to_string()))
+        }
+    };
+    let delta_t = delta_t_s
+        .map_or_else(|| delta_t::estimate_from_date(year as i32, month), Ok)
+        .map_err(no(".date"))?;
+    let midnight = JulianDate::from_utc(year as i32, month, day, 0, 0, 0.0, delta_t)
+        .map_err(no(".date"))?
+        .julian_date();
+    let hours = hour + minute / 60.0 + second / 3600.0 - utc_offset_h;
+    let time = JulianDate::new(midnight + hours / 24.0, delta_t).map_err(no(""))?;
+    let refraction = (pressure_hpa > 0.0)
+        .then(|| RefractionCorrection::new(pressure_hpa, temperature_c))
+        .transpose()
+        .map_err(no(".pressure_hpa"))?;
+    let location = Location { latitude: latitude_deg, longitude: longitude_deg };
+    let sun = SolarPositions::new()
+        .at_from_julian(time, location, altitude_m, refraction)
+        .map_err(no(""))?;
+    Ok((sun.zenith_angle(), sun.azimuth()))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+mod tests {
+    use super::*;
+
+    fn denver() -> SunPosition {
+        SunPosition::Spa {
+            date: (2003, 10, 17),
+            time: (12.0, 30.0, 30.0),
+            utc_offset_h: -7.0,
+            latitude_deg: 39.742_476,
+            longitude_deg: -105.1786,
+            altitude_m: 1830.14,
+            pressure_hpa: 820.0,
+            temperature_c: 11.0,
+            delta_t_s: Some(67.0),
+        }
+    }
+
+    /// The worked example of the report, appendix A.5: zenith 50.11162°, azimuth 194.34024°.
+    #[test]
+    fn the_sun_is_where_the_worked_example_of_the_report_has_it() {
+        let (zenith, azimuth) = spa(&denver()).unwrap();
+        assert!((zenith - 50.11162).abs() < 1e-5, "{zenith}");
+        assert!((azimuth - 194.34024).abs() < 1e-5, "{azimuth}");
+    }
+
+    /// A day has 24 hours, an hour 60 minutes, and clocks ahead of UTC show more.
+    #[test]
+    fn a_moment_may_be_written_in_many_ways() {
+        let same = spa(&denver()).unwrap();
+        for (new_date, new_time, new_offset) in [
+            ((2003, 10, 17), (19.0, 30.0, 30.0), 0.0),
+            ((2003, 10, 17), (12.5 + 30.0 / 3600.0, 0.0, 0.0), -7.0),
+            ((2003, 10, 18), (1.0, 0.0, 30.0), 5.5),
+        ] {
+            let mut other = denver();
+            let SunPosition::Spa { date, time, utc_offset_h, .. } = &mut other;
+            (*date, *time, *utc_offset_h) = (new_date, new_time, new_offset);
+            let (zenith, azimuth) = spa(&other).unwrap();
+            assert!((zenith - same.0).abs() < 1e-6 && (azimuth - same.1).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn an_estimated_delta_t_moves_the_sun_by_less_than_the_algorithm_errs() {
+        let mut estimated = denver();
+        let SunPosition::Spa { delta_t_s, .. } = &mut estimated;
+        *delta_t_s = None;
+        let (given, estimated) = (spa(&denver()).unwrap(), spa(&estimated).unwrap());
+        assert!((given.0 - estimated.0).abs() < 3e-4 && (given.1 - estimated.1).abs() < 3e-4);
+    }
+
+    #[test]
+    fn a_day_that_no_month_has_is_an_error_at_its_place() {
+        let mut wrong = denver();
+        let SunPosition::Spa { date, .. } = &mut wrong;
+        *date = (2003, 2, 30);
+        assert_eq!(spa(&wrong).unwrap_err().path, "sun.position.date");
+    }
+}
