@@ -106,38 +106,49 @@ fn trace_row(scene: &Scene, corner: DVec2, row: u32, pixels: u32, samples: u32) 
         let across = DVec2::new(f64::from(sample / samples), f64::from(row));
         let jitter = DVec2::new(random.next(), random.next());
         let origin = (corner + 50.0 * (across + jitter) / f64::from(pixels)).extend(30.0);
-        let mut ray = Ray { origin, direction: -DVec3::Z, from: None };
+        let ray = Ray { origin, direction: -DVec3::Z, from: None };
         let mut throughput = 1.0;
+        rays += 1;
+        let mut next = scene.closest(&ray).map(|hit| (hit, ray.direction));
         for order in 0.. {
-            rays += 1;
-            let Some(hit) = scene.closest(&ray) else { break };
+            let Some((hit, from)) = next else { break };
             let (rho, tau) =
                 (REFLECTANCE[hit.surface as usize], TRANSMITTANCE[hit.surface as usize]);
-            let normal = if hit.normal.dot(ray.direction) > 0.0 { -hit.normal } else { hit.normal };
+            let normal = if hit.normal.dot(from) > 0.0 { -hit.normal } else { hit.normal };
             let cos = normal.dot(sun());
             let weight = if cos > 0.0 { rho * cos } else { -tau * cos };
-            if weight > 0.0 {
-                rays += 1;
-                if !scene.occluded(&hit.leave(sun())) {
-                    sum += throughput * weight;
-                }
-            }
+            let light = throughput * weight;
+            let shadow = (weight > 0.0).then(|| hit.leave(sun()));
             throughput *= rho + tau;
+            let mut goes_on = true;
             if order >= 5 {
-                if random.next() < 0.05 {
-                    break;
-                }
+                goes_on = random.next() >= 0.05;
                 throughput /= 0.95;
             }
-            if throughput < 1e-6 {
-                break;
+            let onward = (goes_on && throughput >= 1e-6).then(|| {
+                let through = random.next() * (rho + tau) >= rho;
+                let (u, turn) = (random.next(), 2.0 * PI * random.next());
+                let up = if through { -(1.0 - u).sqrt() } else { (1.0 - u).sqrt() };
+                let (x, y) = basis(normal);
+                let direction = u.sqrt() * (turn.cos() * x + turn.sin() * y) + up * normal;
+                hit.leave(direction / direction.length())
+            });
+            rays += u64::from(shadow.is_some()) + u64::from(onward.is_some());
+            let is_dark;
+            (is_dark, next) = match (shadow, onward) {
+                (Some(shadow), Some(onward)) => {
+                    let (is_dark, hit) = scene.occluded_and_closest(&shadow, &onward);
+                    (is_dark, hit.map(|hit| (hit, onward.direction)))
+                }
+                (Some(shadow), None) => (scene.occluded(&shadow), None),
+                (None, Some(onward)) => {
+                    (true, scene.closest(&onward).map(|hit| (hit, onward.direction)))
+                }
+                (None, None) => (true, None),
+            };
+            if !is_dark {
+                sum += light;
             }
-            let through = random.next() * (rho + tau) >= rho;
-            let (u, turn) = (random.next(), 2.0 * PI * random.next());
-            let up = if through { -(1.0 - u).sqrt() } else { (1.0 - u).sqrt() };
-            let (x, y) = basis(normal);
-            let direction = u.sqrt() * (turn.cos() * x + turn.sin() * y) + up * normal;
-            ray = hit.leave(direction / direction.length());
         }
     }
     (sum, rays)

@@ -1,6 +1,8 @@
 //! How fast this machine is on a scene.
 
 use std::fmt::Write as _;
+use std::hint::black_box;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
@@ -50,9 +52,24 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
     if let Some(peak) = peak_memory() {
         writeln!(text, "peak memory  {:9.1} MiB", peak / f64::from(1 << 20))?;
     }
-    for (name, rays) in [("closest hit", &closest), ("any hit", &any), ("paths", &rays)] {
+    let one = |stage: &Stage, rays: &[Traced]| {
+        for Traced { ray, any } in rays {
+            if *any {
+                black_box(stage.geometry.occluded(ray));
+            } else {
+                black_box(stage.geometry.closest(ray));
+            }
+        }
+    };
+    let measured: [(&str, &[Traced], &Work); 4] = [
+        ("closest hit", &closest, &one),
+        ("any hit", &any, &one),
+        ("one by one", &rays, &one),
+        ("paths", &rays, &as_paths),
+    ];
+    for (name, rays, work) in measured {
         let mut rates: Vec<f64> =
-            (0..arguments.rounds.max(1)).map(|_| rate(stage, rays, threads)).collect();
+            (0..arguments.rounds.max(1)).map(|_| rate(stage, rays, threads, work)).collect();
         rates.sort_by(f64::total_cmp);
         writeln!(
             text,
@@ -67,24 +84,38 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
     Ok(text)
 }
 
+/// Traces rays as a path does: towards the sun and onwards at once.
+fn as_paths(stage: &Stage, rays: &[Traced]) {
+    let mut rays = rays.iter().peekable();
+    while let Some(Traced { ray, any }) = rays.next() {
+        match rays.peek() {
+            Some(next) if *any && !next.any => {
+                black_box(stage.geometry.occluded_and_closest(ray, &next.ray));
+                rays.next();
+            }
+            _ if *any => {
+                black_box(stage.geometry.occluded(ray));
+            }
+            _ => {
+                black_box(stage.geometry.closest(ray));
+            }
+        }
+    }
+}
+
+/// A way to trace rays.
+type Work = dyn Fn(&Stage, &[Traced]) + Sync;
+
 /// Million rays a second.
-fn rate(stage: &Stage, rays: &[Traced], threads: usize) -> f64 {
+fn rate(stage: &Stage, rays: &[Traced], threads: usize, work: &Work) -> f64 {
     let shares: Vec<&[Traced]> = rays.chunks(SHARE).collect();
-    let next = std::sync::atomic::AtomicUsize::new(0);
+    let next = AtomicUsize::new(0);
     let start = Instant::now();
     thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
-                while let Some(share) =
-                    shares.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
-                {
-                    for Traced { ray, any } in *share {
-                        if *any {
-                            std::hint::black_box(stage.geometry.occluded(ray));
-                        } else {
-                            std::hint::black_box(stage.geometry.closest(ray));
-                        }
-                    }
+                while let Some(share) = shares.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    work(stage, share);
                 }
             });
         }

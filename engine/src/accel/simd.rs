@@ -227,6 +227,24 @@ impl Level {
         }
     }
 
+    /// Any primitive on one ray and the closest on another.
+    #[inline]
+    pub(super) fn both(
+        self,
+        any: &Query<'_>,
+        closest: &Query<'_>,
+    ) -> (Option<Found>, Option<Found>) {
+        match self {
+            Self::Portable => trace::trace_both(Portable, any, closest),
+            // SAFETY: as in `closest`.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { x86::both_avx2(any, closest) },
+            // SAFETY: as in `closest`.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { x86::both_avx512(any, closest) },
+        }
+    }
+
     /// Whether any primitive is on a ray.
     #[inline]
     pub(super) fn occluded(self, query: &Query<'_>) -> bool {
@@ -265,6 +283,22 @@ mod x86 {
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     pub(super) fn occluded_avx2(query: &Query<'_>) -> bool {
         trace::trace::<Avx2, true>(Avx2(()), query).is_some()
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn both_avx2(
+        any: &Query<'_>,
+        closest: &Query<'_>,
+    ) -> (Option<Found>, Option<Found>) {
+        trace::trace_both(Avx2(()), any, closest)
+    }
+
+    #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn both_avx512(
+        any: &Query<'_>,
+        closest: &Query<'_>,
+    ) -> (Option<Found>, Option<Found>) {
+        trace::trace_both(Avx512(()), any, closest)
     }
 
     #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]

@@ -8,32 +8,51 @@ use super::{Domain, Ray, scene::Scene, trace::Query, types::Boundary};
 /// horizontal crosses between the heights of a scene, and the only end of one that is.
 pub(super) const MOST_TILES: u32 = 1 << 20;
 
-/// Asks `search` in each tile that a ray crosses up to `limit`, until it finds something.
+/// The tiles that a ray crosses up to `limit`, each as the query to ask in it.
 ///
 /// The ray is the same in every tile but for its origin, which is moved by whole periods from where
-/// the ray really starts: nothing adds up from tile to tile.
-#[inline]
-pub(super) fn walk<T>(
-    scene: &Scene,
-    ray: &Ray,
+/// the ray really starts: nothing adds up from tile to tile. In an isolated scene there is one
+/// tile without sides.
+pub(super) struct Tiles<'a> {
+    scene: &'a Scene,
+    ray: &'a Ray,
     limit: f64,
-    search: impl Fn(&Query<'_>) -> Option<T>,
-) -> Option<T> {
-    let &Ray { origin, direction, from } = ray;
-    let domain = scene.domain();
-    if domain.boundary == Boundary::Isolated {
-        return search(&Query { scene, origin, direction, tile: [0, 0], from, limit });
+    /// The next tile, if there is one.
+    tile: Option<DVec2>,
+    /// Distances at which the ray enters it, and leaves the heights of the scene.
+    enter: f64,
+    end: f64,
+    left: u32,
+}
+
+impl<'a> Tiles<'a> {
+    #[inline]
+    pub(super) fn new(scene: &'a Scene, ray: &'a Ray, limit: f64) -> Self {
+        let mut tiles =
+            Self { scene, ray, limit, tile: Some(DVec2::ZERO), enter: 0.0, end: 0.0, left: 1 };
+        let domain = scene.domain();
+        if domain.boundary == Boundary::Periodic {
+            let (z, slope) = (ray.origin.z, ray.direction.z);
+            match height_range(z, slope, scene.bottom(), scene.top()) {
+                None => tiles.tile = None,
+                Some((start, end)) => {
+                    let entry = ray.origin + start * ray.direction;
+                    tiles.tile = Some(((entry.truncate() - domain.min) / scene.size()).floor());
+                    (tiles.enter, tiles.end, tiles.left) = (start, end, MOST_TILES);
+                }
+            }
+        }
+        tiles
     }
-    let (bottom, top) = (scene.bottom(), scene.top());
-    let (start, end) = height_range(origin.z, direction.z, bottom, top)?;
-    let size = scene.size();
-    let entry = origin + start * direction;
-    let mut tile = (entry.truncate() - domain.min) / size;
-    tile = tile.floor();
-    let ahead =
-        DVec2::new(f64::from(u8::from(direction.x > 0.0)), f64::from(u8::from(direction.y > 0.0)));
-    let mut enter = start;
-    for _ in 0..MOST_TILES {
+
+    /// The query of a periodic tile; the tile after it becomes the next.
+    fn cross(&mut self, tile: DVec2) -> Query<'a> {
+        let &Ray { origin, direction, from } = self.ray;
+        let (domain, size) = (self.scene.domain(), self.scene.size());
+        let ahead = DVec2::new(
+            f64::from(u8::from(direction.x > 0.0)),
+            f64::from(u8::from(direction.y > 0.0)),
+        );
         let here = origin - (tile * size).extend(0.0);
         // Rounding moves the sides of the tile by less than this.
         let room = (-50_f64).exp2()
@@ -48,30 +67,33 @@ pub(super) fn walk<T>(
         let (x, y) = (leave(0), leave(1));
         let exit = x.min(y);
         let slope = if x < y { direction.x } else { direction.y }.abs();
-        let within = limit.min(exit + room / slope);
-        let query = Query {
-            scene,
-            origin: here,
-            direction,
-            tile: [tile.x as i32, tile.y as i32],
-            from,
-            limit: within,
-        };
-        if let Some(found) = search(&query) {
-            return Some(found);
-        }
-        enter = enter.max(exit);
-        if enter > end || enter >= limit {
-            return None;
-        }
-        let step = |axis: usize| direction[axis].signum();
-        if x <= y {
-            tile.x += step(0);
+        let limit = self.limit.min(exit + room / slope);
+        self.enter = self.enter.max(exit);
+        self.left -= 1;
+        let is_last = self.enter > self.end || self.enter >= self.limit || self.left == 0;
+        let step = if x <= y {
+            DVec2::new(direction.x.signum(), 0.0)
         } else {
-            tile.y += step(1);
-        }
+            DVec2::new(0.0, direction.y.signum())
+        };
+        self.tile = (!is_last).then_some(tile + step);
+        let tile = [tile.x as i32, tile.y as i32];
+        Query { scene: self.scene, origin: here, direction, tile, from, limit }
     }
-    None
+}
+
+impl<'a> Iterator for Tiles<'a> {
+    type Item = Query<'a>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Query<'a>> {
+        let tile = self.tile.take()?;
+        if self.scene.domain().boundary == Boundary::Periodic {
+            return Some(self.cross(tile));
+        }
+        let &Ray { origin, direction, from } = self.ray;
+        Some(Query { scene: self.scene, origin, direction, tile: [0, 0], from, limit: self.limit })
+    }
 }
 
 /// Where a ray is between two heights, as a range of distances.

@@ -48,6 +48,7 @@ pub(super) struct Found {
 }
 
 /// A ray in the space of one tree.
+#[derive(Clone, Copy)]
 struct BoxRay<I: Isa> {
     inverse: [I::F; 3],
     shift: [I::F; 3],
@@ -90,60 +91,212 @@ impl<I: Isa> BoxRay<I> {
     }
 }
 
-/// Walks down from the newest entry of a stack until it meets a leaf that may be closer than
-/// `limit`, near children first; `None` when nothing above `base` is left.
-///
-/// Nothing here branches on how many children are hit or in which order: what the processor cannot
-/// foresee costs it more than the work that it saves.
-#[inline(always)]
-fn next_leaf<I: Isa>(
-    isa: I,
-    nodes: &[Node],
-    ray: &BoxRay<I>,
-    limit: f32,
-    stack: &mut Stack<'_>,
-    base: usize,
-) -> Option<(Ref, f32)> {
-    let wide_limit = isa.splat(limit);
-    while let Some((at, near)) = stack.pop(base) {
-        if near > limit {
-            continue;
-        }
-        let at = Ref(at);
-        if !at.is_inner() {
-            return Some((at, near));
-        }
-        let node = &nodes[at.index()];
-        let (enter, leave) = ray.children(isa, node, wide_limit);
-        let order = node.order.0[ray.octant & 7];
-        stack.extend(isa, isa.arrange(order, enter, leave, &node.child));
-    }
-    None
-}
-
-/// The closest primitive, or any if `ANY`.
+/// The closest primitive on a ray, or any if `ANY`.
 #[inline(always)]
 pub(super) fn trace<I: Isa, const ANY: bool>(isa: I, query: &Query<'_>) -> Option<Found> {
-    let scene = query.scene;
-    let enter = scene.clip(query.origin, query.direction, query.limit)?;
-    let start = query.origin + enter * query.direction - scene.center();
-    let ray = BoxRay::new(isa, start.as_vec3().to_array(), query.direction.as_vec3().to_array());
-    let mut best = Best { limit: query.limit, found: None };
     let mut space = Space::new();
-    let mut stack = Stack::new(&mut space);
-    stack.push(scene.instances().root.0, 0.0);
-    let mut limit = round_up(best.limit - enter);
-    while let Some((leaf, near)) =
-        next_leaf::<I>(isa, &scene.instances().nodes, &ray, limit, &mut stack, 0)
-    {
-        let record = leaf.index() as u32;
-        trace_mesh::<I, ANY>(isa, query, record, enter + f64::from(near), &mut best, &mut stack);
-        if ANY && best.found.is_some() {
-            break;
+    let mut walk = Walk::<I, ANY>::new(isa, query, &mut space)?;
+    while walk.step(isa) {}
+    walk.best.found
+}
+
+/// Any primitive on one ray and the closest on another, traced side by side.
+///
+/// Each step of a walk waits for the one before: for a node, then for what its boxes say. Two
+/// walks that know nothing of each other fill each other's waiting time.
+#[inline(always)]
+pub(super) fn trace_both<I: Isa>(
+    isa: I,
+    any: &Query<'_>,
+    closest: &Query<'_>,
+) -> (Option<Found>, Option<Found>) {
+    let (mut any_space, mut closest_space) = (Space::new(), Space::new());
+    let any = Walk::<I, true>::new(isa, any, &mut any_space);
+    let closest = Walk::<I, false>::new(isa, closest, &mut closest_space);
+    match (any, closest) {
+        (Some(mut any), Some(mut closest)) => {
+            let (mut any_goes, mut closest_goes) = (true, true);
+            while any_goes && closest_goes {
+                any_goes = any.step(isa);
+                closest_goes = closest.step(isa);
+            }
+            while any_goes {
+                any_goes = any.step(isa);
+            }
+            while closest_goes {
+                closest_goes = closest.step(isa);
+            }
+            (any.best.found, closest.best.found)
         }
-        limit = round_up(best.limit - enter);
+        (any, closest) => {
+            let any = any.and_then(|mut walk| {
+                while walk.step(isa) {}
+                walk.best.found
+            });
+            let closest = closest.and_then(|mut walk| {
+                while walk.step(isa) {}
+                walk.best.found
+            });
+            (any, closest)
+        }
     }
-    best.found
+}
+
+/// The state of one ray's way through both levels of trees.
+struct Walk<'a, I: Isa, const ANY: bool> {
+    query: &'a Query<'a>,
+    stack: Stack<'a>,
+    /// The ray in the space of the tree that it is in.
+    boxes: BoxRay<I>,
+    /// Nodes of that tree.
+    nodes: &'a [Node],
+    /// Beyond this, in that tree's distances, nothing counts.
+    limit: f32,
+    /// Entries of the stack that belong to the tree above.
+    base: usize,
+    best: Best,
+    /// Distance at which the tree over instances starts to count.
+    enter: f64,
+    /// The ray in the space of that tree.
+    world: BoxRay<I>,
+    inside: Option<Inside<'a, I>>,
+}
+
+/// The mesh that a ray is in.
+struct Inside<'a, I: Isa> {
+    mesh: &'a MeshTree,
+    record: u32,
+    ray: MeshRay,
+    wide: WideRay<I>,
+    /// The block and its lanes that the ray cannot hit here.
+    skip: (u32, u32),
+}
+
+impl<'a, I: Isa, const ANY: bool> Walk<'a, I, ANY> {
+    #[inline(always)]
+    fn new(isa: I, query: &'a Query<'a>, space: &'a mut Space) -> Option<Self> {
+        let scene = query.scene;
+        let enter = scene.clip(query.origin, query.direction, query.limit)?;
+        let start = query.origin + enter * query.direction - scene.center();
+        let direction = query.direction.as_vec3().to_array();
+        let world = BoxRay::new(isa, start.as_vec3().to_array(), direction);
+        let mut stack = Stack::new(space);
+        stack.push(scene.instances().root.0, 0.0);
+        Some(Self {
+            query,
+            stack,
+            boxes: world,
+            nodes: &scene.instances().nodes,
+            limit: round_up(query.limit - enter),
+            base: 0,
+            best: Best { limit: query.limit, found: None },
+            enter,
+            world,
+            inside: None,
+        })
+    }
+
+    /// Visits the newest entry of the stack; whether there is more to do.
+    ///
+    /// Nothing here branches on how many children are hit or in which order: what the processor
+    /// cannot foresee costs it more than the work that it saves.
+    #[inline(always)]
+    fn step(&mut self, isa: I) -> bool {
+        let Some((at, near)) = self.stack.pop(self.base) else { return self.leave_mesh() };
+        if near > self.limit {
+            return true;
+        }
+        let at = Ref(at);
+        if at.is_inner() {
+            let node = &self.nodes[at.index()];
+            let (enter, leave) = self.boxes.children(isa, node, isa.splat(self.limit));
+            let order = node.order.0[self.boxes.octant & 7];
+            self.stack.extend(isa, isa.arrange(order, enter, leave, &node.child));
+            return true;
+        }
+        if self.inside.is_none() {
+            self.enter_mesh(isa, at.index() as u32, self.enter + f64::from(near));
+            return true;
+        }
+        self.visit(isa, at);
+        !ANY || self.best.found.is_none()
+    }
+
+    #[inline(always)]
+    fn enter_mesh(&mut self, isa: I, record: u32, start: f64) {
+        let scene = self.query.scene;
+        let mesh = scene.mesh_of(record);
+        let Some(ray) = MeshRay::new(self.query, record, mesh, start) else { return };
+        self.boxes = BoxRay::new(isa, ray.start_near, ray.direction_near);
+        self.nodes = &mesh.tree.nodes;
+        self.limit = round_up(self.best.limit - ray.start).min(ray.beyond);
+        self.base = self.stack.len();
+        self.stack.push(mesh.tree.root.0, 0.0);
+        let wide = WideRay {
+            origin: ray.start_near.map(|v| isa.splat(v)),
+            direction: ray.direction_near.map(|v| isa.splat(v)),
+            side_error: isa.splat(ray.side_error),
+            distance_error: isa.splat(ray.distance_error),
+        };
+        let skip = scene.skipped(self.query, record);
+        self.inside = Some(Inside { mesh, record, ray, wide, skip });
+    }
+
+    /// Back to the tree over instances; whether the ray was in a mesh at all.
+    #[inline(always)]
+    fn leave_mesh(&mut self) -> bool {
+        if self.inside.is_none() {
+            return false;
+        }
+        self.inside = None;
+        self.boxes = self.world;
+        self.nodes = &self.query.scene.instances().nodes;
+        self.limit = round_up(self.best.limit - self.enter);
+        self.base = 0;
+        true
+    }
+
+    /// Tests the primitives of a block.
+    #[inline(always)]
+    fn visit(&mut self, isa: I, block: Ref) {
+        let Some(Inside { mesh, record, ray, wide, skip }) = &self.inside else { return };
+        let (perhaps, sure) = if block.is_other() {
+            wide.discs(isa, &mesh.discs[block.index()], ray, self.limit)
+        } else {
+            wide.planar(isa, &mesh.planar[block.index()], self.limit)
+        };
+        let keep = if block.0 == skip.0 { !skip.1 } else { u32::MAX };
+        let (mut perhaps, sure) = (perhaps & keep, sure & keep);
+        let record = *record;
+        if ANY && sure != 0 {
+            let (distance, lane, id) = (0.0, 0, 0);
+            self.best.found = Some(Found { distance, record, block, lane, id });
+            return;
+        }
+        while perhaps != 0 {
+            let lane = perhaps.trailing_zeros() as usize;
+            perhaps &= perhaps - 1;
+            let is_sure = sure >> lane & 1 != 0;
+            let (distance, id) = if block.is_other() {
+                let block = &mesh.discs[block.index()];
+                let distance = exact::disc_distance(block.lane(lane), ray.origin, ray.direction);
+                (distance, block.id.0[lane & 7])
+            } else {
+                let block = &mesh.planar[block.index()];
+                let id = block.id.0[lane & 7];
+                (planar_distance(self.query, record, ray, block, lane, is_sure), id)
+            };
+            let Some(distance) = distance else { continue };
+            if distance > 0.0 {
+                let found = Found { distance, record, block, lane: lane as u8, id };
+                self.best.offer(self.query.scene, found);
+                if ANY && self.best.found.is_some() {
+                    return;
+                }
+                self.limit = round_up(self.best.limit - ray.start).min(ray.beyond);
+            }
+        }
+    }
 }
 
 struct Best {
@@ -223,66 +376,6 @@ impl MeshRay {
 
 /// 128 roundings of `f32`.
 const ROUNDING: f32 = 128.0 / (1 << 24) as f32;
-
-#[inline(always)]
-fn trace_mesh<I: Isa, const ANY: bool>(
-    isa: I,
-    query: &Query<'_>,
-    record: u32,
-    start: f64,
-    best: &mut Best,
-    stack: &mut Stack<'_>,
-) {
-    let scene = query.scene;
-    let mesh = scene.mesh_of(record);
-    let Some(ray) = MeshRay::new(query, record, mesh, start) else { return };
-    let boxes = BoxRay::new(isa, ray.start_near, ray.direction_near);
-    let wide = WideRay {
-        origin: ray.start_near.map(|v| isa.splat(v)),
-        direction: ray.direction_near.map(|v| isa.splat(v)),
-        side_error: isa.splat(ray.side_error),
-        distance_error: isa.splat(ray.distance_error),
-    };
-    let (skip_block, skip_lanes) = scene.skipped(query, record);
-    let base = stack.len();
-    stack.push(mesh.tree.root.0, 0.0);
-    let mut limit = round_up(best.limit - ray.start).min(ray.beyond);
-    while let Some((block, _)) = next_leaf::<I>(isa, &mesh.tree.nodes, &boxes, limit, stack, base) {
-        let (perhaps, sure) = if block.is_other() {
-            wide.discs(isa, &mesh.discs[block.index()], &ray, limit)
-        } else {
-            wide.planar(isa, &mesh.planar[block.index()], limit)
-        };
-        let keep = if block.0 == skip_block { !skip_lanes } else { u32::MAX };
-        let (mut perhaps, sure) = (perhaps & keep, sure & keep);
-        if ANY && sure != 0 {
-            let (distance, lane, id) = (0.0, 0, 0);
-            best.found = Some(Found { distance, record, block, lane, id });
-            return;
-        }
-        while perhaps != 0 {
-            let lane = perhaps.trailing_zeros() as usize;
-            perhaps &= perhaps - 1;
-            let is_sure = sure >> lane & 1 != 0;
-            let (distance, id) = if block.is_other() {
-                let block = &mesh.discs[block.index()];
-                let distance = exact::disc_distance(block.lane(lane), ray.origin, ray.direction);
-                (distance, block.id.0[lane & 7])
-            } else {
-                let block = &mesh.planar[block.index()];
-                (planar_distance(query, record, &ray, block, lane, is_sure), block.id.0[lane & 7])
-            };
-            let Some(distance) = distance else { continue };
-            if distance > 0.0 {
-                best.offer(scene, Found { distance, record, block, lane: lane as u8, id });
-                if ANY && best.found.is_some() {
-                    return;
-                }
-                limit = round_up(best.limit - ray.start).min(ray.beyond);
-            }
-        }
-    }
-}
 
 #[inline(always)]
 fn planar_distance(

@@ -1,5 +1,7 @@
+use glam::DVec3;
+
 use super::roulette;
-use crate::accel::Ray;
+use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::Sampler;
 
@@ -11,6 +13,8 @@ use crate::sampling::Sampler;
 pub struct Path {
     throughput: Vec<f32>,
     radiance: Vec<f32>,
+    /// What the sun adds if it is seen.
+    light: Vec<f32>,
     rays: u64,
     log: Option<Vec<Traced>>,
 }
@@ -28,7 +32,8 @@ impl Path {
     /// For stages with this many lanes.
     #[must_use]
     pub fn new(lanes: usize) -> Self {
-        Self { throughput: vec![0.0; lanes], radiance: vec![0.0; lanes], rays: 0, log: None }
+        let dark = vec![0.0; lanes];
+        Self { throughput: dark.clone(), radiance: dark.clone(), light: dark, rays: 0, log: None }
     }
 
     /// The same, with a log of all rays.
@@ -43,10 +48,10 @@ impl Path {
         self.log.unwrap_or_default()
     }
 
-    fn note(&mut self, ray: Ray, any: bool) {
+    fn note(&mut self, ray: &Ray, any: bool) {
         self.rays += 1;
         if let Some(log) = &mut self.log {
-            log.push(Traced { ray, any });
+            log.push(Traced { ray: *ray, any });
         }
     }
 
@@ -64,59 +69,94 @@ impl Path {
 
     /// Estimates the radiance that arrives against the ray's direction; whether the ray meets the
     /// scene at all. The direct light of sun and sky, which the sensor would look into, is left out.
-    pub fn trace(&mut self, stage: &Stage, mut ray: Ray, sampler: &mut Sampler) -> bool {
+    pub fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
         self.radiance.fill(0.0);
         self.throughput.fill(1.0);
+        self.note(&ray, false);
+        let Some(first) = stage.geometry.closest(&ray) else { return false };
+        if stage.rules.max_order == 0 {
+            return true;
+        }
+        let (mut hit, mut wo) = (first, -ray.direction);
         // Scattering events between the sensor and the ray.
-        let mut order = 0;
-        loop {
-            self.note(ray, false);
-            let Some(hit) = stage.geometry.closest(&ray) else {
-                if order > 0 && ray.direction.z > 0.0 {
+        for order in 1.. {
+            let shadow = self.sunlight(stage, &hit, wo, sampler);
+            let onward = self.scatter(stage, &hit, wo, order, sampler);
+            let (is_dark, next) = match (&shadow, &onward) {
+                // One walk towards the sun and one onwards fill each other's waiting time.
+                (Some(shadow), Some(onward)) => stage.geometry.occluded_and_closest(shadow, onward),
+                (Some(shadow), None) => (stage.geometry.occluded(shadow), None),
+                (None, Some(onward)) => (true, stage.geometry.closest(onward)),
+                (None, None) => (true, None),
+            };
+            if !is_dark {
+                for (radiance, light) in self.radiance.iter_mut().zip(&self.light) {
+                    *radiance += light;
+                }
+            }
+            let Some(onward) = onward else { return true };
+            let Some(found) = next else {
+                if onward.direction.z > 0.0 {
                     self.add_sky(&stage.light);
                 }
-                return order > 0;
+                return true;
             };
             if order == stage.rules.max_order {
                 return true;
             }
-            order += 1;
-            let bsdf = &stage.surface(&hit).bsdf;
-            let wo = -ray.direction;
-            let sun = stage.light.beam.as_ref().map(|beam| (beam, beam.towards(sampler)));
-            if let Some((beam, towards)) = sun
-                && let Some(scattering) = bsdf.eval(hit.normal, wo, towards)
-            {
-                let shadow = hit.leave(towards);
-                self.note(shadow, true);
-                if !stage.geometry.occluded(&shadow) {
-                    // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
-                    let cosine = hit.normal.dot(towards).abs();
-                    let scale = (cosine / towards.z * Light::RADIANCE_OF_SHARE) as f32;
-                    let light = beam.share.iter().zip(scattering);
-                    let paths = self.radiance.iter_mut().zip(&self.throughput);
-                    for ((radiance, weight), (sun, f)) in paths.zip(light) {
-                        *radiance += weight * sun * f * scale;
-                    }
-                }
-            }
-            // The last order's light can still come from the sky; without one the walk is over.
-            if order == stage.rules.max_order && stage.light.dome.is_none() {
-                return true;
-            }
-            let [lobe, u, v, chance] = sampler.next_event();
-            let Some(scattered) = bsdf.sample(hit.normal, wo, &self.throughput, [lobe, u, v])
-            else {
-                return true;
-            };
-            for (weight, factor) in self.throughput.iter_mut().zip(scattered.spectrum) {
-                *weight *= factor * scattered.scale;
-            }
-            if !roulette::survives(&stage.rules, order, &mut self.throughput, chance) {
-                return true;
-            }
-            ray = hit.leave(scattered.direction);
+            (hit, wo) = (found, -onward.direction);
         }
+        true
+    }
+
+    /// The ray towards the sun, if it could bring light, and that light if nothing is in its way.
+    fn sunlight(
+        &mut self,
+        stage: &Stage,
+        hit: &Hit,
+        wo: DVec3,
+        sampler: &mut Sampler,
+    ) -> Option<Ray> {
+        let beam = stage.light.beam.as_ref()?;
+        let towards = beam.towards(sampler);
+        let scattering = stage.surface(hit).bsdf.eval(hit.normal, wo, towards)?;
+        // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
+        let cosine = hit.normal.dot(towards).abs();
+        let scale = (cosine / towards.z * Light::RADIANCE_OF_SHARE) as f32;
+        let paths = self.light.iter_mut().zip(&self.throughput);
+        for ((light, weight), (sun, f)) in paths.zip(beam.share.iter().zip(scattering)) {
+            *light = weight * sun * f * scale;
+        }
+        let shadow = hit.leave(towards);
+        self.note(&shadow, true);
+        Some(shadow)
+    }
+
+    /// The ray on which the path goes on, if it does; the throughput is then that ray's.
+    fn scatter(
+        &mut self,
+        stage: &Stage,
+        hit: &Hit,
+        wo: DVec3,
+        order: u32,
+        sampler: &mut Sampler,
+    ) -> Option<Ray> {
+        // The last order's light can still come from the sky; without one the walk is over.
+        if order == stage.rules.max_order && stage.light.dome.is_none() {
+            return None;
+        }
+        let [lobe, u, v, chance] = sampler.next_event();
+        let bsdf = &stage.surface(hit).bsdf;
+        let scattered = bsdf.sample(hit.normal, wo, &self.throughput, [lobe, u, v])?;
+        for (weight, factor) in self.throughput.iter_mut().zip(scattered.spectrum) {
+            *weight *= factor * scattered.scale;
+        }
+        if !roulette::survives(&stage.rules, order, &mut self.throughput, chance) {
+            return None;
+        }
+        let onward = hit.leave(scattered.direction);
+        self.note(&onward, false);
+        Some(onward)
     }
 
     fn add_sky(&mut self, light: &Light) {

@@ -127,8 +127,14 @@ pub(super) fn check(
         distance >= range.earliest && distance <= range.latest,
         "{distance} not in {range:?}: {ray:?}\n{hit:?}"
     );
+    let back = Ray { direction: -ray.direction, ..*ray };
+    let behind = scenes[0].closest(&back);
     for scene in scenes {
         assert_eq!(scene.closest(ray), hit, "instruction sets differ: {ray:?}");
+        let both = scene.occluded_and_closest(&back, ray);
+        assert_eq!(both, (behind.is_some(), hit), "side by side: {ray:?}");
+        let both = scene.occluded_and_closest(ray, &back);
+        assert_eq!(both, (hit.is_some(), behind), "side by side: {back:?}");
         assert_eq!(scene.occluded(ray), hit.is_some(), "any hit: {ray:?}");
         if let Some(hit) = hit {
             assert!(scene.occluded_within(ray, hit.distance.next_up()), "{ray:?}");

@@ -86,7 +86,6 @@ fn no_ray_leaves_a_closed_sphere() {
 
 /// Run by hand, in release: 10⁸ rays.
 #[test]
-#[ignore = "takes a minute"]
 fn no_ray_of_a_hundred_million_leaves_a_closed_sphere() {
     let scene = scene(&[icosphere(4, 1.0)], &[at(0, DVec3::ZERO)], domain(1.0, Boundary::Isolated));
     assert_eq!(leaks(&scene, 100_000_000, DVec3::ZERO, 0.9), 0);
