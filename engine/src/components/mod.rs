@@ -11,6 +11,7 @@
 //! | sun, sky | [`Sun`], [`Sky`] |
 //! | sensor | [`Name`], [`SceneId`], [`Sensor`] |
 
+mod camera;
 mod identity;
 mod light;
 mod mesh;
@@ -19,12 +20,14 @@ mod placement;
 mod sensor;
 mod terrain;
 
+pub use camera::{Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Stand};
 pub use identity::{MaterialId, Name, PrototypeId, SceneId};
 pub use light::{Sky, Sun};
 pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
 pub use optics::{EnergyGain, SurfaceOptics};
 pub use placement::Placement;
 pub use sensor::{
-    Directions, ImageMeasure, Orthographic, PhotonMeasure, Photons, Sensor, Stop, System, View,
+    Directions, ImageMeasure, ImageSamples, ImageSensor, PhotonMeasure, Photons, Sensor, Stop,
+    System, View,
 };
 pub use terrain::TerrainPatch;

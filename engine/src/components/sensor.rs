@@ -1,10 +1,12 @@
-use glam::{DVec2, DVec3, UVec2};
+use glam::{DVec3, UVec2};
+
+use super::Optics;
 
 /// Something that measures light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sensor {
-    /// A parallel-projection image.
-    Orthographic(Orthographic),
+    /// An image.
+    Image(ImageSensor),
     /// The whole scene seen from given directions.
     Directions(Directions),
     /// What becomes of photons sent from sun and sky.
@@ -48,22 +50,27 @@ pub enum ImageMeasure {
     Brf,
 }
 
-/// Parallel-projection image.
+/// How many paths an image is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ImageSamples {
+    /// So many a pixel.
+    PerPixel(u32),
+    /// So many a square metre of a parallel projection's footprint, perpendicular to the view.
+    PerArea(f64),
+}
+
+/// An image of the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Orthographic {
+pub struct ImageSensor {
     /// Columns and rows.
     pub size: UVec2,
-    /// Width and height of the footprint in the plane perpendicular to the view, m.
-    pub extent: DVec2,
-    /// The ground point in the middle of the image, m, local frame.
-    pub center: DVec2,
-    /// Where the sensor is.
-    pub view: View,
-    /// Samples a pixel.
-    pub samples: u32,
+    /// How its points become rays.
+    pub optics: Optics,
+    /// Paths traced for it.
+    pub samples: ImageSamples,
     /// What to report.
     pub measure: Vec<ImageMeasure>,
-    /// Which transport system estimates it.
+    /// Which transport system estimates it; photon packets draw parallel projections alone.
     pub system: System,
 }
 

@@ -93,6 +93,20 @@ impl Stage {
         }
     }
 
+    /// Height of the ground at a horizontal position, m; that of the plane beside the terrain.
+    #[must_use]
+    pub fn ground_at(&self, at: DVec2) -> f64 {
+        let above = at.extend(self.top() + 1.0);
+        let mut ray = accel::Ray { origin: above, direction: DVec3::NEG_Z, from: None };
+        while let Some(hit) = self.geometry.closest(&ray) {
+            if self.is_ground(&hit) {
+                return hit.point.z;
+            }
+            ray = hit.leave(DVec3::NEG_Z);
+        }
+        self.ground
+    }
+
     /// Position within the scene's rectangle in units of its extent, in [0, 1) where periodic.
     #[must_use]
     pub fn within(&self, point: DVec3) -> DVec2 {

@@ -1,33 +1,35 @@
+use glam::DVec2;
+
 use super::{Context, Georeference, Image, Product, reflectance};
-use crate::components::{ImageMeasure, Orthographic};
-use crate::transport::ImageOutcome;
+use crate::components::{ImageMeasure, ImageSensor, Optics};
+use crate::extract::Stage;
+use crate::transport::{ImageOutcome, footprint};
 
 /// The products of an image measurement.
 #[must_use]
-pub fn of_image(sensor: &Orthographic, outcome: &ImageOutcome, context: &Context) -> Vec<Product> {
+pub fn of_image(
+    sensor: &ImageSensor,
+    outcome: &ImageOutcome,
+    stage: &Stage,
+    context: &Context,
+) -> Vec<Product> {
+    let place = georeference(sensor, stage, context);
+    let of = |name, scale| image(name, sensor, outcome, (context, place), scale);
     sensor
         .measure
         .iter()
         .map(|measure| match measure {
-            ImageMeasure::Radiance => image(
-                ("radiance", "W m-2 sr-1 nm-1"),
-                sensor,
-                outcome,
-                context,
-                reflectance::radiance,
-            ),
-            ImageMeasure::Brf => {
-                image((context.factor(), "1"), sensor, outcome, context, reflectance::brf)
-            }
+            ImageMeasure::Radiance => of(("radiance", "W m-2 sr-1 nm-1"), reflectance::radiance),
+            ImageMeasure::Brf => of((context.factor(), "1"), reflectance::brf),
         })
         .collect()
 }
 
 fn image(
     name: (&str, &str),
-    sensor: &Orthographic,
+    sensor: &ImageSensor,
     outcome: &ImageOutcome,
-    context: &Context,
+    (context, georeference): (&Context, Option<Georeference>),
     scale: fn(&[f64], &[f64]) -> Vec<f64>,
 ) -> Product {
     // Of one pixel at a time: an image is large, and f64 is needed only in between.
@@ -49,21 +51,23 @@ fn image(
         values: scaled(&outcome.pixels),
         standard_error: scaled(&outcome.errors),
         coverage: outcome.coverage.clone(),
-        georeference: georeference(sensor, context),
+        georeference,
     };
     let mean = (outcome.mean.as_slice(), outcome.mean_error.as_slice());
     Product { image: Some(pixels), ..context.product(name, Vec::new(), mean, scale) }
 }
 
 /// Place of a nadir image with north up; others lie askew on the ground.
-fn georeference(sensor: &Orthographic, context: &Context) -> Option<Georeference> {
-    let is_nadir = sensor.view.zenith == 0.0;
-    let north_up = (sensor.view.azimuth.to_degrees() - 180.0).abs() < 1e-9;
-    let corner = sensor.center + sensor.extent * glam::DVec2::new(-0.5, 0.5);
+fn georeference(sensor: &ImageSensor, stage: &Stage, context: &Context) -> Option<Georeference> {
+    let Optics::Orthographic(optics) = &sensor.optics else { return None };
+    let is_nadir = optics.view.zenith == 0.0;
+    let north_up = (optics.view.azimuth.to_degrees() - 180.0).abs() < 1e-9;
+    let (middle, extent) = footprint(optics, stage);
+    let corner = middle.truncate() + extent * DVec2::new(-0.5, 0.5);
     (is_nadir && north_up).then(|| Georeference {
         west: context.origin.0 + corner.x,
         north: context.origin.1 + corner.y,
-        pixel_width: sensor.extent.x / f64::from(sensor.size.x),
-        pixel_height: sensor.extent.y / f64::from(sensor.size.y),
+        pixel_width: extent.x / f64::from(sensor.size.x),
+        pixel_height: extent.y / f64::from(sensor.size.y),
     })
 }

@@ -3,13 +3,13 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::components::{
-    Directions, Name, Orthographic, PhotonMeasure, Photons, SceneId, Sensor, Stop, System,
+    Directions, ImageSensor, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop, System,
 };
 use crate::extract::Stage;
 use crate::products::{self, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    AlbedoCounter, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, Hemisphere,
+    AlbedoCounter, Camera, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, Hemisphere,
     LayerCounter, Projection, ViewCounter, Watch, measure_directions, measure_image,
     measure_image_forward, trace_photons,
 };
@@ -42,7 +42,7 @@ pub(super) fn measure(
     let start = Instant::now();
     let key = Key::new(stage.rules.seed).path("sensors").path(name);
     let measured = match sensor {
-        Sensor::Orthographic(sensor) => image(sensor, stage, context, (key, quality), watch),
+        Sensor::Image(sensor) => image(sensor, stage, context, (key, quality), watch),
         Sensor::Directions(sensor) => directions(sensor, stage, context, (key, quality), watch),
         Sensor::Photons(sensor) => photons(sensor, stage, context, (key, quality), watch),
     };
@@ -56,21 +56,28 @@ pub(super) fn measure(
     }
 }
 
+/// Samples that a pixel may have.
+const MOST_SAMPLES: f64 = 16_777_216.0;
+
 fn image(
-    sensor: &Orthographic,
+    sensor: &ImageSensor,
     stage: &Stage,
     context: &Context,
     (key, quality): (Key, f64),
     watch: Watch<'_>,
 ) -> Measured {
-    let projection = Projection::of_image(sensor, stage);
-    let samples = (f64::from(sensor.samples) * quality).ceil().max(2.0) as u32;
-    let outcome = match sensor.system {
-        System::Backward => measure_image(stage, &projection, samples, key, watch),
-        System::Forward => measure_image_forward(stage, &projection, samples, key, watch),
+    let camera = Camera::of(sensor, stage);
+    let samples = camera.samples(sensor.samples) * quality;
+    // Areas are rounded: what is a whole number but for that is one.
+    let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES) as u32;
+    let outcome = match (sensor.system, &camera) {
+        (System::Forward, Camera::Orthographic(projection)) => {
+            measure_image_forward(stage, projection, samples, key, watch)
+        }
+        _ => measure_image(stage, &camera, samples, key, watch),
     };
     Measured {
-        products: products::of_image(sensor, &outcome, context),
+        products: products::of_image(sensor, &outcome, stage, context),
         rays: outcome.rays,
         samples: outcome.samples,
         ended_by: format!("{} samples", outcome.samples),

@@ -1,6 +1,7 @@
 //! Document and assets to entities; every error of the scene in one pass, each with its place.
 
 mod files;
+mod images;
 mod instances;
 mod light;
 mod materials;

@@ -1,14 +1,12 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{DVec2, UVec2};
 use hecs::World;
 
 use super::Spawner;
 use crate::components::{
-    Directions, ImageMeasure, Name, Orthographic, PhotonMeasure, Photons, SceneId, Sensor, Stop,
-    System, View,
+    Directions, ImageMeasure, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop, System, View,
 };
-use crate::document::{self, Diagnostic, Sun, Terrain, Until, Views};
+use crate::document::{self, Diagnostic, Sun, Until, Views};
 
 impl Spawner<'_> {
     /// Spawns the sensors.
@@ -24,28 +22,9 @@ impl Spawner<'_> {
 
     fn sensor(&mut self, sensor: &document::Sensor, path: &str) -> Option<Sensor> {
         Some(match sensor {
-            document::Sensor::Orthographic {
-                size_px,
-                extent_m,
-                center_m,
-                zenith_deg,
-                azimuth_deg,
-                samples_per_px,
-                measure,
-                system,
-            } => {
-                let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
-                let middle = DVec2::from(*corner_m) + 0.5 * DVec2::from(*size_m);
-                Sensor::Orthographic(Orthographic {
-                    size: UVec2::from(*size_px),
-                    extent: DVec2::from(*extent_m),
-                    center: center_m.map_or(middle, DVec2::from),
-                    view: view(*zenith_deg, *azimuth_deg),
-                    samples: *samples_per_px,
-                    measure: image_measures(measure),
-                    system: system_of(system),
-                })
-            }
+            document::Sensor::Orthographic { .. }
+            | document::Sensor::Perspective { .. }
+            | document::Sensor::Fisheye { .. } => Sensor::Image(self.image(sensor)?),
             document::Sensor::Directions { views, until, measure, system } => {
                 Sensor::Directions(Directions {
                     views: self.views(views, &format!("{path}.views"))?,
@@ -110,11 +89,11 @@ impl Spawner<'_> {
     }
 }
 
-fn view(zenith_deg: f64, azimuth_deg: f64) -> View {
+pub(super) fn view(zenith_deg: f64, azimuth_deg: f64) -> View {
     View { zenith: zenith_deg.to_radians(), azimuth: azimuth_deg.to_radians() }
 }
 
-fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMeasure> {
+pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMeasure> {
     measures
         .iter()
         .map(|measure| match measure {
@@ -124,7 +103,7 @@ fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMeasure> {
         .collect()
 }
 
-fn system_of(system: &document::System) -> System {
+pub(super) fn system_of(system: &document::System) -> System {
     match system {
         document::System::Backward => System::Backward,
         document::System::Forward => System::Forward,

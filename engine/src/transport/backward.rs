@@ -159,6 +159,18 @@ impl Path {
         Some(onward)
     }
 
+    /// The radiance of the sky in a direction, as that of a trace that met nothing; whether there
+    /// is sky in that direction.
+    pub fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+        if direction.z <= 0.0 {
+            return false;
+        }
+        self.radiance.fill(0.0);
+        self.throughput.fill(1.0);
+        self.add_sky(&stage.light);
+        true
+    }
+
     fn add_sky(&mut self, light: &Light) {
         let Some(dome) = &light.dome else { return };
         let paths = self.radiance.iter_mut().zip(&self.throughput);

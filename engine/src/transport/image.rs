@@ -1,9 +1,9 @@
 use glam::{DVec2, UVec2};
 
 use super::{
-    Counter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter, Watch, blocks, trace_photons,
+    Camera, Counter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter, Watch, blocks,
+    trace_photons,
 };
-use crate::accel::Ray;
 use crate::extract::Stage;
 use crate::film::{Sums, ratio};
 use crate::sampling::{Key, Sampler};
@@ -11,8 +11,8 @@ use crate::sampling::{Key, Sampler};
 /// What an image measurement found, in units of the irradiance.
 #[derive(Clone, Debug)]
 pub struct ImageOutcome {
-    /// `L / E` of each pixel, sr⁻¹, shape `[rows, columns, bands]`; NaN where no sample met the
-    /// scene.
+    /// `L / E` of each pixel, sr⁻¹, shape `[rows, columns, bands]`: the mean over the samples that
+    /// met the scene; NaN where none did.
     pub pixels: Vec<f32>,
     /// Its standard error.
     pub errors: Vec<f32>,
@@ -75,12 +75,12 @@ struct Tile {
 #[must_use]
 pub fn measure_image(
     stage: &Stage,
-    projection: &Projection,
+    camera: &Camera,
     samples: u32,
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
-    let size = projection.size;
+    let size = camera.size();
     let (randomisations, each) = split(samples);
     let tiles = UVec2::new(size.x.div_ceil(TILE), size.y.div_ceil(TILE));
     let count = (tiles.x * tiles.y) as usize;
@@ -107,7 +107,7 @@ pub fn measure_image(
         256,
         |tile| {
             let (low, high) = area(tile);
-            trace_tile(stage, projection, low, high, (randomisations, each), key)
+            trace_tile(stage, camera, low, high, (randomisations, each), key)
         },
         |tile, result| {
             let (low, high) = area(tile);
@@ -180,16 +180,14 @@ pub fn path_rays(stage: &Stage, projection: &Projection, paths: u64, key: Key) -
     for index in 0..paths {
         let mut sampler = Sampler::new(key, index);
         let [u, v, ..] = sampler.next_event();
-        let origin = projection.point(DVec2::new(u, v));
-        let ray = Ray { origin, direction: -projection.towards, from: None };
-        path.trace(stage, ray, &mut sampler);
+        path.trace(stage, projection.ray(DVec2::new(u, v)), &mut sampler);
     }
     path.into_log()
 }
 
 fn trace_tile(
     stage: &Stage,
-    projection: &Projection,
+    camera: &Camera,
     low: UVec2,
     high: UVec2,
     (randomisations, each): (u32, u32),
@@ -205,7 +203,7 @@ fn trace_tile(
         hits: vec![0.0; randomisations as usize],
         rays: 0,
     };
-    let scale = projection.size.as_dvec2().recip();
+    let scale = camera.size().as_dvec2().recip();
     for row in low.y..high.y {
         for column in low.x..high.x {
             let at = UVec2::new(column, row);
@@ -217,9 +215,11 @@ fn trace_tile(
                     let index = morton(at) * u64::from(each) + u64::from(sample);
                     let mut sampler = Sampler::new(stream, index);
                     let [u, v, ..] = sampler.next_event();
-                    let origin = projection.point((at.as_dvec2() + DVec2::new(u, v)) * scale);
-                    let ray = Ray { origin, direction: -projection.towards, from: None };
-                    if path.trace(stage, ray, &mut sampler) {
+                    let on_film = (at.as_dvec2() + DVec2::new(u, v)) * scale;
+                    let Some(ray) = camera.ray(on_film) else { continue };
+                    let is_seen = path.trace(stage, ray, &mut sampler)
+                        || camera.sees_sky() && path.see_sky(stage, ray.direction);
+                    if is_seen {
                         hits[randomisation as usize] += 1.0;
                         sums.add(randomisation as usize, path.radiance(), 1.0);
                     }

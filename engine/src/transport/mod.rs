@@ -5,16 +5,17 @@
 
 mod backward;
 mod blocks;
+mod camera;
 mod counters;
 mod directions;
 mod emission;
 mod forward;
 mod hemisphere;
 mod image;
-mod projection;
 mod roulette;
 
 pub use backward::{Path, Traced};
+pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
 pub use counters::{
     AlbedoCounter, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, LayerCounter,
     ViewCounter,
@@ -23,7 +24,6 @@ pub use directions::{DirectionsOutcome, measure_directions};
 pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
-pub use projection::Projection;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread
 /// gives the standard error; with 32 the error of that error is 13 %.

@@ -22,10 +22,11 @@ const EMPTY: &str = "Scene(
     sun: (position: Spa),
     sky: Isotropic,
     sensors: {
-        \"a\": Orthographic, \"b\": Directions,
+        \"a\": Orthographic(cover: WholeScene), \"b\": Directions,
         \"c\": Directions(views: CrossPlane, until: RelError),
         \"d\": Directions(views: List, until: Seconds),
         \"e\": Directions(views: List, until: Samples),
+        \"g\": Perspective, \"h\": Fisheye, \"i\": Fisheye(look: Towards), \"j\": Fisheye(look: Target),
         \"f\": Photons(measure: [BrfCells, BrfViews, Albedo, Fapar, Fluxes]),
     },
     transport: (roulette: ()),

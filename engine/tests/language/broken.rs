@@ -25,6 +25,7 @@ broken! {
     bands
     bracket_closed_wrongly
     bracket_never_closed
+    cameras
     comma_missing
     comment_never_closed
     crown

@@ -3,9 +3,10 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Axis, Band, Boundary, Branches, CrownShape, Frame, ImageMeasure, Instances, LeafAngle,
-    LeafShape, Map, Material, Mesh, Options, Origin, PhotonMeasure, Roulette, Scene, Sensor, Sky,
-    Spectrum, Sun, SunPosition, System, Terrain, Transport, Trunk, Until, Views, read_text,
+    Axis, Band, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame, ImageMeasure,
+    Instances, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options, Origin, PhotonMeasure,
+    Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition, System, Terrain, Transport, Trunk,
+    Until, Views, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -167,6 +168,93 @@ fn views() -> BoxedStrategy<Views> {
     .boxed()
 }
 
+fn image_sensor() -> BoxedStrategy<Sensor> {
+    let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
+    let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
+    let pair = || (number(), number());
+    let triple = || (number(), number(), number());
+    let samples = || (option(any::<u32>()), option(number()));
+    let cover = || option(Just(Cover::WholeScene));
+    let look = prop_oneof![
+        Just(Look::Up),
+        Just(Look::Down),
+        pair().prop_map(|(zenith_deg, azimuth_deg)| Look::Towards { zenith_deg, azimuth_deg }),
+        triple().prop_map(|at_m| Look::Target { at_m }),
+    ];
+    let projection = prop::sample::select(vec![
+        FisheyeProjection::Equisolid,
+        FisheyeProjection::Equidistant,
+        FisheyeProjection::Orthographic,
+        FisheyeProjection::Stereographic,
+    ]);
+    let flags = || any::<(bool, bool, u32)>();
+    prop_oneof![
+        (
+            any::<(u32, u32)>(),
+            (option(pair()), cover()),
+            option(pair()),
+            pair(),
+            samples(),
+            list(image()),
+            system()
+        )
+            .prop_map(
+                |(size_px, (extent_m, cover), center_m, angles, samples, measure, system)| {
+                    Sensor::Orthographic {
+                        size_px,
+                        extent_m,
+                        cover,
+                        center_m,
+                        zenith_deg: angles.0,
+                        azimuth_deg: angles.1,
+                        samples_per_px: samples.0,
+                        samples_per_m2: samples.1,
+                        measure,
+                        system,
+                    }
+                }
+            ),
+        (any::<(u32, u32)>(), (triple(), triple(), triple()), pair(), flags(), list(image()))
+            .prop_map(|(size_px, points, fov_deg, flags, measure)| Sensor::Perspective {
+                size_px,
+                position_m: points.0,
+                target_m: points.1,
+                up: points.2,
+                fov_deg,
+                above_ground: flags.0,
+                sees_sky: flags.1,
+                samples_per_px: flags.2,
+                measure,
+                system: System::Backward,
+            }),
+        (
+            any::<(u32, u32)>(),
+            (triple(), look, option(triple())),
+            (number(), projection),
+            flags(),
+            list(image())
+        )
+            .prop_map(
+                |(size_px, (position_m, look, up), (fov_deg, projection), flags, measure)| {
+                    Sensor::Fisheye {
+                        size_px,
+                        position_m,
+                        look,
+                        up,
+                        fov_deg,
+                        projection,
+                        above_ground: flags.0,
+                        sees_sky: flags.1,
+                        samples_per_px: flags.2,
+                        measure,
+                        system: System::Backward,
+                    }
+                }
+            ),
+    ]
+    .boxed()
+}
+
 fn sensor() -> BoxedStrategy<Sensor> {
     let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
     let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
@@ -183,31 +271,8 @@ fn sensor() -> BoxedStrategy<Sensor> {
         (number(), list(number()))
             .prop_map(|(pixel_m, heights_m)| PhotonMeasure::Fluxes { pixel_m, heights_m }),
     ];
-    let pair = || (number(), number());
     prop_oneof![
-        (
-            any::<(u32, u32)>(),
-            pair(),
-            option(pair()),
-            pair(),
-            any::<u32>(),
-            list(image()),
-            system()
-        )
-            .prop_map(
-                |(size_px, extent_m, center_m, angles, samples_per_px, measure, system)| {
-                    Sensor::Orthographic {
-                        size_px,
-                        extent_m,
-                        center_m,
-                        zenith_deg: angles.0,
-                        azimuth_deg: angles.1,
-                        samples_per_px,
-                        measure,
-                        system,
-                    }
-                }
-            ),
+        image_sensor(),
         (views(), until, list(image()), system()).prop_map(|(views, until, measure, system)| {
             Sensor::Directions { views, until, measure, system }
         }),

@@ -1,5 +1,6 @@
 //! What a scene may not say, as far as it shows without files: ranges, shapes and names.
 
+mod camera;
 mod ground;
 mod light;
 mod mesh;

@@ -4,9 +4,10 @@ use std::mem::discriminant;
 
 use super::super::scene::{PhotonMeasure, Scene, Sensor, Terrain, Until, Views};
 use super::Report;
+use super::camera::{check_fisheye, check_orthographic, check_perspective};
 
 /// An image or a map may hold so many values, bands included: 16 GiB as f64.
-const VALUES: f64 = 2_147_483_648.0;
+pub(super) const VALUES: f64 = 2_147_483_648.0;
 
 /// Views that one sensor may have.
 const VIEWS: f64 = 100_000.0;
@@ -21,8 +22,16 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
         let path = format!("sensors.{name}");
         match sensor {
             Sensor::Orthographic { measure, .. } => {
-                check_image(&path, sensor, scene, report);
+                check_orthographic(&path, sensor, scene, report);
                 check_measures(&format!("{path}.measure"), measure, "Brf", report);
+            }
+            Sensor::Perspective { measure, .. } => {
+                check_perspective(&path, sensor, scene, report);
+                check_measures(&format!("{path}.measure"), measure, "Radiance", report);
+            }
+            Sensor::Fisheye { measure, .. } => {
+                check_fisheye(&path, sensor, scene, report);
+                check_measures(&format!("{path}.measure"), measure, "Radiance", report);
             }
             Sensor::Directions { views, until, measure, system: _ } => {
                 check_views(&format!("{path}.views"), views, scene, report);
@@ -38,52 +47,6 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
                 }
             }
         }
-    }
-}
-
-fn check_image(path: &str, image: &Sensor, scene: &Scene, report: &mut Report<'_>) {
-    let Sensor::Orthographic {
-        size_px: (columns, rows),
-        extent_m: (width, height),
-        center_m,
-        zenith_deg,
-        azimuth_deg,
-        samples_per_px,
-        measure: _,
-        system: _,
-    } = image
-    else {
-        return;
-    };
-    let at = |key: &str| format!("{path}.{key}");
-    for (key, pixels) in [("size_px[0]", columns), ("size_px[1]", rows)] {
-        if !(1..=65536).contains(pixels) {
-            let message = format!("expected 1 to 65536 pixels, found {pixels}");
-            report.error(&at(key), message, "`size_px` is (columns, rows)");
-        }
-    }
-    let values = f64::from(*columns) * f64::from(*rows) * scene.bands.len() as f64;
-    if values > VALUES {
-        let message = format!(
-            "{columns} x {rows} pixels in {} bands are more than an image may hold",
-            scene.bands.len()
-        );
-        report.error(&at("size_px"), message, format!("keep the product below {VALUES}"));
-    }
-    report.above_zero(&at("extent_m[0]"), *width);
-    report.above_zero(&at("extent_m[1]"), *height);
-    if let Some((x, y)) = center_m {
-        report.finite(&at("center_m"), &[*x, *y]);
-    }
-    report.zenith(&at("zenith_deg"), *zenith_deg);
-    report.azimuth(&at("azimuth_deg"), *azimuth_deg);
-    if !(2..=1 << 24).contains(samples_per_px) {
-        let message = format!("expected 2 to {} samples, found {samples_per_px}", 1 << 24);
-        let help = match samples_per_px {
-            0 | 1 => "1 sample gives no error estimate: write 2 or more",
-            _ => "write fewer samples, or average runs of several seeds",
-        };
-        report.error(&at("samples_per_px"), message, help);
     }
 }
 

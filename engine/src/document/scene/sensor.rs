@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
+use super::camera::{Cover, FisheyeProjection, Look};
 
 choice! {
     /// A sensor.
@@ -14,17 +15,73 @@ choice! {
             /// Columns and rows.
             size_px: (u32, u32) => "(256, 256)",
             /// Width and height of the footprint in the plane perpendicular to the view, m.
-            extent_m: (f64, f64) => "(50.0, 50.0)",
+            extent_m: Option<(f64, f64)> = None,
+            /// `WholeScene`, in place of `extent_m` and `center_m`.
+            cover: Option<Cover> = None,
             /// Point on the ground in the middle of the image, m; the terrain's middle if absent.
             center_m: Option<(f64, f64)> = None,
             /// Zenith angle of the sensor, degrees.
             zenith_deg: f64 = 0.0,
             /// Where the sensor is, clockwise from north, degrees. A nadir image has north up at 180.
             azimuth_deg: f64 = 180.0,
+            /// Samples a pixel; 64 if neither this nor `samples_per_m2` is written.
+            samples_per_px: Option<u32> = None,
+            /// Samples a square metre of the footprint, in place of `samples_per_px`.
+            samples_per_m2: Option<f64> = None,
+            /// What to report.
+            measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
+            /// Which transport system estimates it.
+            system: System = System::Backward,
+        },
+        /// Image of a camera in the scene or beside it, straight lines stay straight.
+        Perspective {
+            /// Columns and rows.
+            size_px: (u32, u32) => "(256, 192)",
+            /// Where the camera is, m.
+            position_m: (f64, f64, f64) => "(0.0, -50.0, 30.0)",
+            /// What lies in the middle of the image, m.
+            target_m: (f64, f64, f64) => "(50.0, 50.0, 5.0)",
+            /// What is up in the image; it need not be perpendicular to the view.
+            up: (f64, f64, f64) = (0.0, 0.0, 1.0),
+            /// Full angles of view across and down the image, degrees, each its own.
+            fov_deg: (f64, f64) => "(40.0, 30.0)",
+            /// Whether heights of position and target are above the ground below each.
+            above_ground: bool = false,
+            /// Whether the camera sees the sky where nothing stands before it; otherwise there is no
+            /// data.
+            sees_sky: bool = false,
             /// Samples a pixel.
             samples_per_px: u32 = 64,
             /// What to report.
-            measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
+            measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
+            /// Which transport system estimates it.
+            system: System = System::Backward,
+        },
+        /// Image of a camera that sees a hemisphere or more of its surroundings, as a disc as wide
+        /// as the image's shorter side; no data beside it. Of the sun it sees what it lights, not
+        /// the disc.
+        Fisheye {
+            /// Columns and rows.
+            size_px: (u32, u32) => "(256, 256)",
+            /// Where the camera is, m.
+            position_m: (f64, f64, f64) => "(50.0, 50.0, 1.5)",
+            /// What lies in the middle of the image.
+            look: Look = Look::Up,
+            /// What is up in the image; north if it looks `Up` or `Down`, the vertical if not.
+            up: Option<(f64, f64, f64)> = None,
+            /// Full angle of view, degrees: the disc's edge shows half of it off the axis.
+            fov_deg: f64 = 180.0,
+            /// How angles off the axis become distances from the middle.
+            projection: FisheyeProjection = FisheyeProjection::Equisolid,
+            /// Whether heights of position and target are above the ground below each.
+            above_ground: bool = false,
+            /// Whether the camera sees the sky where nothing stands before it; otherwise there is no
+            /// data.
+            sees_sky: bool = true,
+            /// Samples a pixel.
+            samples_per_px: u32 = 64,
+            /// What to report.
+            measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
             /// Which transport system estimates it.
             system: System = System::Backward,
         },

@@ -1,6 +1,7 @@
 use glam::{DMat2, DMat3, DVec2, DVec3, UVec2};
 
-use crate::components::{Orthographic, View};
+use crate::accel::Ray;
+use crate::components::{Footprint, Orthographic, View};
 use crate::extract::Stage;
 
 /// A parallel projection: a parallelogram in space through which light in one direction is seen.
@@ -25,17 +26,14 @@ impl Projection {
     /// Up in the image is away from the sensor's side, so that a nadir view with the default azimuth
     /// of 180° has north up and oblique views show what stands upright as upright.
     #[must_use]
-    pub fn of_image(sensor: &Orthographic, stage: &Stage) -> Self {
+    pub fn of_image(sensor: &Orthographic, size: UVec2, stage: &Stage) -> Self {
         let towards = sensor.view.direction();
-        let (sin, cos) = sensor.view.azimuth.sin_cos();
-        // Horizontal, to the right of somebody who looks from the sensor's side.
-        let right = DVec3::new(-cos, sin, 0.0);
-        let down = right.cross(towards);
-        let right = right * sensor.extent.x;
-        let down = down * sensor.extent.y;
-        let middle = sensor.center.extend(stage.ground);
+        let (right, down) = axes(sensor.view);
+        let (middle, extent) = footprint(sensor, stage);
+        let right = right * extent.x;
+        let down = down * extent.y;
         let corner = beyond(middle, towards, stage) - 0.5 * (right + down);
-        Self::new(towards, corner, right, down, sensor.size, false)
+        Self::new(towards, corner, right, down, size, false)
     }
 
     /// The middle half of the scene's rectangle, each way, seen straight down.
@@ -75,6 +73,12 @@ impl Projection {
     #[must_use]
     pub fn point(&self, at: DVec2) -> DVec3 {
         self.corner + self.right * at.x + self.down * at.y
+    }
+
+    /// The ray that ends up at a point of the parallelogram.
+    #[must_use]
+    pub fn ray(&self, at: DVec2) -> Ray {
+        Ray { origin: self.point(at), direction: -self.towards, from: None }
     }
 
     /// Number of pixels.
@@ -135,6 +139,35 @@ impl Projection {
             let cell = (at * self.size.as_dvec2()).as_uvec2().min(self.size - 1);
             (cell.y * self.size.x + cell.x) as usize
         })
+    }
+}
+
+/// Right and down in the image, unit vectors: right is horizontal, to the right of somebody who
+/// looks from the sensor's side.
+fn axes(view: View) -> (DVec3, DVec3) {
+    let (sin, cos) = view.azimuth.sin_cos();
+    let right = DVec3::new(-cos, sin, 0.0);
+    (right, right.cross(view.direction()))
+}
+
+/// The point in the middle of an orthographic image, and the image's width and height, m.
+#[must_use]
+pub fn footprint(sensor: &Orthographic, stage: &Stage) -> (DVec3, DVec2) {
+    match sensor.footprint {
+        Footprint::Rectangle { extent, center } => (center.extend(stage.ground), extent),
+        Footprint::WholeScene => {
+            let bottom = stage.geometry.bottom().min(stage.ground);
+            let size = stage.size.extend(stage.top() - bottom);
+            // A box is symmetric about its middle, and so is its outline from any side.
+            // An axis along a side of the box must not pick up the others by rounding.
+            let clean = |axis: DVec3| {
+                DVec3::select(axis.abs().cmplt(DVec3::splat(1e-12)), DVec3::ZERO, axis)
+            };
+            let (right, down) = axes(sensor.view);
+            let (right, down) = (clean(right), clean(down));
+            let extent = DVec2::new(right.abs().dot(size), down.abs().dot(size));
+            (stage.corner.extend(bottom) + 0.5 * size, extent)
+        }
     }
 }
 

@@ -1,0 +1,96 @@
+use glam::{DVec2, DVec3};
+
+use super::View;
+
+/// How points of an image become rays.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Optics {
+    /// Parallel rays.
+    Orthographic(Orthographic),
+    /// Rays through one point, straight lines stay straight.
+    Perspective(Perspective),
+    /// Rays through one point, a whole hemisphere or more.
+    Fisheye(Fisheye),
+}
+
+/// Parallel projection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orthographic {
+    /// What the image shows.
+    pub footprint: Footprint,
+    /// Where the sensor is.
+    pub view: View,
+}
+
+/// What a parallel projection shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Footprint {
+    /// A rectangle in the plane perpendicular to the view.
+    Rectangle {
+        /// Its width and height, m.
+        extent: DVec2,
+        /// The ground point in its middle, m, local frame.
+        center: DVec2,
+    },
+    /// The least rectangle around all that stands on the terrain's rectangle.
+    WholeScene,
+}
+
+/// Perspective projection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Perspective {
+    /// Where the camera is and where it looks.
+    pub stand: Stand,
+    /// Full angles of view across and down the image, rad, each below π.
+    pub field: DVec2,
+    /// Whether it sees the sky where nothing stands before it; otherwise there is no data.
+    pub sees_sky: bool,
+}
+
+/// Fisheye projection: a disc in the middle of the image, as wide as the image's shorter side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fisheye {
+    /// Where the camera is and where it looks.
+    pub stand: Stand,
+    /// How angles become distances from the middle.
+    pub mapping: Mapping,
+    /// Full angle of view, rad: what the disc's edge shows is half of it off the axis.
+    pub field: f64,
+    /// Whether it sees the sky where nothing stands before it; otherwise there is no data.
+    pub sees_sky: bool,
+}
+
+/// Distance from the middle of a fisheye image over an angle θ off the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mapping {
+    /// As `sin(θ/2)`: equal solid angles are equal areas.
+    Equisolid,
+    /// As `θ`.
+    Equidistant,
+    /// As `sin θ`: equal irradiance on a plane is equal area.
+    Orthographic,
+    /// As `tan(θ/2)`: circles stay circles.
+    Stereographic,
+}
+
+/// Where a camera is and where it looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stand {
+    /// Position, m, local frame.
+    pub position: DVec3,
+    /// What lies in the middle of the image.
+    pub look: Look,
+    /// What is up in the image; it need not be perpendicular to the view.
+    pub up: DVec3,
+    /// Whether the heights of position and target are above the ground below each of them.
+    pub above_ground: bool,
+}
+
+/// What lies in the middle of a camera's image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// A direction from the camera; a unit vector.
+    Direction(DVec3),
+    /// A point, m, local frame.
+    Target(DVec3),
+}

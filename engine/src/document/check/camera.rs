@@ -1,0 +1,306 @@
+//! Sensors that take images.
+
+use super::super::scene::{Cover, FisheyeProjection, Look, Scene, Sensor, System, Terrain};
+use super::Report;
+use super::sensor::VALUES;
+
+type Point = (f64, f64, f64);
+
+pub(super) fn check_orthographic(
+    path: &str,
+    sensor: &Sensor,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let Sensor::Orthographic {
+        size_px,
+        extent_m,
+        cover,
+        center_m,
+        zenith_deg,
+        azimuth_deg,
+        samples_per_px,
+        samples_per_m2,
+        measure: _,
+        system: _,
+    } = sensor
+    else {
+        return;
+    };
+    let at = |key: &str| format!("{path}.{key}");
+    check_size(path, *size_px, scene, report);
+    if let Some((width, height)) = extent_m {
+        report.above_zero(&at("extent_m[0]"), *width);
+        report.above_zero(&at("extent_m[1]"), *height);
+    }
+    match (extent_m, cover) {
+        (None, None) => {
+            let message = "the image covers nothing: it has neither `extent_m` nor `cover`";
+            let help = "write `extent_m: (50.0, 50.0)` for so many metres of the scene, or \
+                        `cover: WholeScene`";
+            report.error(path, message, help);
+        }
+        (Some(_), Some(Cover::WholeScene)) => {
+            let message = "`cover` and `extent_m` both say how much of the scene is shown";
+            report.error(&at("cover"), message, "take one of the two out");
+        }
+        (None, Some(Cover::WholeScene)) if center_m.is_some() => {
+            let message = "the middle of the whole scene is known";
+            let help = "take `center_m` out, or write `extent_m` in place of `cover`";
+            report.error(&at("center_m"), message, help);
+        }
+        _ => {}
+    }
+    if let Some((x, y)) = center_m {
+        report.finite(&at("center_m"), &[*x, *y]);
+    }
+    report.zenith(&at("zenith_deg"), *zenith_deg);
+    report.azimuth(&at("azimuth_deg"), *azimuth_deg);
+    if let Some(samples) = samples_per_px {
+        check_samples(path, *samples, report);
+    }
+    let Some(density) = samples_per_m2 else { return };
+    report.above_zero(&at("samples_per_m2"), *density);
+    if samples_per_px.is_some() {
+        let message = "`samples_per_m2` and `samples_per_px` both say how many samples";
+        report.error(&at("samples_per_m2"), message, "take one of the two out");
+    }
+    if let Some((width, height)) = extent_m {
+        let pixel = width * height / (f64::from(size_px.0) * f64::from(size_px.1));
+        let most = f64::from(MOST_SAMPLES);
+        if pixel.is_finite() && density * pixel > most {
+            let message = format!("this makes more than {most} samples in a pixel of {pixel} m²");
+            let help = format!("write at most {}", (most / pixel).floor());
+            report.error(&at("samples_per_m2"), message, help);
+        }
+    }
+}
+
+pub(super) fn check_perspective(
+    path: &str,
+    sensor: &Sensor,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let Sensor::Perspective {
+        size_px,
+        position_m,
+        target_m,
+        up,
+        fov_deg,
+        above_ground,
+        sees_sky: _,
+        samples_per_px,
+        measure: _,
+        system,
+    } = sensor
+    else {
+        return;
+    };
+    check_size(path, *size_px, scene, report);
+    check_samples(path, *samples_per_px, report);
+    check_system(path, system, report);
+    check_position(path, *position_m, *above_ground, scene, report);
+    let target = format!("{path}.target_m");
+    if let Some(ahead) = check_target(&target, *position_m, *target_m, report) {
+        let is_written = *up != (0.0, 0.0, 1.0);
+        check_up(
+            &format!("{path}.{}", if is_written { "up" } else { "target_m" }),
+            *up,
+            ahead,
+            report,
+        );
+    }
+    for (key, angle) in [("fov_deg[0]", fov_deg.0), ("fov_deg[1]", fov_deg.1)] {
+        if !(angle > 0.0 && angle < 180.0) {
+            let message =
+                format!("expected an angle of view above 0 and below 180°, found {angle}");
+            let help = if angle >= 180.0 {
+                "a flat film shows less than 180°: write `Fisheye(..)` for more"
+            } else {
+                "a camera with 40° across and 30° down has `fov_deg: (40.0, 30.0)`"
+            };
+            report.error(&format!("{path}.{key}"), message, help);
+        }
+    }
+}
+
+pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
+    let Sensor::Fisheye {
+        size_px,
+        position_m,
+        look,
+        up,
+        fov_deg,
+        projection,
+        above_ground,
+        sees_sky: _,
+        samples_per_px,
+        measure: _,
+        system,
+    } = sensor
+    else {
+        return;
+    };
+    check_size(path, *size_px, scene, report);
+    check_samples(path, *samples_per_px, report);
+    check_system(path, system, report);
+    check_position(path, *position_m, *above_ground, scene, report);
+    let (ahead, usual_up) = match look {
+        Look::Up => (Some((0.0, 0.0, 1.0)), (0.0, 1.0, 0.0)),
+        Look::Down => (Some((0.0, 0.0, -1.0)), (0.0, 1.0, 0.0)),
+        Look::Towards { zenith_deg, azimuth_deg } => {
+            (check_towards(path, *zenith_deg, *azimuth_deg, report), (0.0, 0.0, 1.0))
+        }
+        Look::Target { at_m } => {
+            let target = format!("{path}.look.at_m");
+            (check_target(&target, *position_m, *at_m, report), (0.0, 0.0, 1.0))
+        }
+    };
+    if let Some(ahead) = ahead {
+        let key = if up.is_some() { "up" } else { "look" };
+        check_up(&format!("{path}.{key}"), up.unwrap_or(usual_up), ahead, report);
+    }
+    let (most, what) = match projection {
+        FisheyeProjection::Equisolid => (360.0, "an equisolid"),
+        FisheyeProjection::Equidistant => (360.0, "an equidistant"),
+        FisheyeProjection::Orthographic => (180.0, "an orthographic"),
+        FisheyeProjection::Stereographic => (350.0, "a stereographic"),
+    };
+    if !(*fov_deg > 0.0 && *fov_deg <= most) {
+        let message =
+            format!("expected an angle of view above 0 and up to {most}°, found {fov_deg}");
+        let help = if *fov_deg > 0.0 {
+            format!("{what} image ends there; a hemisphere is `fov_deg: 180.0`")
+        } else {
+            "a hemisphere is `fov_deg: 180.0`".to_owned()
+        };
+        report.error(&format!("{path}.fov_deg"), message, help);
+    }
+}
+
+/// Samples that a pixel may have.
+const MOST_SAMPLES: u32 = 1 << 24;
+
+fn check_size(path: &str, (columns, rows): (u32, u32), scene: &Scene, report: &mut Report<'_>) {
+    let at = |key: &str| format!("{path}.{key}");
+    for (key, pixels) in [("size_px[0]", columns), ("size_px[1]", rows)] {
+        if !(1..=65536).contains(&pixels) {
+            let message = format!("expected 1 to 65536 pixels, found {pixels}");
+            report.error(&at(key), message, "`size_px` is (columns, rows)");
+        }
+    }
+    let values = f64::from(columns) * f64::from(rows) * scene.bands.len() as f64;
+    if values > VALUES {
+        let message = format!(
+            "{columns} x {rows} pixels in {} bands are more than an image may hold",
+            scene.bands.len()
+        );
+        report.error(&at("size_px"), message, format!("keep the product below {VALUES}"));
+    }
+}
+
+fn check_samples(path: &str, samples: u32, report: &mut Report<'_>) {
+    if !(2..=MOST_SAMPLES).contains(&samples) {
+        let message = format!("expected 2 to {MOST_SAMPLES} samples, found {samples}");
+        let help = match samples {
+            0 | 1 => "1 sample gives no error estimate: write 2 or more",
+            _ => "write fewer samples, or average runs of several seeds",
+        };
+        report.error(&format!("{path}.samples_per_px"), message, help);
+    }
+}
+
+fn check_system(path: &str, system: &System, report: &mut Report<'_>) {
+    if *system == System::Forward {
+        let message = "photon packets never meet the one point that this camera looks from";
+        let help = "take `system: Forward` out; only orthographic images can be drawn forward";
+        report.error(&format!("{path}.system"), message, help);
+    }
+}
+
+fn check_position(
+    path: &str,
+    (x, y, z): Point,
+    above_ground: bool,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let path = format!("{path}.position_m");
+    report.finite(&path, &[x, y, z]);
+    let Terrain::Plane { height_m, .. } = &scene.terrain;
+    let ground = if above_ground { 0.0 } else { *height_m };
+    if z <= ground && report.is_readable("terrain") {
+        let message =
+            format!("the camera is not above the ground, whose height here is {ground} m");
+        let help = format!(
+            "write a greater height: `({x:?}, {y:?}, {:?})` is 1.5 m above the ground",
+            ground + 1.5
+        );
+        report.error(&path, message, help);
+    }
+}
+
+/// The direction from a camera to its target, if there is one; not of unit length.
+fn check_target(
+    path: &str,
+    position: Point,
+    target: Point,
+    report: &mut Report<'_>,
+) -> Option<Point> {
+    report.finite(path, &[target.0, target.1, target.2]);
+    let ahead = (target.0 - position.0, target.1 - position.1, target.2 - position.2);
+    if length(ahead) == 0.0 {
+        let message = "the target is the camera's own position: it looks nowhere";
+        let (x, y, z) = position;
+        let help = format!("write a point to look at: `({x:?}, {:?}, {z:?})` lies north", y + 10.0);
+        report.error(path, message, help);
+        return None;
+    }
+    Some(ahead)
+}
+
+fn check_towards(
+    path: &str,
+    zenith_deg: f64,
+    azimuth_deg: f64,
+    report: &mut Report<'_>,
+) -> Option<Point> {
+    report.azimuth(&format!("{path}.look.azimuth_deg"), azimuth_deg);
+    if !(0.0..=180.0).contains(&zenith_deg) {
+        let message = format!("expected an angle from the vertical, 0 to 180°, found {zenith_deg}");
+        let help = "0 looks up, 90 to the horizon, 180 down";
+        report.error(&format!("{path}.look.zenith_deg"), message, help);
+        return None;
+    }
+    let (zenith, azimuth) = (zenith_deg.to_radians(), azimuth_deg.to_radians());
+    Some((zenith.sin() * azimuth.sin(), zenith.sin() * azimuth.cos(), zenith.cos()))
+}
+
+/// Sines of less than this between view and up are no angle that a person means.
+const ALONG: f64 = 1e-6;
+
+fn check_up(path: &str, up: Point, ahead: Point, report: &mut Report<'_>) {
+    let (ux, uy, uz) = up;
+    let (ax, ay, az) = ahead;
+    report.finite(path, &[ux, uy, uz]);
+    let across = (ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux);
+    if length(across) <= ALONG * length(up) * length(ahead) {
+        let message = if length(up) == 0.0 {
+            "this is no direction"
+        } else {
+            "what is up in the image lies along the view"
+        };
+        let is_vertical = ax.hypot(ay) <= ALONG * az.abs();
+        let help = if is_vertical {
+            "write `up: (0.0, 1.0, 0.0)`: north is then at the top of the image"
+        } else {
+            "write `up: (0.0, 0.0, 1.0)`: what stands upright is then upright in the image"
+        };
+        report.error(path, message, help);
+    }
+}
+
+fn length((x, y, z): Point) -> f64 {
+    x.hypot(y).hypot(z)
+}

@@ -1,0 +1,126 @@
+use glam::{DVec2, DVec3, UVec2};
+
+use super::Spawner;
+use super::sensors::{image_measures, system_of, view};
+use crate::components::{
+    Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
+    Perspective, Stand,
+};
+use crate::document::{self, Cover, FisheyeProjection, Sensor, Terrain};
+
+/// Samples of a pixel where a scene does not say.
+const SAMPLES: u32 = 64;
+
+impl Spawner<'_> {
+    /// The image sensor of a document's; none if it takes no image.
+    pub(super) fn image(&self, sensor: &Sensor) -> Option<ImageSensor> {
+        let (size, samples, measure, system) = match sensor {
+            Sensor::Orthographic {
+                size_px,
+                samples_per_px,
+                samples_per_m2,
+                measure,
+                system,
+                ..
+            } => {
+                let per_pixel = ImageSamples::PerPixel(samples_per_px.unwrap_or(SAMPLES));
+                let samples = samples_per_m2.map_or(per_pixel, ImageSamples::PerArea);
+                (size_px, samples, measure, system)
+            }
+            Sensor::Perspective { size_px, samples_per_px, measure, system, .. }
+            | Sensor::Fisheye { size_px, samples_per_px, measure, system, .. } => {
+                (size_px, ImageSamples::PerPixel(*samples_per_px), measure, system)
+            }
+            Sensor::Directions { .. } | Sensor::Photons { .. } => return None,
+        };
+        Some(ImageSensor {
+            size: UVec2::from(*size),
+            optics: self.camera(sensor)?,
+            samples,
+            measure: image_measures(measure),
+            system: system_of(system),
+        })
+    }
+
+    fn camera(&self, sensor: &Sensor) -> Option<Optics> {
+        Some(match sensor {
+            Sensor::Orthographic { extent_m, cover, center_m, zenith_deg, azimuth_deg, .. } => {
+                let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
+                let middle = DVec2::from(*corner_m) + 0.5 * DVec2::from(*size_m);
+                // `document::check` asks for exactly one of the two.
+                let footprint = match (cover, extent_m) {
+                    (None, Some(extent)) => Footprint::Rectangle {
+                        extent: DVec2::from(*extent),
+                        center: center_m.map_or(middle, DVec2::from),
+                    },
+                    (Some(Cover::WholeScene), _) | (None, None) => Footprint::WholeScene,
+                };
+                let view = view(*zenith_deg, *azimuth_deg);
+                Optics::Orthographic(Orthographic { footprint, view })
+            }
+            Sensor::Perspective {
+                position_m,
+                target_m,
+                up,
+                fov_deg,
+                above_ground,
+                sees_sky,
+                ..
+            } => Optics::Perspective(Perspective {
+                stand: Stand {
+                    position: DVec3::from(*position_m),
+                    look: Look::Target(DVec3::from(*target_m)),
+                    up: DVec3::from(*up),
+                    above_ground: *above_ground,
+                },
+                field: DVec2::new(fov_deg.0.to_radians(), fov_deg.1.to_radians()),
+                sees_sky: *sees_sky,
+            }),
+            Sensor::Fisheye {
+                position_m,
+                look,
+                up,
+                fov_deg,
+                projection,
+                above_ground,
+                sees_sky,
+                ..
+            } => {
+                let (look, usual_up) = look_of(look);
+                Optics::Fisheye(Fisheye {
+                    stand: Stand {
+                        position: DVec3::from(*position_m),
+                        look,
+                        up: up.map_or(usual_up, DVec3::from),
+                        above_ground: *above_ground,
+                    },
+                    mapping: mapping(projection),
+                    field: fov_deg.to_radians(),
+                    sees_sky: *sees_sky,
+                })
+            }
+            Sensor::Directions { .. } | Sensor::Photons { .. } => return None,
+        })
+    }
+}
+
+/// Where a camera looks, and what is up in its image if nothing else is written.
+fn look_of(look: &document::Look) -> (Look, DVec3) {
+    match look {
+        document::Look::Up => (Look::Direction(DVec3::Z), DVec3::Y),
+        document::Look::Down => (Look::Direction(DVec3::NEG_Z), DVec3::Y),
+        document::Look::Towards { zenith_deg, azimuth_deg } => {
+            (Look::Direction(view(*zenith_deg, *azimuth_deg).direction()), DVec3::Z)
+        }
+        document::Look::Target { at_m } => (Look::Target(DVec3::from(*at_m)), DVec3::Z),
+    }
+}
+
+fn mapping(projection: &FisheyeProjection) -> Mapping {
+    match projection {
+        FisheyeProjection::Equisolid => Mapping::Equisolid,
+        FisheyeProjection::Equidistant => Mapping::Equidistant,
+        FisheyeProjection::Orthographic => Mapping::Orthographic,
+        FisheyeProjection::Stereographic => Mapping::Stereographic,
+    }
+}
