@@ -111,35 +111,20 @@ pub(super) fn trace_both<I: Isa>(
     closest: &Query<'_>,
 ) -> (Option<Found>, Option<Found>) {
     let (mut any_space, mut closest_space) = (Space::new(), Space::new());
-    let any = Walk::<I, true>::new(isa, any, &mut any_space);
-    let closest = Walk::<I, false>::new(isa, closest, &mut closest_space);
-    match (any, closest) {
-        (Some(mut any), Some(mut closest)) => {
-            let (mut any_goes, mut closest_goes) = (true, true);
-            while any_goes && closest_goes {
-                any_goes = any.step(isa);
-                closest_goes = closest.step(isa);
-            }
-            while any_goes {
-                any_goes = any.step(isa);
-            }
-            while closest_goes {
-                closest_goes = closest.step(isa);
-            }
-            (any.best.found, closest.best.found)
+    let mut any = Walk::<I, true>::new(isa, any, &mut any_space);
+    let mut closest = Walk::<I, false>::new(isa, closest, &mut closest_space);
+    let (mut any_goes, mut closest_goes) = (any.is_some(), closest.is_some());
+    // One loop for both and for what is left of either: the code of a step is long, and it should
+    // stand here once for each.
+    while any_goes || closest_goes {
+        if any_goes && let Some(walk) = &mut any {
+            any_goes = walk.step(isa);
         }
-        (any, closest) => {
-            let any = any.and_then(|mut walk| {
-                while walk.step(isa) {}
-                walk.best.found
-            });
-            let closest = closest.and_then(|mut walk| {
-                while walk.step(isa) {}
-                walk.best.found
-            });
-            (any, closest)
+        if closest_goes && let Some(walk) = &mut closest {
+            closest_goes = walk.step(isa);
         }
     }
+    (any.and_then(|walk| walk.best.found), closest.and_then(|walk| walk.best.found))
 }
 
 /// The state of one ray's way through both levels of trees.
@@ -202,11 +187,13 @@ impl<'a, I: Isa, const ANY: bool> Walk<'a, I, ANY> {
     /// cannot foresee costs it more than the work that it saves.
     #[inline(always)]
     fn step(&mut self, isa: I) -> bool {
-        let Some((at, near)) = self.stack.pop(self.base) else { return self.leave_mesh() };
-        if near > self.limit {
-            return true;
-        }
-        let at = Ref(at);
+        let (at, near) = loop {
+            match self.stack.pop(self.base) {
+                None => return self.leave_mesh(),
+                Some((at, near)) if near <= self.limit => break (Ref(at), near),
+                Some(_) => {}
+            }
+        };
         if at.is_inner() {
             let node = &self.nodes[at.index()];
             let (enter, leave) = self.boxes.children(isa, node, isa.splat(self.limit));
