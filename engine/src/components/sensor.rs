@@ -48,6 +48,18 @@ pub enum ImageMeasure {
     Radiance,
     /// Bidirectional reflectance factor `π L / E`; the HDRF under a sky.
     Brf,
+    /// Shares of sunlit and shaded ground and canopy.
+    FourComponents,
+    /// Share of the ground, or of the sky in a camera that looks up.
+    GapFraction,
+}
+
+impl ImageMeasure {
+    /// Whether it is made of light, and not of what is seen first.
+    #[must_use]
+    pub const fn is_light(self) -> bool {
+        matches!(self, Self::Radiance | Self::Brf)
+    }
 }
 
 /// How many paths an image is made of.

@@ -13,6 +13,8 @@ use crate::scattering::padded;
 /// is the BRF, and times `E` it is the radiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
+    /// Where the sun is, whether it shines in any band or not.
+    pub sun: Option<Beam>,
     /// The sun, if it shines.
     pub beam: Option<Beam>,
     /// The sky, if it shines.
@@ -108,12 +110,14 @@ impl Light {
         let shines = |share: &[f32]| share.iter().any(|&s| s > 0.0);
         let beam_share = share(&beam_irradiance);
         let sky_share = share(&sky_irradiance);
+        let sun = sun.map(|sun| Beam {
+            direction: sun.direction,
+            disc: Disc::new(sun.direction, sun.radius),
+            share: beam_share,
+        });
         Self {
-            beam: sun.filter(|_| shines(&beam_share)).map(|sun| Beam {
-                direction: sun.direction,
-                disc: Disc::new(sun.direction, sun.radius),
-                share: beam_share,
-            }),
+            beam: sun.clone().filter(|beam| shines(&beam.share)),
+            sun,
             dome: shines(&sky_share).then_some(Dome { share: sky_share }),
             irradiance,
         }

@@ -3,7 +3,7 @@ use super::{Axis, Context, Product, reflectance};
 use crate::components::{ImageMeasure, View};
 use crate::film::Spread;
 
-/// The products of a measurement of directions; `spread` is of `L / E`, shape `[views, bands]`.
+/// The products of a measurement of directions that are made of light; `spread` is of `L / E`, shape `[views, bands]`.
 #[must_use]
 pub fn of_directions(
     views: &[View],
@@ -15,19 +15,20 @@ pub fn of_directions(
     let values = (spread.mean(), errors.as_slice());
     measures
         .iter()
-        .map(|measure| match measure {
-            ImageMeasure::Radiance => context.product(
+        .filter_map(|measure| match measure {
+            ImageMeasure::Radiance => Some(context.product(
                 ("radiance", "W m-2 sr-1 nm-1"),
                 vec![axes(views)],
                 values,
                 reflectance::radiance,
-            ),
-            ImageMeasure::Brf => context.product(
+            )),
+            ImageMeasure::Brf => Some(context.product(
                 (context.factor(), "1"),
                 vec![axes(views)],
                 values,
                 reflectance::brf,
-            ),
+            )),
+            ImageMeasure::FourComponents | ImageMeasure::GapFraction => None,
         })
         .collect()
 }

@@ -5,7 +5,7 @@ use crate::components::{ImageMeasure, ImageSensor, Optics};
 use crate::extract::Stage;
 use crate::transport::{ImageOutcome, footprint};
 
-/// The products of an image measurement.
+/// The products of an image measurement that are made of light.
 #[must_use]
 pub fn of_image(
     sensor: &ImageSensor,
@@ -18,9 +18,12 @@ pub fn of_image(
     sensor
         .measure
         .iter()
-        .map(|measure| match measure {
-            ImageMeasure::Radiance => of(("radiance", "W m-2 sr-1 nm-1"), reflectance::radiance),
-            ImageMeasure::Brf => of((context.factor(), "1"), reflectance::brf),
+        .filter_map(|measure| match measure {
+            ImageMeasure::Radiance => {
+                Some(of(("radiance", "W m-2 sr-1 nm-1"), reflectance::radiance))
+            }
+            ImageMeasure::Brf => Some(of((context.factor(), "1"), reflectance::brf)),
+            ImageMeasure::FourComponents | ImageMeasure::GapFraction => None,
         })
         .collect()
 }
@@ -58,7 +61,11 @@ fn image(
 }
 
 /// Place of a nadir image with north up; others lie askew on the ground.
-fn georeference(sensor: &ImageSensor, stage: &Stage, context: &Context) -> Option<Georeference> {
+pub(super) fn georeference(
+    sensor: &ImageSensor,
+    stage: &Stage,
+    context: &Context,
+) -> Option<Georeference> {
     let Optics::Orthographic(optics) = &sensor.optics else { return None };
     let is_nadir = optics.view.zenith == 0.0;
     let north_up = (optics.view.azimuth.to_degrees() - 180.0).abs() < 1e-9;

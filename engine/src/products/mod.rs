@@ -1,16 +1,20 @@
 //! What a run reports: named quantities with unit, axes and standard error, made from films by pure
 //! functions.
 
+mod components;
 mod context;
 mod directions;
 mod images;
+mod leaf_area;
 mod photons;
 mod reflectance;
 mod report;
 
+pub use components::{components_of_directions, components_of_image};
 pub use context::Context;
 pub use directions::of_directions;
 pub use images::of_image;
+pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller};
 pub use photons::{albedo, brf_cells, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{Axis, AxisPoints, Georeference, Image, Product, Report, SensorReport};

@@ -10,8 +10,9 @@ use crate::products::{self, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
     AlbedoCounter, Camera, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, Hemisphere,
-    LayerCounter, Projection, ViewCounter, Watch, measure_directions, measure_image,
-    measure_image_forward, trace_photons,
+    LayerCounter, Projection, ViewCounter, Watch, measure_directions,
+    measure_directions_components, measure_image, measure_image_components, measure_image_forward,
+    trace_photons,
 };
 
 /// All sensors in document order.
@@ -22,12 +23,20 @@ pub(super) fn in_order(world: &World) -> Vec<(String, Sensor)> {
     sensors.into_iter().map(|(_, name, sensor)| (name.0.clone(), sensor.clone())).collect()
 }
 
-/// What a measurement gives beside its products.
+/// What a measurement gives.
+#[derive(Default)]
 struct Measured {
     products: Vec<Product>,
     rays: u64,
     samples: u64,
     ended_by: String,
+}
+
+impl Measured {
+    fn count(&mut self, rays: u64, samples: u64) {
+        self.rays += rays;
+        self.samples += samples;
+    }
 }
 
 /// Measures one sensor.
@@ -70,18 +79,29 @@ fn image(
     let samples = camera.samples(sensor.samples) * quality;
     // Areas are rounded: what is a whole number but for that is one.
     let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES) as u32;
-    let outcome = match (sensor.system, &camera) {
-        (System::Forward, Camera::Orthographic(projection)) => {
-            measure_image_forward(stage, projection, samples, key, watch)
-        }
-        _ => measure_image(stage, &camera, samples, key, watch),
-    };
-    Measured {
-        products: products::of_image(sensor, &outcome, stage, context),
-        rays: outcome.rays,
-        samples: outcome.samples,
-        ended_by: format!("{} samples", outcome.samples),
+    let mut measured = Measured::default();
+    if sensor.measure.iter().any(|measure| measure.is_light()) {
+        let outcome = match (sensor.system, &camera) {
+            (System::Forward, Camera::Orthographic(projection)) => {
+                measure_image_forward(stage, projection, samples, key, watch)
+            }
+            _ => measure_image(stage, &camera, samples, key, watch),
+        };
+        measured.products = products::of_image(sensor, &outcome, stage, context);
+        measured.count(outcome.rays, outcome.samples);
     }
+    if !sensor.measure.iter().all(|measure| measure.is_light()) {
+        let key = key.path("components");
+        let outcome = measure_image_components(stage, &camera, samples, key, watch);
+        for &measure in &sensor.measure {
+            let products =
+                products::components_of_image(measure, sensor, &outcome, (stage, context));
+            measured.products.extend(products);
+        }
+        measured.count(outcome.rays, outcome.samples);
+    }
+    measured.ended_by = format!("{} samples", measured.samples);
+    measured
 }
 
 fn directions(
@@ -102,20 +122,45 @@ fn directions(
         .collect();
     let start = Instant::now();
     let elapsed = || start.elapsed().as_secs_f64();
-    let scene = (sensor.views.as_slice(), sensor.system);
-    let outcome = measure_directions(stage, scene, &until, key, &elapsed, watch);
-    let error = outcome.spread.median_relative_error();
-    Measured {
-        products: products::of_directions(&sensor.views, &sensor.measure, &outcome.spread, context),
-        rays: outcome.rays,
-        samples: outcome.samples,
-        ended_by: match outcome.ended_by {
+    let views = sensor.views.as_slice();
+    let mut measured = Measured::default();
+    if sensor.measure.iter().any(|measure| measure.is_light()) {
+        let scene = (views, sensor.system);
+        let outcome = measure_directions(stage, scene, &until, key, &elapsed, watch);
+        let error = outcome.spread.median_relative_error();
+        measured.products =
+            products::of_directions(views, &sensor.measure, &outcome.spread, context);
+        measured.count(outcome.rays, outcome.samples);
+        measured.ended_by = match outcome.ended_by {
             Stop::RelError(limit) => {
                 format!("median relative standard error {error:.2e} at most {limit:.2e}")
             }
-            Stop::Seconds(limit) => format!("{limit} s"),
-            Stop::Samples(_) => format!("{} samples", outcome.samples),
-        },
+            other => ending(other, measured.samples),
+        };
+    }
+    if !sensor.measure.iter().all(|measure| measure.is_light()) {
+        let key = key.path("components");
+        let start = Instant::now();
+        let elapsed = || start.elapsed().as_secs_f64();
+        let outcome = measure_directions_components(stage, views, &until, key, &elapsed, watch);
+        for &measure in &sensor.measure {
+            let products = products::components_of_directions(measure, views, &outcome);
+            measured.products.extend(products);
+        }
+        measured.count(outcome.rays, outcome.samples);
+        if measured.ended_by.is_empty() {
+            measured.ended_by = ending(outcome.ended_by, outcome.samples);
+        }
+    }
+    measured
+}
+
+/// What ended a measurement, for a person.
+fn ending(stop: Stop, samples: u64) -> String {
+    match stop {
+        Stop::RelError(limit) => format!("median relative standard error at most {limit:.2e}"),
+        Stop::Seconds(limit) => format!("{limit} s"),
+        Stop::Samples(_) => format!("{samples} samples"),
     }
 }
 

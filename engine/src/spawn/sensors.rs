@@ -99,6 +99,8 @@ pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMe
         .map(|measure| match measure {
             document::ImageMeasure::Radiance => ImageMeasure::Radiance,
             document::ImageMeasure::Brf => ImageMeasure::Brf,
+            document::ImageMeasure::FourComponents => ImageMeasure::FourComponents,
+            document::ImageMeasure::GapFraction => ImageMeasure::GapFraction,
         })
         .collect()
 }

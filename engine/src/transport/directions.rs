@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use super::forward::trace_packets;
-use super::{Counter, Path, Projection, RANDOMISATIONS, ViewCounter, Watch, blocks};
+use super::{Counter, Path, Projection, RANDOMISATIONS, ViewCounter, Walk, Watch, blocks};
 use crate::accel::Ray;
 use crate::components::{Stop, System, View};
 use crate::extract::Stage;
@@ -37,45 +37,101 @@ pub fn measure_directions(
     elapsed: &dyn Fn() -> f64,
     watch: Watch<'_>,
 ) -> DirectionsOutcome {
-    assert!(!until.is_empty(), "a measurement ends");
-    let projections: Vec<Projection> =
-        views.iter().map(|&view| Projection::of_scene(view, stage)).collect();
-    let mut rows = vec![Sums::new(views.len(), stage.bands); RANDOMISATIONS as usize];
-    let mut rays = 0;
-    let mut done = 0;
-    let mut next = first_round(until);
-    loop {
-        rays += match system {
-            System::Backward => trace_paths(stage, &projections, done..next, key, &mut rows),
-            System::Forward => trace_photons_to(stage, &projections, done..next, key, &mut rows),
-        };
-        done = next;
-        let spread = spread(&rows, done);
-        let samples = done * u64::from(RANDOMISATIONS);
-        let error = spread.median_relative_error();
-        let seconds = elapsed();
-        let progress = |stop: &Stop| match *stop {
-            // The error falls as the root of the number of samples at the slowest.
-            Stop::RelError(target) => (target / error).powi(2),
-            Stop::Seconds(limit) => seconds / limit,
-            Stop::Samples(limit) => samples as f64 / limit as f64,
-        };
-        let furthest = until
-            .iter()
-            .max_by(|a, b| progress(a).total_cmp(&progress(b)))
-            .expect("there is a condition");
-        let part = progress(furthest);
-        watch(part.min(1.0));
-        if part >= 1.0 {
-            return DirectionsOutcome { spread, samples, rays, ended_by: *furthest };
+    let projections = projections(stage, views);
+    let rounds = Rounds::measure(
+        (views.len(), stage.bands),
+        until,
+        (elapsed, watch),
+        |range, rows| match system {
+            System::Backward => {
+                let path = || Path::new(stage.lanes());
+                walk_views(stage, &projections, range, key, rows, path)
+            }
+            System::Forward => trace_photons_to(stage, &projections, range, key, rows),
+        },
+        |rows, each| spread(rows, each).median_relative_error(),
+    );
+    rounds.outcome()
+}
+
+/// The scene seen from each view.
+pub(super) fn projections(stage: &Stage, views: &[View]) -> Vec<Projection> {
+    views.iter().map(|&view| Projection::of_scene(view, stage)).collect()
+}
+
+/// Rounds of samples until a measurement is good enough.
+pub(super) struct Rounds {
+    /// Sums of each randomisation, shape `[views, columns]`.
+    pub(super) rows: Vec<Sums>,
+    /// Samples of each randomisation, a view.
+    pub(super) each: u64,
+    pub(super) rays: u64,
+    pub(super) ended_by: Stop,
+}
+
+impl Rounds {
+    /// - `shape`: views and columns
+    /// - `trace`: adds these samples of every randomisation to the sums; returns the rays traced
+    /// - `error`: relative error of the sums of so many samples
+    ///
+    /// # Panics
+    /// If there is no condition.
+    pub(super) fn measure(
+        (views, columns): (usize, usize),
+        until: &[Stop],
+        (elapsed, watch): (&dyn Fn() -> f64, Watch<'_>),
+        trace: impl Fn(Range<u64>, &mut [Sums]) -> u64,
+        error: impl Fn(&[Sums], u64) -> f64,
+    ) -> Self {
+        assert!(!until.is_empty(), "a measurement ends");
+        let mut rows = vec![Sums::new(views, columns); RANDOMISATIONS as usize];
+        let mut rays = 0;
+        let mut done = 0;
+        let mut next = first_round(until);
+        loop {
+            rays += trace(done..next, &mut rows);
+            done = next;
+            let samples = done * u64::from(RANDOMISATIONS);
+            let error = error(&rows, done);
+            let seconds = elapsed();
+            let progress = |stop: &Stop| match *stop {
+                // The error falls as the root of the number of samples at the slowest.
+                Stop::RelError(target) => (target / error).powi(2),
+                Stop::Seconds(limit) => seconds / limit,
+                Stop::Samples(limit) => samples as f64 / limit as f64,
+            };
+            let furthest = until
+                .iter()
+                .max_by(|a, b| progress(a).total_cmp(&progress(b)))
+                .expect("there is a condition");
+            let part = progress(furthest);
+            watch(part.min(1.0));
+            if part >= 1.0 {
+                return Self { rows, each: done, rays, ended_by: *furthest };
+            }
+            // Aim a little past what the slowest law asks for, but never far beyond what was seen.
+            let aim = (done as f64 * (1.05 / part.max(0.1))).ceil() as u64;
+            next = match furthest {
+                Stop::Samples(limit) => limit.div_ceil(RANDOMISATIONS.into()),
+                _ => aim.clamp(done + done / 4 + 1, done * 4),
+            };
+            next = next.min(done + ROUND_LIMIT);
         }
-        // Aim a little past what the slowest law asks for, but never far beyond what was seen.
-        let aim = (done as f64 * (1.05 / part.max(0.1))).ceil() as u64;
-        next = match furthest {
-            Stop::Samples(limit) => limit.div_ceil(RANDOMISATIONS.into()),
-            _ => aim.clamp(done + done / 4 + 1, done * 4),
-        };
-        next = next.min(done + ROUND_LIMIT);
+    }
+
+    /// Means over all samples, those that met nothing included.
+    pub(super) fn outcome(self) -> DirectionsOutcome {
+        DirectionsOutcome {
+            spread: spread(&self.rows, self.each),
+            samples: self.samples(),
+            rays: self.rays,
+            ended_by: self.ended_by,
+        }
+    }
+
+    /// Samples a view.
+    pub(super) fn samples(&self) -> u64 {
+        self.each * u64::from(RANDOMISATIONS)
     }
 }
 
@@ -90,7 +146,7 @@ fn first_round(until: &[Stop]) -> u64 {
     limits.fold(FIRST_ROUND, u64::min).max(1)
 }
 
-fn spread(rows: &[Sums], samples: u64) -> Spread {
+pub(super) fn spread(rows: &[Sums], samples: u64) -> Spread {
     let means: Vec<Vec<f64>> = rows
         .iter()
         .map(|row| row.values().iter().map(|sum| sum / samples as f64).collect())
@@ -98,14 +154,16 @@ fn spread(rows: &[Sums], samples: u64) -> Spread {
     Spread::of(means[0].len(), means.iter().map(Vec::as_slice))
 }
 
-/// Traces paths `range` of each randomisation from each view.
-fn trace_paths(
+/// Walks `range` of each randomisation from each view.
+pub(super) fn walk_views<W: Walk>(
     stage: &Stage,
     projections: &[Projection],
     range: Range<u64>,
     key: Key,
     rows: &mut [Sums],
+    walk: impl Fn() -> W + Sync,
 ) -> u64 {
+    let columns = rows.first().map_or(0, Sums::bands);
     let mut rays = 0;
     let views = projections.len();
     blocks::in_order(
@@ -116,18 +174,18 @@ fn trace_paths(
             let projection = &projections[view];
             // All views share their points: differences between them have less noise.
             let stream = key.index(randomisation as u64);
-            let mut path = Path::new(stage.lanes());
-            let mut sums = Sums::new(1, stage.bands);
+            let mut walk = walk();
+            let mut sums = Sums::new(1, columns);
             for index in range.clone() {
                 let mut sampler = Sampler::new(stream, index);
                 let [u, v, ..] = sampler.next_event();
                 let origin = projection.point(glam::DVec2::new(u, v));
                 let ray = Ray { origin, direction: -projection.towards, from: None };
-                if path.trace(stage, ray, &mut sampler) {
-                    sums.add(0, path.radiance(), 1.0);
+                if walk.trace(stage, ray, &mut sampler) {
+                    sums.add(0, walk.values(), 1.0);
                 }
             }
-            (sums, path.rays())
+            (sums, walk.rays())
         },
         |block, (sums, traced)| {
             rows[block / views].add_cell(block % views, sums.values());

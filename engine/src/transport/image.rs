@@ -1,7 +1,7 @@
 use glam::{DVec2, UVec2};
 
 use super::{
-    Camera, Counter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter, Watch, blocks,
+    Camera, Counter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter, Walk, Watch, blocks,
     trace_photons,
 };
 use crate::extract::Stage;
@@ -80,6 +80,19 @@ pub fn measure_image(
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
+    walk_pixels(stage, (camera, samples), key, watch, stage.bands, || Path::new(stage.lanes()))
+}
+
+/// Walks `samples` times a pixel from the sensor and averages what the walks that met the scene
+/// found; of their values the first `columns` count.
+pub(super) fn walk_pixels<W: Walk>(
+    stage: &Stage,
+    (camera, samples): (&Camera, u32),
+    key: Key,
+    watch: Watch<'_>,
+    columns: usize,
+    walk: impl Fn() -> W + Sync,
+) -> ImageOutcome {
     let size = camera.size();
     let (randomisations, each) = split(samples);
     let tiles = UVec2::new(size.x.div_ceil(TILE), size.y.div_ceil(TILE));
@@ -90,7 +103,7 @@ pub fn measure_image(
         (low, (low + TILE).min(size))
     };
     let all = (size.x * size.y) as usize;
-    let bands = stage.bands;
+    let bands = columns;
     let mut outcome = ImageOutcome {
         pixels: vec![f32::NAN; all * bands],
         errors: vec![f32::NAN; all * bands],
@@ -107,7 +120,7 @@ pub fn measure_image(
         256,
         |tile| {
             let (low, high) = area(tile);
-            trace_tile(stage, camera, low, high, (randomisations, each), key)
+            trace_tile((stage, camera), (low, high), (randomisations, each), key, columns, walk())
         },
         |tile, result| {
             let (low, high) = area(tile);
@@ -186,15 +199,13 @@ pub fn path_rays(stage: &Stage, projection: &Projection, paths: u64, key: Key) -
 }
 
 fn trace_tile(
-    stage: &Stage,
-    camera: &Camera,
-    low: UVec2,
-    high: UVec2,
+    (stage, camera): (&Stage, &Camera),
+    (low, high): (UVec2, UVec2),
     (randomisations, each): (u32, u32),
     key: Key,
+    bands: usize,
+    mut walk: impl Walk,
 ) -> Tile {
-    let bands = stage.bands;
-    let mut path = Path::new(stage.lanes());
     let mut tile = Tile {
         pixels: Vec::new(),
         errors: Vec::new(),
@@ -217,11 +228,11 @@ fn trace_tile(
                     let [u, v, ..] = sampler.next_event();
                     let on_film = (at.as_dvec2() + DVec2::new(u, v)) * scale;
                     let Some(ray) = camera.ray(on_film) else { continue };
-                    let is_seen = path.trace(stage, ray, &mut sampler)
-                        || camera.sees_sky() && path.see_sky(stage, ray.direction);
+                    let is_seen = walk.trace(stage, ray, &mut sampler)
+                        || camera.sees_sky() && walk.see_sky(stage, ray.direction);
                     if is_seen {
                         hits[randomisation as usize] += 1.0;
-                        sums.add(randomisation as usize, path.radiance(), 1.0);
+                        sums.add(randomisation as usize, walk.values(), 1.0);
                     }
                 }
             }
@@ -236,7 +247,7 @@ fn trace_tile(
             }
         }
     }
-    tile.rays = path.rays();
+    tile.rays = walk.rays();
     tile
 }
 

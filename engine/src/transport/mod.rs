@@ -6,6 +6,7 @@
 mod backward;
 mod blocks;
 mod camera;
+mod components;
 mod counters;
 mod directions;
 mod emission;
@@ -13,9 +14,14 @@ mod forward;
 mod hemisphere;
 mod image;
 mod roulette;
+mod walk;
 
 pub use backward::{Path, Traced};
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
+pub use components::{
+    COMPONENT_COLUMNS, ComponentsOutcome, GAP_COLUMN, measure_directions_components,
+    measure_image_components,
+};
 pub use counters::{
     AlbedoCounter, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, LayerCounter,
     ViewCounter,
@@ -24,6 +30,7 @@ pub use directions::{DirectionsOutcome, measure_directions};
 pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
+use walk::Walk;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread
 /// gives the standard error; with 32 the error of that error is 13 %.

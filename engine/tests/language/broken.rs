@@ -28,6 +28,7 @@ broken! {
     cameras
     comma_missing
     comment_never_closed
+    components
     crown
     directions
     formulas

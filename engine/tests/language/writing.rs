@@ -257,7 +257,14 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
 
 fn sensor() -> BoxedStrategy<Sensor> {
     let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
-    let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
+    let image = || {
+        prop::sample::select(vec![
+            ImageMeasure::Radiance,
+            ImageMeasure::Brf,
+            ImageMeasure::FourComponents,
+            ImageMeasure::GapFraction,
+        ])
+    };
     let until = prop_oneof![
         number().prop_map(Until::RelError),
         number().prop_map(Until::Seconds),

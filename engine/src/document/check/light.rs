@@ -1,6 +1,6 @@
 //! Sun and sky.
 
-use super::super::scene::{Scene, Sky, Sun};
+use super::super::scene::{ImageMeasure, Scene, Sky, Sun};
 use super::Report;
 use super::spectrum::{Quantity, check_band_count, check_spectrum};
 
@@ -48,7 +48,7 @@ fn check_position(sun: &Sun, report: &mut Report<'_>) {
 pub(super) fn check_sky(scene: &Scene, report: &mut Report<'_>) {
     let sun_is_known = report.is_readable("sun");
     match &scene.sky {
-        Sky::None if scene.sun.is_none() && sun_is_known => {
+        Sky::None if scene.sun.is_none() && sun_is_known && needs_light(scene) => {
             let help = "write `sun: (zenith_deg: 30.0)` or `sky: Isotropic(irradiance: ..)`";
             report.error("sky", "nothing lights the scene: it has neither sun nor sky", help);
         }
@@ -69,4 +69,16 @@ pub(super) fn check_sky(scene: &Scene, report: &mut Report<'_>) {
             check_spectrum("sky.irradiance", irradiance, Quantity::Irradiance, scene, report);
         }
     }
+}
+
+/// Whether any sensor measures light: gaps are there in the dark too, and the four components ask for
+/// a sun themselves.
+fn needs_light(scene: &Scene) -> bool {
+    scene.sensors.is_empty()
+        || scene.sensors.values().any(|sensor| match sensor.image_measures() {
+            Some(measures) => measures
+                .iter()
+                .any(|measure| matches!(measure, ImageMeasure::Radiance | ImageMeasure::Brf)),
+            None => true,
+        })
 }

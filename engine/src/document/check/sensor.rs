@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use super::super::scene::{PhotonMeasure, Scene, Sensor, Terrain, Until, Views};
+use super::super::scene::{ImageMeasure, PhotonMeasure, Scene, Sensor, Terrain, Until, Views};
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
 
@@ -20,6 +20,9 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("sensors", "a sensor", &scene.sensors);
     for (name, sensor) in &scene.sensors {
         let path = format!("sensors.{name}");
+        if let Some(measures) = sensor.image_measures() {
+            check_components(&format!("{path}.measure"), measures, scene, report);
+        }
         match sensor {
             Sensor::Orthographic { measure, .. } => {
                 check_orthographic(&path, sensor, scene, report);
@@ -122,6 +125,19 @@ fn check_photon_measure(
                 report.error(&format!("{path}.pixel_m"), message, help);
             }
         }
+    }
+}
+
+/// Nothing is sunlit without a sun.
+fn check_components(path: &str, measures: &[ImageMeasure], scene: &Scene, report: &mut Report<'_>) {
+    let asked = measures.iter().position(|measure| *measure == ImageMeasure::FourComponents);
+    if let Some(index) = asked
+        && scene.sun.is_none()
+        && report.is_readable("sun")
+    {
+        let message = "two of the four components are sunlit, and there is no sun";
+        let help = "write `sun: (zenith_deg: 30.0)`, or measure `GapFraction` alone";
+        report.error(&format!("{path}[{index}]"), message, help);
     }
 }
 

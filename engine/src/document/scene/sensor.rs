@@ -106,6 +106,20 @@ choice! {
     }
 }
 
+impl Sensor {
+    /// What an image or a list of directions is to report; `None` for photons.
+    #[must_use]
+    pub fn image_measures(&self) -> Option<&[ImageMeasure]> {
+        match self {
+            Self::Orthographic { measure, .. }
+            | Self::Perspective { measure, .. }
+            | Self::Fisheye { measure, .. }
+            | Self::Directions { measure, .. } => Some(measure),
+            Self::Photons { .. } => None,
+        }
+    }
+}
+
 choice! {
     /// Directions towards sensors.
     pub enum Views ("views") {
@@ -147,6 +161,13 @@ choice! {
         Radiance,
         /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
         Brf,
+        /// Shares of sunlit ground, sunlit canopy, shaded ground and shaded canopy in what is seen;
+        /// of an image the dominant one too. Sunlit is where the sun is visible from the side that
+        /// is seen; ground is the terrain.
+        FourComponents,
+        /// Share of the ground in what is seen, or of the sky in a camera that looks up; of directions
+        /// the leaf area index that it implies too.
+        GapFraction,
     }
 }
 

@@ -1,0 +1,40 @@
+use glam::DVec3;
+
+use super::Path;
+use crate::accel::Ray;
+use crate::extract::Stage;
+use crate::sampling::Sampler;
+
+/// Follows a ray from a sensor into the scene; one value is reused for many rays.
+pub(super) trait Walk {
+    /// Follows the ray; whether it meets the scene at all.
+    fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool;
+
+    /// Takes what a ray in this direction, which met nothing, finds in the sky; whether it finds
+    /// anything. For cameras that see the sky.
+    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool;
+
+    /// What the last ray found, shape `[columns]` or longer.
+    fn values(&self) -> &[f32];
+
+    /// Rays traced so far.
+    fn rays(&self) -> u64;
+}
+
+impl Walk for Path {
+    fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
+        self.trace(stage, ray, sampler)
+    }
+
+    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+        self.see_sky(stage, direction)
+    }
+
+    fn values(&self) -> &[f32] {
+        self.radiance()
+    }
+
+    fn rays(&self) -> u64 {
+        self.rays()
+    }
+}

@@ -1,0 +1,161 @@
+//! What is seen first: sunlit and shaded ground and canopy, and gap fractions.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use sunfleck::document;
+use sunfleck::products::{Product, Report};
+use sunfleck::run::Options;
+use sunfleck::sampling::Key;
+use sunfleck_tests::{Estimate, measure, product};
+
+const SHEET: &str = "g sheet\nv 0 -10 0\nv 2 -10 0\nv 2 10 0\nv 0 10 0\nf 1 2 3 4\n";
+const WALL: &str = "g wall\nv 2 -10 0\nv 2 10 0\nv 2 10 1\nv 2 -10 1\nf 1 2 3 4\n";
+
+/// A periodic tile of 4 m with one thing that runs through it from south to north, under a sun in
+/// the east at 45°, which shines in no band.
+fn tile(object: &str, height: f64, view: &str) -> Report {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(dir.path().join("object.obj"), object).expect("a file");
+    measure(
+        &format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: {{ "soil": Lambertian(reflectance: Constant(0.3)) }},
+    meshes: {{ "object": Obj(file: "object.obj", up: Z, unit_m: 1.0, material: Some("soil")) }},
+    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
+    instances: [List(of: "object", at_m: [(0.0, 0.0, {height:?})])],
+    sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)),
+    boundary: Periodic,
+    sensors: {{
+        "views": Directions(views: List([{view}]), until: Samples(20000), measure: [FourComponents, GapFraction]),
+        "image": Orthographic(size_px: (4, 1), extent_m: (4.0, 4.0), samples_per_px: 64, measure: [FourComponents, GapFraction]),
+    }},
+)"#
+        ),
+        dir.path(),
+        &Options::default(),
+    )
+}
+
+fn assert_shares(product: &Product, expected: &[f64]) {
+    for (index, &truth) in expected.iter().enumerate() {
+        let share = Estimate::of(product, index);
+        let deviation = (share.value - truth).abs();
+        assert!(deviation <= 5.0 * share.error + 1e-12, "{index}: {share:?} for {truth}");
+        assert!(share.error < 0.01, "{index}: {share:?}");
+    }
+}
+
+/// *Scene*: a horizontal sheet over half of the tile, 1 m above the ground, seen from above.
+/// *Expected*: half is sunlit sheet; of the open ground its shadow, 1 m to the west, takes half.
+#[test]
+fn a_sheet_hides_half_of_the_ground_and_shades_half_of_the_rest() {
+    let report = tile(SHEET, 1.0, "(0.0, 0.0)");
+    for sensor in ["views", "image"] {
+        assert_shares(product(&report, sensor, "four_components"), &[0.25, 0.5, 0.25, 0.0]);
+        assert_shares(product(&report, sensor, "gap_fraction"), &[0.5]);
+    }
+    // Columns from west to east: sheet, sheet, sunlit ground, shaded ground.
+    let class = product(&report, "image", "dominant_component").image.as_ref().expect("pixels");
+    assert_eq!(class.values, [2.0, 2.0, 1.0, 3.0]);
+    let shares = product(&report, "image", "four_components").image.as_ref().expect("pixels");
+    assert_eq!(shares.values[..4], [0.0, 1.0, 0.0, 0.0]);
+    assert_eq!(shares.values[12..], [0.0, 0.0, 1.0, 0.0]);
+}
+
+/// *Scene*: a thin wall of 1 m seen from the west at 45°. *Expected*: a quarter of what is seen is
+/// its western side, which is shaded although the sun shines on the other; its shadow is a quarter.
+#[test]
+fn a_surface_seen_from_its_dark_side_is_shaded() {
+    let report = tile(WALL, 0.0, "(45.0, 270.0), (45.0, 90.0)");
+    let shares = product(&report, "views", "four_components");
+    // From the east the wall is sunlit and hides its shadow.
+    assert_shares(shares, &[0.5, 0.0, 0.25, 0.25, 0.75, 0.25, 0.0, 0.0]);
+    assert_shares(product(&report, "views", "gap_fraction"), &[0.75, 0.75]);
+}
+
+/// *Scene*: N discs of all directions at uniform places of a periodic tile.
+/// *Expected*: the mean gap fraction over such scenes is (1 - a / (2 A cos θ))^N, exactly.
+#[test]
+fn gaps_between_random_discs_are_those_of_the_finite_formula() {
+    let (discs, radius, side) = (200, 0.16_f64, 4.0);
+    let zeniths = [0.0, 7.0, 23.0, 38.0, 53.0, 68.0_f64];
+    let mut gaps = vec![Vec::new(); zeniths.len()];
+    for seed in 0..16 {
+        let key = Key::new(seed).path("discs");
+        let mut table = "radius,x,y,z,nx,ny,nz\n".to_owned();
+        for disc in 0..discs {
+            let u = |draw: u64| key.uniform(8 * disc + draw);
+            let (x, y, z) = (side * u(0), side * u(1), 0.5 + 2.0 * u(2));
+            let up = 2.0 * u(3) - 1.0;
+            let (sin, cos) = (std::f64::consts::TAU * u(4)).sin_cos();
+            let across = (1.0 - up * up).sqrt();
+            let (nx, ny) = (across * cos, across * sin);
+            writeln!(table, "{radius},{x},{y},{z},{nx},{ny},{up}").expect("a string");
+        }
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(dir.path().join("discs.csv"), table).expect("a file");
+        let views: Vec<String> =
+            zeniths.iter().map(|zenith| format!("({zenith:?}, 30.0)")).collect();
+        let report = measure(
+            &format!(
+                r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: {{ "leaf": Lambertian(reflectance: Constant(0.3)) }},
+    meshes: {{ "discs": Discs(file: "discs.csv", material: "leaf") }},
+    terrain: Plane(size_m: ({side:?}, {side:?}), material: "leaf"),
+    instances: [List(of: "discs", at_m: [(0.0, 0.0, 0.0)])],
+    boundary: Periodic,
+    sensors: {{ "gaps": Directions(views: List([{}]), until: Samples(16384), measure: [GapFraction]) }},
+)"#,
+                views.join(", ")
+            ),
+            dir.path(),
+            &Options::default(),
+        );
+        let found = product(&report, "gaps", "gap_fraction");
+        for (gaps, &gap) in gaps.iter_mut().zip(&found.values) {
+            gaps.push(gap);
+        }
+        let beer = product(&report, "gaps", "lai_beer");
+        assert!((beer.values[0] + 2.0 * found.values[0].ln()).abs() < 1e-12);
+        for name in ["lai_miller", "lai_2000"] {
+            let lai = Estimate::of(product(&report, "gaps", name), 0);
+            assert!(lai.value > 0.0 && lai.error > 0.0, "{name}: {lai:?}");
+        }
+    }
+    let area = std::f64::consts::PI * radius * radius;
+    for (zenith, gaps) in zeniths.iter().zip(&gaps) {
+        let n = gaps.len() as f64;
+        let mean = gaps.iter().sum::<f64>() / n;
+        let squares: f64 = gaps.iter().map(|gap| (gap - mean).powi(2)).sum();
+        let found = Estimate { value: mean, error: (squares / (n * (n - 1.0))).sqrt() };
+        let hidden = area / (2.0 * side * side * zenith.to_radians().cos());
+        let expected = (1.0 - hidden).powi(discs as i32);
+        // Sixteen scenes: one in 1000 has |t| > 4.1.
+        assert!(found.z(expected).abs() < 4.1, "{zenith}: {found:?} for {expected}");
+        assert!(found.error < 0.05 * expected.max(0.2), "{zenith}: {found:?}");
+    }
+}
+
+/// Gaps need no light at all; the four components need a sun.
+#[test]
+fn gaps_are_measured_in_the_dark() {
+    let text = r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: { "soil": Lambertian(reflectance: Constant(0.3)) },
+    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
+    sensors: { "gaps": Directions(views: List([(30.0, 0.0)]), measure: [MEASURES]) },
+)"#;
+    let dark = text.replace("MEASURES", "GapFraction");
+    let report = measure(&dark, Path::new("."), &Options::default());
+    assert!((product(&report, "gaps", "gap_fraction").values[0] - 1.0).abs() < 1e-12);
+    let parts = text.replace("MEASURES", "FourComponents");
+    let reading =
+        document::read_text("a.ron", &parts, &document::Options::default()).expect("text");
+    assert!(reading.render().contains("there is no sun"), "{}", reading.render());
+}
