@@ -1,7 +1,7 @@
 //! Ray rate of the engine on paths through a stand of 700 trees: the rays of a nadir orthographic
 //! view in the near infrared, with next-event estimation to the sun and roulette after order 5.
 //!
-//! `cargo bench --bench accel -- [SAMPLES [PIXELS [SIDE_M]]]` prints the BRF, which must be near
+//! `cargo bench -p sunfleck --bench accel -- [SAMPLES [PIXELS [SIDE_M]]]` prints the BRF, which must be near
 //! 0.3516, and the ray rate. With `SIDE_M` the stand is repeated over a square of that side.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench reports on the terminal")]
 #![allow(missing_docs, reason = "a program, not an interface")]

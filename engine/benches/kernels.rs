@@ -1,5 +1,5 @@
 //! Kernels of the engine on a generated tree: `stage/function/parameter`, in rays or primitives a
-//! second. `cargo bench --bench kernels`.
+//! second. `cargo bench -p sunfleck --bench kernels`.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 use std::hint::black_box;
