@@ -94,3 +94,26 @@ pub enum Look {
     /// A point, m, local frame.
     Target(DVec3),
 }
+
+/// How the picture of an image is coloured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Picture {
+    /// By wavelength, stretched.
+    Quicklook,
+    /// By colours of its own.
+    Colours {
+        /// What red, green and blue are.
+        channels: Channels,
+        /// Stops over the exposure that shows a white surface on the horizontal as white.
+        exposure: Option<f64>,
+    },
+}
+
+/// What red, green and blue of a picture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// One band each, by its place in the list of bands.
+    Bands([usize; 3]),
+    /// What a person would see.
+    Cie,
+}

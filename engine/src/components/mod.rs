@@ -20,7 +20,9 @@ mod placement;
 mod sensor;
 mod terrain;
 
-pub use camera::{Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Stand};
+pub use camera::{
+    Channels, Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Picture, Stand,
+};
 pub use identity::{MaterialId, Name, PrototypeId, SceneId};
 pub use light::{Sky, Sun};
 pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};

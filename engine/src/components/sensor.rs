@@ -1,6 +1,6 @@
 use glam::{DVec3, UVec2};
 
-use super::Optics;
+use super::{Optics, Picture};
 
 /// Something that measures light.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +82,8 @@ pub struct ImageSensor {
     pub samples: ImageSamples,
     /// What to report.
     pub measure: Vec<ImageMeasure>,
+    /// How its picture is coloured.
+    pub picture: Picture,
     /// Which transport system estimates it; photon packets draw parallel projections alone.
     pub system: System,
 }

@@ -3,6 +3,7 @@
 //! A folder gets `summary.json`, for each image an EXR, an ENVI pair and a PNG quicklook, and for
 //! each other product a CSV. Nothing appears under its final name before all of it is complete.
 
+mod colour;
 mod envi;
 mod exr;
 mod names;
@@ -62,7 +63,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
                     staging.file(&img, |file| envi::write_pixels(image, file))?;
                     staging.file(&hdr, |file| envi::write_header(&source, image, file))?;
                     staging.file(&png, |file| {
-                        let picture = Picture::quicklook(image, &source.wavelengths(image));
+                        let picture = Picture::of(image, &source.wavelengths(image));
                         picture.encode(&source.provenance(), file)
                     })?;
                 }

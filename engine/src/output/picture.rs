@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::OutputError;
 use super::staging::Staging;
-use crate::products::Image;
+use super::{OutputError, colour};
+use crate::products::{Channels, Image, Rendering};
 
 /// Shares of the pixels that end up at black and at full brightness.
 const STRETCH: (f64, f64) = (0.01, 0.99);
@@ -31,14 +31,37 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// `image` as its rendering tells.
+    ///
+    /// - `wavelengths`: of the image's bands, nm; NaN where unknown
+    #[must_use]
+    pub fn of(image: &Image, wavelengths: &[f64]) -> Self {
+        match &image.rendering {
+            Rendering::Quicklook => Self::quicklook(image, wavelengths),
+            Rendering::Colours { channels: Channels::Bands(bands), exposure: None, .. } => {
+                let bands = bands.map(|band| band.min(image.bands.len().saturating_sub(1)));
+                Self::composite(image, &Composite { bands, natural: true })
+            }
+            Rendering::Colours { channels, exposure, white } => {
+                let mixture = colour::Mixture::of(*channels, wavelengths, white);
+                let gain = exposure.map_or_else(|| mixture.automatic(image), f64::exp2);
+                let rgba = mixture.rgba(image, gain);
+                Self { width: image.width, height: image.height, rgba }
+            }
+        }
+    }
+
     /// `image` for a first look: one to three of its bands, stretched between the 1st and 99th
     /// percentiles; opacity is the coverage.
     ///
     /// - `wavelengths`: of the image's bands, nm; NaN where unknown
     #[must_use]
     pub fn quicklook(image: &Image, wavelengths: &[f64]) -> Self {
+        Self::composite(image, &Composite::of(wavelengths, image.bands.len()))
+    }
+
+    fn composite(image: &Image, composite: &Composite) -> Self {
         let bands = image.bands.len();
-        let composite = Composite::of(wavelengths, bands);
         let stretches = composite.stretches(image);
         let mut rgba = Vec::with_capacity(4 * image.width * image.height);
         let pixels = image.values.chunks_exact(bands.max(1)).zip(&image.coverage);
@@ -213,6 +236,7 @@ mod tests {
             values: vec![0.0, 0.0, 0.0, 0.1, 0.4, 0.2],
             standard_error: vec![0.0; 6],
             coverage: vec![1.0; 2],
+            rendering: Rendering::Quicklook,
             georeference: None,
         };
         let natural = Picture::quicklook(&image, &[450.0, 550.0, 650.0]);
@@ -231,6 +255,7 @@ mod tests {
             values: vec![0.3, f32::NAN, 0.3],
             standard_error: vec![f32::NAN; 3],
             coverage: vec![1.0, 0.0, 0.5],
+            rendering: Rendering::Quicklook,
             georeference: None,
         };
         let picture = Picture::quicklook(&image, &[660.0]);

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::*;
-use crate::products::{Axis, AxisPoints, Georeference, SensorReport};
+use crate::products::{Axis, AxisPoints, Georeference, Rendering, SensorReport};
 
 fn axis(name: &str, points: &[f64]) -> Axis {
     Axis { name: name.to_owned(), points: AxisPoints::Numbers(points.to_vec()) }
@@ -47,6 +47,7 @@ fn image() -> Product {
             values,
             standard_error,
             coverage: vec![1.0, 1.0, 1.0, 1.0, 0.5, 0.0],
+            rendering: Rendering::Quicklook,
             georeference: Some(Georeference {
                 west: 679_000.5,
                 north: 5_150_000.25,

@@ -4,7 +4,7 @@ use super::context::labels;
 use super::directions::axes;
 use super::images::georeference;
 use super::leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller};
-use super::{Axis, Context, Image, Product};
+use super::{Axis, Context, Image, Product, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
 use crate::transport::{COMPONENT_COLUMNS, ComponentsOutcome, GAP_COLUMN, ImageOutcome};
@@ -28,6 +28,7 @@ pub fn components_of_image(
         values,
         standard_error,
         coverage: outcome.coverage.clone(),
+        rendering: Rendering::Quicklook,
         georeference: georeference(sensor, stage, context),
     };
     match measure {

@@ -1,7 +1,9 @@
+use std::f64::consts::FRAC_1_PI;
+
 use glam::DVec2;
 
-use super::{Context, Georeference, Image, Product, reflectance};
-use crate::components::{ImageMeasure, ImageSensor, Optics};
+use super::{Context, Georeference, Image, Product, Rendering, reflectance};
+use crate::components::{ImageMeasure, ImageSensor, Optics, Picture};
 use crate::extract::Stage;
 use crate::transport::{ImageOutcome, footprint};
 
@@ -47,6 +49,12 @@ fn image(
             .map(|value| value as f32)
             .collect()
     };
+    // `π L / E` of a white Lambertian surface on the horizontal is 1.
+    let white = scale(&vec![FRAC_1_PI; bands], &context.irradiance);
+    let rendering = match sensor.picture {
+        Picture::Quicklook => Rendering::Quicklook,
+        Picture::Colours { channels, exposure } => Rendering::Colours { channels, exposure, white },
+    };
     let pixels = Image {
         width: sensor.size.x as usize,
         height: sensor.size.y as usize,
@@ -54,6 +62,7 @@ fn image(
         values: scaled(&outcome.pixels),
         standard_error: scaled(&outcome.errors),
         coverage: outcome.coverage.clone(),
+        rendering,
         georeference,
     };
     let mean = (outcome.mean.as_slice(), outcome.mean_error.as_slice());

@@ -137,6 +137,7 @@ pub fn fluxes(
                 values: per_pixel(spread.mean()),
                 standard_error: per_pixel(&errors),
                 coverage: vec![1.0; pixels],
+                rendering: super::Rendering::Quicklook,
                 georeference: Some(super::Georeference {
                     west: context.origin.0 + stage.corner.x,
                     north: context.origin.1 + stage.corner.y + stage.size.y,

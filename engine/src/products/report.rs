@@ -1,3 +1,5 @@
+use crate::components::Channels;
+
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -68,8 +70,27 @@ pub struct Image {
     pub standard_error: Vec<f32>,
     /// Fraction of each pixel that sees the scene, shape `[rows, columns]`.
     pub coverage: Vec<f32>,
+    /// How its picture is coloured.
+    pub rendering: Rendering,
     /// Where pixels lie on the ground, for nadir images with north up.
     pub georeference: Option<Georeference>,
+}
+
+/// How the picture of an image is coloured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rendering {
+    /// By wavelength, stretched.
+    Quicklook,
+    /// By colours of its own.
+    Colours {
+        /// What red, green and blue are.
+        channels: Channels,
+        /// Stops over the exposure that shows a white surface on the horizontal as white; automatic
+        /// if absent.
+        exposure: Option<f64>,
+        /// What the image shows of that white surface, shape `[bands]`.
+        white: Vec<f64>,
+    },
 }
 
 /// Place of an image on the ground, anchor included.

@@ -3,8 +3,8 @@ use glam::{DVec2, DVec3, UVec2};
 use super::Spawner;
 use super::sensors::{image_measures, system_of, view};
 use crate::components::{
-    Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
-    Perspective, Stand,
+    Channels, Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
+    Perspective, Picture, Stand,
 };
 use crate::document::{self, Cover, FisheyeProjection, Sensor, Terrain};
 
@@ -14,22 +14,23 @@ const SAMPLES: u32 = 64;
 impl Spawner<'_> {
     /// The image sensor of a document's; none if it takes no image.
     pub(super) fn image(&self, sensor: &Sensor) -> Option<ImageSensor> {
-        let (size, samples, measure, system) = match sensor {
+        let (size, samples, measure, picture, system) = match sensor {
             Sensor::Orthographic {
                 size_px,
                 samples_per_px,
                 samples_per_m2,
                 measure,
+                picture,
                 system,
                 ..
             } => {
                 let per_pixel = ImageSamples::PerPixel(samples_per_px.unwrap_or(SAMPLES));
                 let samples = samples_per_m2.map_or(per_pixel, ImageSamples::PerArea);
-                (size_px, samples, measure, system)
+                (size_px, samples, measure, picture, system)
             }
-            Sensor::Perspective { size_px, samples_per_px, measure, system, .. }
-            | Sensor::Fisheye { size_px, samples_per_px, measure, system, .. } => {
-                (size_px, ImageSamples::PerPixel(*samples_per_px), measure, system)
+            Sensor::Perspective { size_px, samples_per_px, measure, picture, system, .. }
+            | Sensor::Fisheye { size_px, samples_per_px, measure, picture, system, .. } => {
+                (size_px, ImageSamples::PerPixel(*samples_per_px), measure, picture, system)
             }
             Sensor::Directions { .. } | Sensor::Photons { .. } => return None,
         };
@@ -38,7 +39,23 @@ impl Spawner<'_> {
             optics: self.camera(sensor)?,
             samples,
             measure: image_measures(measure),
+            picture: self.picture(picture)?,
             system: system_of(system),
+        })
+    }
+
+    fn picture(&self, picture: &document::Picture) -> Option<Picture> {
+        // `document::check` has seen that the bands are there.
+        let band = |name: &str| self.scene.bands.iter().position(|band| band.name == name);
+        Some(match picture {
+            document::Picture::Quicklook => Picture::Quicklook,
+            document::Picture::Bands { red, green, blue, exposure_stops } => Picture::Colours {
+                channels: Channels::Bands([band(red)?, band(green)?, band(blue)?]),
+                exposure: *exposure_stops,
+            },
+            document::Picture::Cie { exposure_stops } => {
+                Picture::Colours { channels: Channels::Cie, exposure: *exposure_stops }
+            }
         })
     }
 

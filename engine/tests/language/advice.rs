@@ -22,7 +22,7 @@ const EMPTY: &str = "Scene(
     sun: (position: Spa),
     sky: Isotropic,
     sensors: {
-        \"a\": Orthographic(cover: WholeScene), \"b\": Directions,
+        \"a\": Orthographic(cover: WholeScene, picture: Bands), \"b\": Directions,
         \"c\": Directions(views: CrossPlane, until: RelError),
         \"d\": Directions(views: List, until: Seconds),
         \"e\": Directions(views: List, until: Samples),

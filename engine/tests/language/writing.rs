@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use sunfleck::document::{
     Axis, Band, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame, ImageMeasure,
     Instances, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options, Origin, PhotonMeasure,
-    Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition, System, Terrain, Transport, Trunk,
-    Until, Views, read_text,
+    Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition, System, Terrain, Transport,
+    Trunk, Until, Views, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -168,6 +168,43 @@ fn views() -> BoxedStrategy<Views> {
     .boxed()
 }
 
+fn picture() -> BoxedStrategy<Picture> {
+    prop_oneof![
+        Just(Picture::Quicklook),
+        (text(), text(), text(), option(number())).prop_map(
+            |(red, green, blue, exposure_stops)| Picture::Bands {
+                red,
+                green,
+                blue,
+                exposure_stops
+            }
+        ),
+        option(number()).prop_map(|exposure_stops| Picture::Cie { exposure_stops }),
+    ]
+    .boxed()
+}
+
+fn look() -> BoxedStrategy<Look> {
+    prop_oneof![
+        Just(Look::Up),
+        Just(Look::Down),
+        (number(), number())
+            .prop_map(|(zenith_deg, azimuth_deg)| Look::Towards { zenith_deg, azimuth_deg }),
+        (number(), number(), number()).prop_map(|at_m| Look::Target { at_m }),
+    ]
+    .boxed()
+}
+
+fn projection() -> BoxedStrategy<FisheyeProjection> {
+    prop::sample::select(vec![
+        FisheyeProjection::Equisolid,
+        FisheyeProjection::Equidistant,
+        FisheyeProjection::Orthographic,
+        FisheyeProjection::Stereographic,
+    ])
+    .boxed()
+}
+
 fn image_sensor() -> BoxedStrategy<Sensor> {
     let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
     let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
@@ -175,18 +212,6 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
     let triple = || (number(), number(), number());
     let samples = || (option(any::<u32>()), option(number()));
     let cover = || option(Just(Cover::WholeScene));
-    let look = prop_oneof![
-        Just(Look::Up),
-        Just(Look::Down),
-        pair().prop_map(|(zenith_deg, azimuth_deg)| Look::Towards { zenith_deg, azimuth_deg }),
-        triple().prop_map(|at_m| Look::Target { at_m }),
-    ];
-    let projection = prop::sample::select(vec![
-        FisheyeProjection::Equisolid,
-        FisheyeProjection::Equidistant,
-        FisheyeProjection::Orthographic,
-        FisheyeProjection::Stereographic,
-    ]);
     let flags = || any::<(bool, bool, u32)>();
     prop_oneof![
         (
@@ -196,10 +221,10 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             pair(),
             samples(),
             list(image()),
-            system()
+            (picture(), system())
         )
             .prop_map(
-                |(size_px, (extent_m, cover), center_m, angles, samples, measure, system)| {
+                |(size_px, (extent_m, cover), center_m, angles, samples, measure, last)| {
                     Sensor::Orthographic {
                         size_px,
                         extent_m,
@@ -210,32 +235,49 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         samples_per_px: samples.0,
                         samples_per_m2: samples.1,
                         measure,
-                        system,
+                        picture: last.0,
+                        system: last.1,
                     }
                 }
             ),
-        (any::<(u32, u32)>(), (triple(), triple(), triple()), pair(), flags(), list(image()))
-            .prop_map(|(size_px, points, fov_deg, flags, measure)| Sensor::Perspective {
-                size_px,
-                position_m: points.0,
-                target_m: points.1,
-                up: points.2,
-                fov_deg,
-                above_ground: flags.0,
-                sees_sky: flags.1,
-                samples_per_px: flags.2,
-                measure,
-                system: System::Backward,
+        (
+            any::<(u32, u32)>(),
+            (triple(), triple(), triple()),
+            pair(),
+            flags(),
+            list(image()),
+            picture()
+        )
+            .prop_map(|(size_px, points, fov_deg, flags, measure, picture)| {
+                Sensor::Perspective {
+                    size_px,
+                    position_m: points.0,
+                    target_m: points.1,
+                    up: points.2,
+                    fov_deg,
+                    above_ground: flags.0,
+                    sees_sky: flags.1,
+                    samples_per_px: flags.2,
+                    measure,
+                    picture,
+                    system: System::Backward,
+                }
             }),
         (
             any::<(u32, u32)>(),
-            (triple(), look, option(triple())),
-            (number(), projection),
+            (triple(), look(), option(triple())),
+            (number(), projection()),
             flags(),
-            list(image())
+            (list(image()), picture())
         )
             .prop_map(
-                |(size_px, (position_m, look, up), (fov_deg, projection), flags, measure)| {
+                |(
+                    size_px,
+                    (position_m, look, up),
+                    (fov_deg, projection),
+                    flags,
+                    (measure, picture),
+                )| {
                     Sensor::Fisheye {
                         size_px,
                         position_m,
@@ -247,6 +289,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         sees_sky: flags.1,
                         samples_per_px: flags.2,
                         measure,
+                        picture,
                         system: System::Backward,
                     }
                 }

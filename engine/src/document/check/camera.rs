@@ -1,6 +1,9 @@
 //! Sensors that take images.
 
-use super::super::scene::{Cover, FisheyeProjection, Look, Scene, Sensor, System, Terrain};
+use super::super::diagnostic::unknown_name;
+use super::super::scene::{
+    Cover, FisheyeProjection, Look, Picture, Scene, Sensor, System, Terrain,
+};
 use super::Report;
 use super::sensor::VALUES;
 
@@ -22,6 +25,7 @@ pub(super) fn check_orthographic(
         samples_per_px,
         samples_per_m2,
         measure: _,
+        picture,
         system: _,
     } = sensor
     else {
@@ -29,6 +33,7 @@ pub(super) fn check_orthographic(
     };
     let at = |key: &str| format!("{path}.{key}");
     check_size(path, *size_px, scene, report);
+    check_picture(path, picture, scene, report);
     if let Some((width, height)) = extent_m {
         report.above_zero(&at("extent_m[0]"), *width);
         report.above_zero(&at("extent_m[1]"), *height);
@@ -92,12 +97,14 @@ pub(super) fn check_perspective(
         sees_sky: _,
         samples_per_px,
         measure: _,
+        picture,
         system,
     } = sensor
     else {
         return;
     };
     check_size(path, *size_px, scene, report);
+    check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
     check_system(path, system, report);
     check_position(path, *position_m, *above_ground, scene, report);
@@ -137,12 +144,14 @@ pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: 
         sees_sky: _,
         samples_per_px,
         measure: _,
+        picture,
         system,
     } = sensor
     else {
         return;
     };
     check_size(path, *size_px, scene, report);
+    check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
     check_system(path, system, report);
     check_position(path, *position_m, *above_ground, scene, report);
@@ -197,6 +206,44 @@ fn check_size(path: &str, (columns, rows): (u32, u32), scene: &Scene, report: &m
             scene.bands.len()
         );
         report.error(&at("size_px"), message, format!("keep the product below {VALUES}"));
+    }
+}
+
+/// Bands between the ends of the visible that make colours.
+const COLOUR_BANDS: usize = 10;
+
+fn check_picture(path: &str, picture: &Picture, scene: &Scene, report: &mut Report<'_>) {
+    let path = format!("{path}.picture");
+    let exposure = match picture {
+        Picture::Quicklook => None,
+        Picture::Bands { red, green, blue, exposure_stops } => {
+            for (key, name) in [("red", red), ("green", green), ("blue", blue)] {
+                let bands = || scene.bands.iter().map(|band| band.name.as_str());
+                if !bands().any(|band| band == name) && report.is_readable("bands") {
+                    report.push(unknown_name(format!("{path}.{key}"), "band", name, bands()));
+                }
+            }
+            exposure_stops.as_ref()
+        }
+        Picture::Cie { exposure_stops } => {
+            let visible =
+                scene.bands.iter().filter(|band| (380.0..=780.0).contains(&band.center_nm)).count();
+            if visible < COLOUR_BANDS && report.is_readable("bands") {
+                let message = format!(
+                    "colours need {COLOUR_BANDS} bands or more from 380 to 780 nm, found {visible}"
+                );
+                let help = "write more bands, or `picture: Bands(red: .., green: .., blue: ..)`";
+                report.error(&path, message, help);
+            }
+            exposure_stops.as_ref()
+        }
+    };
+    if let Some(stops) = exposure
+        && !(-30.0..=30.0).contains(stops)
+    {
+        let message = format!("expected -30 to 30 stops, found {stops}");
+        let help = "each stop doubles the brightness; leave it out for an automatic exposure";
+        report.error(&format!("{path}.exposure_stops"), message, help);
     }
 }
 

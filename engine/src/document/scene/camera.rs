@@ -49,3 +49,29 @@ choice! {
         Stereographic,
     }
 }
+
+choice! {
+    /// How the PNG of an image is coloured. The numbers are in the other files.
+    pub enum Picture ("a picture") {
+        /// For a first look: bands chosen by wavelength, each stretched.
+        Quicklook,
+        /// Three bands.
+        Bands {
+            /// Band that is shown as red.
+            red: String => "\"nir\"",
+            /// Band that is shown as green.
+            green: String => "\"red\"",
+            /// Band that is shown as blue.
+            blue: String => "\"green\"",
+            /// Stops over the exposure that shows a white surface on the horizontal as white;
+            /// automatic if absent.
+            exposure_stops: Option<f64> = None,
+        },
+        /// What a person would see in daylight, from ten bands or more between 380 and 780 nm.
+        Cie {
+            /// Stops over the exposure that shows a white surface on the horizontal as white;
+            /// automatic if absent.
+            exposure_stops: Option<f64> = None,
+        },
+    }
+}

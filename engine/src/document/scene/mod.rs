@@ -15,7 +15,7 @@ use super::decode::{Decode, Fields, Reader, example_of_keys};
 use super::encode::{Encode, Text, differs};
 use super::syntax::Node;
 
-pub use camera::{Cover, FisheyeProjection, Look};
+pub use camera::{Cover, FisheyeProjection, Look, Picture};
 pub use ground::{Boundary, Instances, Terrain};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
-use super::camera::{Cover, FisheyeProjection, Look};
+use super::camera::{Cover, FisheyeProjection, Look, Picture};
 
 choice! {
     /// A sensor.
@@ -30,6 +30,8 @@ choice! {
             samples_per_m2: Option<f64> = None,
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
+            /// How its PNG is coloured.
+            picture: Picture = Picture::Quicklook,
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
@@ -54,6 +56,8 @@ choice! {
             samples_per_px: u32 = 64,
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
+            /// How its PNG is coloured.
+            picture: Picture = Picture::Quicklook,
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
@@ -82,6 +86,8 @@ choice! {
             samples_per_px: u32 = 64,
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
+            /// How its PNG is coloured.
+            picture: Picture = Picture::Quicklook,
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
