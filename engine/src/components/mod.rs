@@ -29,7 +29,7 @@ pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
 pub use optics::{EnergyGain, SurfaceOptics};
 pub use placement::Placement;
 pub use sensor::{
-    Directions, ImageMeasure, ImageSamples, ImageSensor, PhotonMeasure, Photons, Sensor, Stop,
-    System, View,
+    Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, PhotonMeasure, Photons,
+    Sensor, Stop, System, View,
 };
 pub use terrain::TerrainPatch;

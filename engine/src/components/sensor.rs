@@ -48,6 +48,8 @@ pub enum ImageMeasure {
     Radiance,
     /// Bidirectional reflectance factor `π L / E`; the HDRF under a sky.
     Brf,
+    /// The same split by order of scattering: uncollided, single, multiple.
+    Orders,
     /// Shares of sunlit and shaded ground and canopy.
     FourComponents,
     /// Share of the ground, or of the sky in a camera that looks up.
@@ -58,7 +60,7 @@ impl ImageMeasure {
     /// Whether it is made of light, and not of what is seen first.
     #[must_use]
     pub const fn is_light(self) -> bool {
-        matches!(self, Self::Radiance | Self::Brf)
+        matches!(self, Self::Radiance | Self::Brf | Self::Orders)
     }
 }
 
@@ -121,12 +123,13 @@ pub enum PhotonMeasure {
     BrfViews(Vec<View>),
     /// Reflected over incident flux.
     Albedo,
-    /// Fraction of the incident flux that each material absorbs in each horizontal layer of this
-    /// thickness, m.
-    Fapar {
-        /// Thickness of a layer, m.
-        layer: f64,
-    },
+    /// BRF within cones of directions.
+    BrfCones(Vec<Cone>),
+    /// Splits what the sensor says of reflected light by order of scattering.
+    Orders,
+    /// Fraction of the incident flux that each material absorbs in each horizontal layer, and what
+    /// reaches the ground.
+    Fapar(Layers),
     /// Down- and upwelling flux density on the terrain and through horizontal planes.
     Fluxes {
         /// Side of a square pixel, m.
@@ -143,4 +146,22 @@ pub struct Photons {
     pub per_area: f64,
     /// What to report.
     pub measure: Vec<PhotonMeasure>,
+}
+
+/// A cone of directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// Its middle.
+    pub axis: View,
+    /// Between its middle and its border, rad.
+    pub half_angle: f64,
+}
+
+/// Horizontal layers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layers {
+    /// From the ground to the top of the scene, of this thickness, m.
+    Thickness(f64),
+    /// Between these heights, m, upwards; two at least.
+    Borders(Vec<f64>),
 }

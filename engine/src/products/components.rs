@@ -72,7 +72,7 @@ pub fn components_of_image(
                 )
             }]
         }
-        ImageMeasure::Radiance | ImageMeasure::Brf => Vec::new(),
+        ImageMeasure::Radiance | ImageMeasure::Brf | ImageMeasure::Orders => Vec::new(),
     }
 }
 
@@ -124,7 +124,7 @@ pub fn components_of_directions(
             }
             products
         }
-        ImageMeasure::Radiance | ImageMeasure::Brf => Vec::new(),
+        ImageMeasure::Radiance | ImageMeasure::Brf | ImageMeasure::Orders => Vec::new(),
     }
 }
 

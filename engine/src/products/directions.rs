@@ -2,33 +2,42 @@ use super::context::numbers;
 use super::{Axis, Context, Product, reflectance};
 use crate::components::{ImageMeasure, View};
 use crate::film::Spread;
+use crate::transport::{DirectionsOutcome, Part};
 
-/// The products of a measurement of directions that are made of light; `spread` is of `L / E`, shape `[views, bands]`.
+/// The products of a measurement of directions that are made of light.
 #[must_use]
 pub fn of_directions(
     views: &[View],
     measures: &[ImageMeasure],
-    spread: &Spread,
+    outcome: &DirectionsOutcome,
     context: &Context,
 ) -> Vec<Product> {
-    let errors = spread.standard_error();
-    let values = (spread.mean(), errors.as_slice());
+    type Scale = fn(&[f64], &[f64]) -> Vec<f64>;
+    let product = |name: String, unit: &str, spread: &Spread, scale: Scale| {
+        let errors = spread.standard_error();
+        context.product((name, unit), vec![axes(views)], (spread.mean(), &errors), scale)
+    };
+    let factor = context.factor();
     measures
         .iter()
-        .filter_map(|measure| match measure {
-            ImageMeasure::Radiance => Some(context.product(
-                ("radiance", "W m-2 sr-1 nm-1"),
-                vec![axes(views)],
-                values,
+        .flat_map(|measure| match measure {
+            ImageMeasure::Radiance => vec![product(
+                "radiance".to_owned(),
+                "W m-2 sr-1 nm-1",
+                &outcome.spread,
                 reflectance::radiance,
-            )),
-            ImageMeasure::Brf => Some(context.product(
-                (context.factor(), "1"),
-                vec![axes(views)],
-                values,
-                reflectance::brf,
-            )),
-            ImageMeasure::FourComponents | ImageMeasure::GapFraction => None,
+            )],
+            ImageMeasure::Brf => {
+                vec![product(factor.to_owned(), "1", &outcome.spread, reflectance::brf)]
+            }
+            ImageMeasure::Orders => Part::ALL
+                .iter()
+                .zip(&outcome.parts)
+                .map(|(part, spread)| {
+                    product(format!("{factor}_{}", part.suffix()), "1", spread, reflectance::brf)
+                })
+                .collect(),
+            ImageMeasure::FourComponents | ImageMeasure::GapFraction => Vec::new(),
         })
         .collect()
 }

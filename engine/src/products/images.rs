@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::{Context, Georeference, Image, Product, Rendering, reflectance};
 use crate::components::{ImageMeasure, ImageSensor, Optics, Picture};
 use crate::extract::Stage;
-use crate::transport::{ImageOutcome, footprint};
+use crate::transport::{ImageOutcome, Part, footprint};
 
 /// The products of an image measurement that are made of light.
 #[must_use]
@@ -16,16 +16,26 @@ pub fn of_image(
     context: &Context,
 ) -> Vec<Product> {
     let place = georeference(sensor, stage, context);
-    let of = |name, scale| image(name, sensor, outcome, (context, place), scale);
+    let of = |name: (&str, &str), spectrum, scale| {
+        image(name, sensor, (outcome, spectrum), (context, place), scale)
+    };
     sensor
         .measure
         .iter()
-        .filter_map(|measure| match measure {
+        .flat_map(|measure| match measure {
             ImageMeasure::Radiance => {
-                Some(of(("radiance", "W m-2 sr-1 nm-1"), reflectance::radiance))
+                vec![of(("radiance", "W m-2 sr-1 nm-1"), 0, reflectance::radiance)]
             }
-            ImageMeasure::Brf => Some(of((context.factor(), "1"), reflectance::brf)),
-            ImageMeasure::FourComponents | ImageMeasure::GapFraction => None,
+            ImageMeasure::Brf => vec![of((context.factor(), "1"), 0, reflectance::brf)],
+            ImageMeasure::Orders => Part::ALL
+                .iter()
+                .zip(1..)
+                .map(|(part, spectrum)| {
+                    let name = format!("{}_{}", context.factor(), part.suffix());
+                    of((&name, "1"), spectrum, reflectance::brf)
+                })
+                .collect(),
+            ImageMeasure::FourComponents | ImageMeasure::GapFraction => Vec::new(),
         })
         .collect()
 }
@@ -33,17 +43,19 @@ pub fn of_image(
 fn image(
     name: (&str, &str),
     sensor: &ImageSensor,
-    outcome: &ImageOutcome,
+    (outcome, spectrum): (&ImageOutcome, usize),
     (context, georeference): (&Context, Option<Georeference>),
     scale: fn(&[f64], &[f64]) -> Vec<f64>,
 ) -> Product {
     // Of one pixel at a time: an image is large, and f64 is needed only in between.
     let bands = context.bands.len();
+    let of_spectrum = spectrum * bands..(spectrum + 1) * bands;
     let scaled = |pixels: &[f32]| -> Vec<f32> {
         pixels
-            .chunks_exact(bands)
+            .chunks_exact(outcome.mean.len())
             .flat_map(|pixel| {
-                let pixel: Vec<f64> = pixel.iter().map(|&value| f64::from(value)).collect();
+                let pixel: Vec<f64> =
+                    pixel[of_spectrum.clone()].iter().map(|&value| f64::from(value)).collect();
                 scale(&pixel, &context.irradiance)
             })
             .map(|value| value as f32)
@@ -65,7 +77,7 @@ fn image(
         rendering,
         georeference,
     };
-    let mean = (outcome.mean.as_slice(), outcome.mean_error.as_slice());
+    let mean = (&outcome.mean[of_spectrum.clone()], &outcome.mean_error[of_spectrum.clone()]);
     Product { image: Some(pixels), ..context.product(name, Vec::new(), mean, scale) }
 }
 

@@ -5,7 +5,8 @@ use crate::components::View;
 use crate::extract::Stage;
 use crate::film::Spread;
 use crate::transport::{
-    EnergyCounter, FluxCounter, FluxLevel, Hemisphere, LayerCounter, ViewCounter,
+    ConeCounter, EnergyCounter, FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter,
+    ViewCounter,
 };
 
 /// Values and errors of a spread, each multiplied by a factor that depends on the cell.
@@ -64,22 +65,54 @@ pub fn brf_views(
     context.product(name, vec![axes(views)], (&values, &standard_error), reflectance::brf)
 }
 
-/// Fraction of the incident flux that each material absorbs in each horizontal layer.
+/// BRF within cones, the mean over each with the weight cos θ: `π P / (E A ∫cos θ dω)`.
 #[must_use]
-pub fn fapar(spread: &Spread, counter: &LayerCounter, stage: &Stage, context: &Context) -> Product {
+pub fn brf_cones(spread: &Spread, counter: &ConeCounter, context: &Context) -> Product {
+    let cones = &counter.cones;
+    let (values, errors) = scaled(spread, context.bands.len(), |cell| {
+        1.0 / ConeCounter::projected_solid_angle(&cones[cell])
+    });
+    let views: Vec<View> = cones.iter().map(|cone| cone.axis).collect();
+    let mut axes = axes(&views);
+    let full = |cone: &crate::components::Cone| 2.0 * cone.half_angle.to_degrees();
+    axes.push(numbers("full_angle_deg", cones.iter().map(full)));
+    let name = (format!("{}_cones", context.factor()), "1");
+    context.product(name, vec![axes], (&values, &errors), reflectance::brf)
+}
+
+/// Fractions of the incident flux: `fapar` that each material absorbs in each horizontal layer,
+/// `fapar_material` in all, `fapar_vegetation` that all but the ground absorbs; and `ftran` that
+/// arrives at the ground: total, uncollided, collided by the canopy alone, and after bounces between
+/// ground and canopy.
+#[must_use]
+pub fn fapar(
+    spread: &Spread,
+    counter: &LayerCounter,
+    stage: &Stage,
+    context: &Context,
+) -> Vec<Product> {
     let errors = spread.standard_error();
-    let height = |layer: usize| counter.bottom + layer as f64 * counter.thickness;
+    let borders = &counter.borders;
     let layers = vec![
-        numbers("bottom_m", (0..counter.layers).map(height)),
-        numbers("top_m", (1..=counter.layers).map(height)),
+        numbers("bottom_m", borders[..counter.layers()].iter().copied()),
+        numbers("top_m", borders[1..].iter().copied()),
     ];
     let names: Vec<String> = stage.surfaces.iter().map(|surface| surface.name.clone()).collect();
-    context.product(
-        ("fapar", "1"),
-        vec![layers, vec![labels("material", &names)]],
-        (spread.mean(), &errors),
-        reflectance::fraction,
-    )
+    let materials = || vec![labels("material", &names)];
+    let terms = GROUND_TERMS.map(str::to_owned);
+    let product = |name: &str, dimensions, cells: std::ops::Range<usize>| {
+        let range = cells.start * context.bands.len()..cells.end * context.bands.len();
+        let values = (&spread.mean()[range.clone()], &errors[range]);
+        context.product((name, "1"), dimensions, values, reflectance::fraction)
+    };
+    let (totals, vegetation) = (counter.totals(), counter.vegetation());
+    let ground = vegetation + 1;
+    vec![
+        product("fapar", vec![layers, materials()], 0..totals),
+        product("fapar_material", vec![materials()], totals..vegetation),
+        product("fapar_vegetation", Vec::new(), vegetation..ground),
+        product("ftran", vec![vec![labels("term", &terms)]], ground..ground + terms.len()),
+    ]
 }
 
 /// Where the energy went, as fractions of what falls on the scene's rectangle.

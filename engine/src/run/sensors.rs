@@ -3,16 +3,18 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::components::{
-    Directions, ImageSensor, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop, System,
+    Directions, ImageMeasure, ImageSensor, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
+    System,
 };
 use crate::extract::Stage;
+use crate::film::Spread;
 use crate::products::{self, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    AlbedoCounter, Camera, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, Hemisphere,
-    LayerCounter, Projection, ViewCounter, Watch, measure_directions,
-    measure_directions_components, measure_image, measure_image_components, measure_image_forward,
-    trace_photons,
+    AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
+    FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, Projection, ViewCounter, Watch,
+    measure_directions, measure_directions_components, measure_image, measure_image_components,
+    measure_image_forward, trace_photons,
 };
 
 /// All sensors in document order.
@@ -81,11 +83,12 @@ fn image(
     let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES) as u32;
     let mut measured = Measured::default();
     if sensor.measure.iter().any(|measure| measure.is_light()) {
+        let orders = sensor.measure.contains(&ImageMeasure::Orders);
         let outcome = match (sensor.system, &camera) {
             (System::Forward, Camera::Orthographic(projection)) => {
-                measure_image_forward(stage, projection, samples, key, watch)
+                measure_image_forward(stage, projection, (samples, orders), key, watch)
             }
-            _ => measure_image(stage, &camera, samples, key, watch),
+            _ => measure_image(stage, &camera, (samples, orders), key, watch),
         };
         measured.products = products::of_image(sensor, &outcome, stage, context);
         measured.count(outcome.rays, outcome.samples);
@@ -125,11 +128,11 @@ fn directions(
     let views = sensor.views.as_slice();
     let mut measured = Measured::default();
     if sensor.measure.iter().any(|measure| measure.is_light()) {
-        let scene = (views, sensor.system);
+        let orders = sensor.measure.contains(&ImageMeasure::Orders);
+        let scene = (views, sensor.system, orders);
         let outcome = measure_directions(stage, scene, &until, key, &elapsed, watch);
         let error = outcome.spread.median_relative_error();
-        measured.products =
-            products::of_directions(views, &sensor.measure, &outcome.spread, context);
+        measured.products = products::of_directions(views, &sensor.measure, &outcome, context);
         measured.count(outcome.rays, outcome.samples);
         measured.ended_by = match outcome.ended_by {
             Stop::RelError(limit) => {
@@ -172,25 +175,34 @@ fn photons(
     watch: Watch<'_>,
 ) -> Measured {
     let energy = EnergyCounter { surfaces: stage.surfaces.len() };
-    let kinds: Vec<Kind> = sensor.measure.iter().map(|measure| Kind::of(measure, stage)).collect();
+    let kinds: Vec<Kind> =
+        sensor.measure.iter().filter_map(|measure| Kind::of(measure, stage)).collect();
+    let parts: &[Part] =
+        if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] };
     let mut counters: Vec<Box<dyn Counter + '_>> = vec![Box::new(energy)];
     counters.extend(kinds.iter().map(Kind::counter));
+    let split: Vec<(&Kind, Part)> = kinds
+        .iter()
+        .filter(|kind| kind.is_of_reflection())
+        .flat_map(|kind| parts.iter().map(move |&part| (kind, part)))
+        .collect();
+    counters.extend(split.iter().map(|&(kind, part)| -> Box<dyn Counter + '_> {
+        Box::new(PartCounter { counter: kind.counter(), part })
+    }));
     let packets = (sensor.per_area * stage.area() * quality).ceil() as u64;
     let outcome = trace_photons(stage, &counters, packets, key, watch);
     let mut products = Vec::new();
-    for (kind, spread) in kinds.iter().zip(&outcome.spreads[1..]) {
-        match kind {
-            Kind::Albedo(_) => products.push(products::albedo(spread, context)),
-            Kind::Cells(cells) => products.push(products::brf_cells(spread, &cells.0, context)),
-            Kind::Views(counter, views) => {
-                products.push(products::brf_views(spread, counter, views, stage, context));
-            }
-            Kind::Layers(layers) => {
-                products.push(products::fapar(spread, layers, stage, context));
-            }
-            Kind::Fluxes(fluxes) => {
-                products.extend(products::fluxes(spread, fluxes, stage, context));
-            }
+    let (_, spreads) = outcome.spreads.split_at(1);
+    let (wholes, of_parts) = spreads.split_at(kinds.len());
+    for (kind, spread) in kinds.iter().zip(wholes) {
+        products.extend(kind.products(spread, stage, context));
+        let of_parts = split.iter().zip(of_parts).filter(|((of, _), _)| std::ptr::eq(*of, kind));
+        for ((_, part), spread) in of_parts {
+            let products_of_part = kind.products(spread, stage, context).into_iter();
+            products.extend(products_of_part.map(|product| Product {
+                name: format!("{}_{}", product.name, part.suffix()),
+                ..product
+            }));
         }
     }
     products.push(products::energy(&outcome.spreads[0], stage, context));
@@ -206,14 +218,17 @@ fn photons(
 enum Kind {
     Albedo(AlbedoCounter),
     Cells(CellCounter),
+    Cones(ConeCounter),
     Views(ViewCounter, Vec<crate::components::View>),
     Layers(LayerCounter),
     Fluxes(FluxCounter),
 }
 
 impl Kind {
-    fn of(measure: &PhotonMeasure, stage: &Stage) -> Self {
-        match measure {
+    fn of(measure: &PhotonMeasure, stage: &Stage) -> Option<Self> {
+        Some(match measure {
+            PhotonMeasure::Orders => return None,
+            PhotonMeasure::BrfCones(cones) => Self::Cones(ConeCounter::new(cones.clone())),
             PhotonMeasure::Albedo => Self::Albedo(AlbedoCounter),
             PhotonMeasure::BrfCells(cells) => {
                 Self::Cells(CellCounter(Hemisphere::new(*cells as usize)))
@@ -223,12 +238,34 @@ impl Kind {
                     views.iter().map(|&view| Projection::of_scene(view, stage)).collect();
                 Self::Views(ViewCounter::new(projections), views.clone())
             }
-            PhotonMeasure::Fapar { layer } => Self::Layers(LayerCounter::of(stage, *layer)),
+            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers)),
             PhotonMeasure::Fluxes { pixel, heights } => {
                 let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
                 levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
                 Self::Fluxes(FluxCounter::of(stage, *pixel, levels))
             }
+        })
+    }
+
+    /// Whether it counts light that leaves the scene, and nothing else.
+    const fn is_of_reflection(&self) -> bool {
+        match self {
+            Self::Albedo(_) | Self::Cells(_) | Self::Cones(_) | Self::Views(..) => true,
+            Self::Layers(_) | Self::Fluxes(_) => false,
+        }
+    }
+
+    /// What its spread tells.
+    fn products(&self, spread: &Spread, stage: &Stage, context: &Context) -> Vec<Product> {
+        match self {
+            Self::Albedo(_) => vec![products::albedo(spread, context)],
+            Self::Cells(cells) => vec![products::brf_cells(spread, &cells.0, context)],
+            Self::Cones(cones) => vec![products::brf_cones(spread, cones, context)],
+            Self::Views(counter, views) => {
+                vec![products::brf_views(spread, counter, views, stage, context)]
+            }
+            Self::Layers(layers) => products::fapar(spread, layers, stage, context),
+            Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, stage, context),
         }
     }
 
@@ -237,7 +274,8 @@ impl Kind {
             Self::Albedo(counter) => Box::new(*counter),
             Self::Cells(counter) => Box::new(counter.clone()),
             Self::Views(counter, _) => Box::new(counter.clone()),
-            Self::Layers(counter) => Box::new(*counter),
+            Self::Layers(counter) => Box::new(counter.clone()),
+            Self::Cones(counter) => Box::new(counter.clone()),
             Self::Fluxes(counter) => Box::new(counter.clone()),
         }
     }

@@ -4,7 +4,8 @@ use hecs::World;
 
 use super::Spawner;
 use crate::components::{
-    Directions, ImageMeasure, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop, System, View,
+    Cone, Directions, ImageMeasure, Layers, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
+    System, View,
 };
 use crate::document::{self, Diagnostic, Sun, Until, Views};
 
@@ -47,8 +48,20 @@ impl Spawner<'_> {
                             PhotonMeasure::BrfViews(self.views(views, &at)?)
                         }
                         document::PhotonMeasure::Albedo => PhotonMeasure::Albedo,
+                        document::PhotonMeasure::BrfCones(list) => PhotonMeasure::BrfCones(
+                            list.iter()
+                                .map(|&(zenith, azimuth, full)| Cone {
+                                    axis: view(zenith, azimuth),
+                                    half_angle: 0.5 * full.to_radians(),
+                                })
+                                .collect(),
+                        ),
+                        document::PhotonMeasure::Orders => PhotonMeasure::Orders,
                         document::PhotonMeasure::Fapar { layer_m } => {
-                            PhotonMeasure::Fapar { layer: *layer_m }
+                            PhotonMeasure::Fapar(match layer_m {
+                                document::Layers::Thickness(m) => Layers::Thickness(*m),
+                                document::Layers::Borders(m) => Layers::Borders(m.clone()),
+                            })
                         }
                         document::PhotonMeasure::Fluxes { pixel_m, heights_m } => {
                             PhotonMeasure::Fluxes { pixel: *pixel_m, heights: heights_m.clone() }
@@ -99,6 +112,7 @@ pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMe
         .map(|measure| match measure {
             document::ImageMeasure::Radiance => ImageMeasure::Radiance,
             document::ImageMeasure::Brf => ImageMeasure::Brf,
+            document::ImageMeasure::Orders => ImageMeasure::Orders,
             document::ImageMeasure::FourComponents => ImageMeasure::FourComponents,
             document::ImageMeasure::GapFraction => ImageMeasure::GapFraction,
         })

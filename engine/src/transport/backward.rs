@@ -1,8 +1,9 @@
 use glam::DVec3;
 
-use super::roulette;
+use super::{Part, roulette, spectra};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
+use crate::film::Sums;
 use crate::sampling::Sampler;
 
 /// Backward path tracing: the radiance that arrives along a ray, from next-event estimation to the
@@ -16,6 +17,13 @@ pub struct Path {
     /// What the sun adds if it is seen.
     light: Vec<f32>,
     rays: u64,
+    /// Whether to tell light of different orders apart.
+    orders_apart: bool,
+    /// Radiance of the last path when it was scattered for the second time.
+    single: Vec<f32>,
+    /// How often it was scattered, and whether first at the ground.
+    orders: u32,
+    met_ground: bool,
     log: Option<Vec<Traced>>,
 }
 
@@ -33,7 +41,23 @@ impl Path {
     #[must_use]
     pub fn new(lanes: usize) -> Self {
         let dark = vec![0.0; lanes];
-        Self { throughput: dark.clone(), radiance: dark.clone(), light: dark, rays: 0, log: None }
+        Self {
+            throughput: dark.clone(),
+            radiance: dark.clone(),
+            light: dark.clone(),
+            rays: 0,
+            orders_apart: false,
+            single: dark,
+            orders: 0,
+            met_ground: true,
+            log: None,
+        }
+    }
+
+    /// The same, which tells light of different orders apart if asked to.
+    #[must_use]
+    pub fn of_orders(lanes: usize, orders_apart: bool) -> Self {
+        Self { orders_apart, ..Self::new(lanes) }
     }
 
     /// The same, with a log of all rays.
@@ -67,11 +91,33 @@ impl Path {
         &self.radiance
     }
 
+    /// Adds what the last trace found to a cell: the radiance or, with orders apart, the whole and
+    /// its parts in a row. The differences are exact in f64, so the parts sum to the whole.
+    pub fn add_to(&self, sums: &mut Sums, cell: usize) {
+        if !self.orders_apart {
+            return sums.add(cell, &self.radiance, 1.0);
+        }
+        let bands = sums.bands() / spectra(true);
+        sums.add_with(cell, |channel| {
+            let (spectrum, lane) = (channel / bands, channel % bands);
+            let whole = f64::from(self.radiance[lane]);
+            let single = if self.orders < 2 { whole } else { f64::from(self.single[lane]) };
+            match spectrum.checked_sub(1).map(|part| Part::ALL[part]) {
+                None => whole,
+                Some(Part::Multiple) => whole - single,
+                Some(part) if part == Part::of(1, self.met_ground) => single,
+                Some(_) => 0.0,
+            }
+        });
+    }
+
     /// Estimates the radiance that arrives against the ray's direction; whether the ray meets the
     /// scene at all. The direct light of sun and sky, which the sensor would look into, is left out.
     pub fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
         self.radiance.fill(0.0);
         self.throughput.fill(1.0);
+        // Light that met nothing at all is uncollided.
+        (self.orders, self.met_ground) = (0, true);
         self.note(&ray, false);
         let Some(first) = stage.geometry.closest(&ray) else { return false };
         if stage.rules.max_order == 0 {
@@ -80,6 +126,12 @@ impl Path {
         let (mut hit, mut wo) = (first, -ray.direction);
         // Scattering events between the sensor and the ray.
         for order in 1.. {
+            self.orders = order;
+            match order {
+                1 => self.met_ground = stage.is_ground(&hit),
+                2 if self.orders_apart => self.single.copy_from_slice(&self.radiance),
+                _ => {}
+            }
             let shadow = self.sunlight(stage, &hit, wo, sampler);
             let onward = self.scatter(stage, &hit, wo, order, sampler);
             let (is_dark, next) = match (&shadow, &onward) {

@@ -1,7 +1,10 @@
 use std::ops::Range;
 
 use super::forward::trace_packets;
-use super::{Counter, Path, Projection, RANDOMISATIONS, ViewCounter, Walk, Watch, blocks};
+use super::{
+    Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, ViewCounter, Walk, Watch, blocks,
+    spectra,
+};
 use crate::accel::Ray;
 use crate::components::{Stop, System, View};
 use crate::extract::Stage;
@@ -13,6 +16,8 @@ use crate::sampling::{Key, Sampler};
 pub struct DirectionsOutcome {
     /// `L / E` towards each view, sr⁻¹, shape `[views, bands]`, with its standard error.
     pub spread: Spread,
+    /// The same of each [`Part`], if asked for.
+    pub parts: Vec<Spread>,
     /// Paths a view, or photon packets.
     pub samples: u64,
     /// Rays traced.
@@ -31,7 +36,7 @@ const FIRST_ROUND: u64 = 16;
 #[must_use]
 pub fn measure_directions(
     stage: &Stage,
-    (views, system): (&[View], System),
+    (views, system, orders): (&[View], System, bool),
     until: &[Stop],
     key: Key,
     elapsed: &dyn Fn() -> f64,
@@ -39,19 +44,29 @@ pub fn measure_directions(
 ) -> DirectionsOutcome {
     let projections = projections(stage, views);
     let rounds = Rounds::measure(
-        (views.len(), stage.bands),
+        (views.len(), stage.bands * spectra(orders)),
         until,
         (elapsed, watch),
         |range, rows| match system {
             System::Backward => {
-                let path = || Path::new(stage.lanes());
+                let path = || Path::of_orders(stage.lanes(), orders);
                 walk_views(stage, &projections, range, key, rows, path)
             }
-            System::Forward => trace_photons_to(stage, &projections, range, key, rows),
+            System::Forward => trace_photons_to(stage, &projections, range, (key, orders), rows),
         },
-        |rows, each| spread(rows, each).median_relative_error(),
+        |rows, each| spread(rows, each, 0..stage.bands).median_relative_error(),
     );
-    rounds.outcome()
+    let of = |spectrum: usize| {
+        let columns = spectrum * stage.bands..(spectrum + 1) * stage.bands;
+        spread(&rounds.rows, rounds.each, columns)
+    };
+    DirectionsOutcome {
+        spread: of(0),
+        parts: (1..spectra(orders)).map(of).collect(),
+        samples: rounds.samples(),
+        rays: rounds.rays,
+        ended_by: rounds.ended_by,
+    }
 }
 
 /// The scene seen from each view.
@@ -119,16 +134,6 @@ impl Rounds {
         }
     }
 
-    /// Means over all samples, those that met nothing included.
-    pub(super) fn outcome(self) -> DirectionsOutcome {
-        DirectionsOutcome {
-            spread: spread(&self.rows, self.each),
-            samples: self.samples(),
-            rays: self.rays,
-            ended_by: self.ended_by,
-        }
-    }
-
     /// Samples a view.
     pub(super) fn samples(&self) -> u64 {
         self.each * u64::from(RANDOMISATIONS)
@@ -146,10 +151,17 @@ fn first_round(until: &[Stop]) -> u64 {
     limits.fold(FIRST_ROUND, u64::min).max(1)
 }
 
-pub(super) fn spread(rows: &[Sums], samples: u64) -> Spread {
+/// Of these columns: their means over all samples, those that met nothing included.
+fn spread(rows: &[Sums], samples: u64, columns: Range<usize>) -> Spread {
     let means: Vec<Vec<f64>> = rows
         .iter()
-        .map(|row| row.values().iter().map(|sum| sum / samples as f64).collect())
+        .map(|row| {
+            row.values()
+                .chunks_exact(row.bands())
+                .flat_map(|view| &view[columns.clone()])
+                .map(|sum| sum / samples as f64)
+                .collect()
+        })
         .collect();
     Spread::of(means[0].len(), means.iter().map(Vec::as_slice))
 }
@@ -182,7 +194,7 @@ pub(super) fn walk_views<W: Walk>(
                 let origin = projection.point(glam::DVec2::new(u, v));
                 let ray = Ray { origin, direction: -projection.towards, from: None };
                 if walk.trace(stage, ray, &mut sampler) {
-                    sums.add(0, walk.values(), 1.0);
+                    walk.add_to(&mut sums, 0);
                 }
             }
             (sums, walk.rays())
@@ -200,18 +212,26 @@ fn trace_photons_to(
     stage: &Stage,
     projections: &[Projection],
     range: Range<u64>,
-    key: Key,
+    (key, orders): (Key, bool),
     rows: &mut [Sums],
 ) -> u64 {
     let counter = ViewCounter::new(projections.to_vec());
     let cells = counter.first_cells().to_vec();
-    let counters: [Box<dyn Counter>; 1] = [Box::new(counter)];
+    let mut counters: Vec<Box<dyn Counter + '_>> = vec![Box::new(counter.clone())];
+    if orders {
+        counters.extend(Part::ALL.map(|part| -> Box<dyn Counter + '_> {
+            Box::new(PartCounter { counter: Box::new(counter.clone()), part })
+        }));
+    }
     trace_packets(stage, &counters, range, key, &|_| {}, |randomisation, sums| {
         for (view, (projection, cell)) in projections.iter().zip(&cells).enumerate() {
             let per_count = projection.radiance_of_count(stage);
             let bands = cell * stage.bands..(cell + 1) * stage.bands;
-            let radiance: Vec<f64> =
-                sums[0].values()[bands].iter().map(|sum| sum * per_count).collect();
+            let radiance: Vec<f64> = sums
+                .iter()
+                .flat_map(|sums| &sums.values()[bands.clone()])
+                .map(|sum| sum * per_count)
+                .collect();
             rows[randomisation].add_cell(view, &radiance);
         }
     })

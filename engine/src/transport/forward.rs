@@ -116,18 +116,20 @@ fn trace_block(
         };
         rays += show(Event::Start { ray: &ray, weight: &weight });
         let mut order = 0;
+        let mut met_ground = false;
         loop {
             rays += 1;
             let hit = stage.geometry.closest(&ray);
             let distance = hit.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
             rays += show(Event::Flight { ray: &ray, distance, weight: &weight });
             let Some(hit) = hit else {
-                rays += show(Event::Escape { ray: &ray, order, weight: &weight });
+                rays += show(Event::Escape { ray: &ray, order, met_ground, weight: &weight });
                 break;
             };
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
-            rays += show(Event::Arrival { hit: &hit, wo, order, weight: &weight });
+            rays += show(Event::Arrival { hit: &hit, wo, order, met_ground, weight: &weight });
+            met_ground |= stage.is_ground(&hit);
             before.copy_from_slice(&weight);
             let scattered = bsdf.scattered(hit.normal, wo);
             for (weight, share) in before.iter_mut().zip(scattered) {

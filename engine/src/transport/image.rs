@@ -1,24 +1,24 @@
 use glam::{DVec2, UVec2};
 
 use super::{
-    Camera, Counter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter, Walk, Watch, blocks,
-    trace_photons,
+    Camera, Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter,
+    Walk, Watch, blocks, spectra, trace_photons,
 };
 use crate::extract::Stage;
-use crate::film::{Sums, ratio};
+use crate::film::{Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 
 /// What an image measurement found, in units of the irradiance.
 #[derive(Clone, Debug)]
 pub struct ImageOutcome {
-    /// `L / E` of each pixel, sr⁻¹, shape `[rows, columns, bands]`: the mean over the samples that
-    /// met the scene; NaN where none did.
+    /// `L / E` of each pixel, sr⁻¹, shape `[rows, columns, spectra, bands]` (the whole and, if asked
+    /// for, its parts): the mean over the samples that met the scene; NaN where none did.
     pub pixels: Vec<f32>,
     /// Its standard error.
     pub errors: Vec<f32>,
     /// Share of each pixel's samples that met the scene, shape `[rows, columns]`.
     pub coverage: Vec<f32>,
-    /// `L / E` over all samples that met the scene, shape `[bands]`.
+    /// `L / E` over all samples that met the scene, shape `[spectra, bands]`.
     pub mean: Vec<f64>,
     /// Its standard error.
     pub mean_error: Vec<f64>,
@@ -76,11 +76,13 @@ struct Tile {
 pub fn measure_image(
     stage: &Stage,
     camera: &Camera,
-    samples: u32,
+    (samples, orders): (u32, bool),
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
-    walk_pixels(stage, (camera, samples), key, watch, stage.bands, || Path::new(stage.lanes()))
+    let columns = stage.bands * spectra(orders);
+    let path = || Path::of_orders(stage.lanes(), orders);
+    walk_pixels(stage, (camera, samples), key, watch, columns, path)
 }
 
 /// Walks `samples` times a pixel from the sensor and averages what the walks that met the scene
@@ -156,29 +158,43 @@ pub(super) fn walk_pixels<W: Walk>(
 pub fn measure_image_forward(
     stage: &Stage,
     projection: &Projection,
-    samples: u32,
+    (samples, orders): (u32, bool),
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
     let pixels = projection.pixels();
-    let counters: [Box<dyn Counter>; 1] = [Box::new(ViewCounter::new(vec![projection.clone()]))];
+    let counter = ViewCounter::new(vec![projection.clone()]);
+    let mut counters: Vec<Box<dyn Counter + '_>> = vec![Box::new(counter.clone())];
+    if orders {
+        counters.extend(Part::ALL.map(|part| -> Box<dyn Counter + '_> {
+            Box::new(PartCounter { counter: Box::new(counter.clone()), part })
+        }));
+    }
     let packets = pixels as u64 * u64::from(samples);
     let outcome = trace_photons(stage, &counters, packets, key, watch);
     let per_count = projection.radiance_of_count(stage);
-    let errors = outcome.spreads[0].standard_error();
-    let of_pixels = |values: &[f64]| -> Vec<f32> {
-        values[..pixels * stage.bands].iter().map(|value| (value * per_count) as f32).collect()
+    let means: Vec<&[f64]> = outcome.spreads.iter().map(Spread::mean).collect();
+    let errors: Vec<Vec<f64>> = outcome.spreads.iter().map(Spread::standard_error).collect();
+    let errors: Vec<&[f64]> = errors.iter().map(Vec::as_slice).collect();
+    // Pixel by pixel the whole and its parts; behind the pixels stand totals.
+    let of_pixels = |spectra: &[&[f64]]| -> Vec<f32> {
+        (0..pixels)
+            .flat_map(|pixel| spectra.iter().map(move |values| (pixel, values)))
+            .flat_map(|(pixel, values)| &values[pixel * stage.bands..(pixel + 1) * stage.bands])
+            .map(|value| (value * per_count) as f32)
+            .collect()
     };
     // The total counts what all pixels together see.
-    let of_total = |values: &[f64]| -> Vec<f64> {
+    let of_total = |spectra: &[&[f64]]| -> Vec<f64> {
         let scale = per_count / pixels as f64;
-        values[pixels * stage.bands..].iter().map(|value| value * scale).collect()
+        let totals = spectra.iter().flat_map(|values| &values[pixels * stage.bands..]);
+        totals.map(|value| value * scale).collect()
     };
     ImageOutcome {
-        pixels: of_pixels(outcome.spreads[0].mean()),
+        pixels: of_pixels(&means),
         errors: of_pixels(&errors),
         coverage: vec![1.0; pixels],
-        mean: of_total(outcome.spreads[0].mean()),
+        mean: of_total(&means),
         mean_error: of_total(&errors),
         samples: outcome.packets,
         rays: outcome.rays,
@@ -232,7 +248,7 @@ fn trace_tile(
                         || camera.sees_sky() && walk.see_sky(stage, ray.direction);
                     if is_seen {
                         hits[randomisation as usize] += 1.0;
-                        sums.add(randomisation as usize, walk.values(), 1.0);
+                        walk.add_to(&mut sums, randomisation as usize);
                     }
                 }
             }

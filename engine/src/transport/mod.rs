@@ -13,6 +13,7 @@ mod emission;
 mod forward;
 mod hemisphere;
 mod image;
+mod parts;
 mod roulette;
 mod walk;
 
@@ -23,13 +24,14 @@ pub use components::{
     measure_image_components,
 };
 pub use counters::{
-    AlbedoCounter, CellCounter, Counter, EnergyCounter, FluxCounter, FluxLevel, LayerCounter,
-    ViewCounter,
+    AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter, FluxLevel,
+    GROUND_TERMS, LayerCounter, ViewCounter,
 };
 pub use directions::{DirectionsOutcome, measure_directions};
 pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
+pub use parts::{Part, PartCounter, spectra};
 use walk::Walk;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread

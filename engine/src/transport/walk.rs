@@ -3,6 +3,7 @@ use glam::DVec3;
 use super::Path;
 use crate::accel::Ray;
 use crate::extract::Stage;
+use crate::film::Sums;
 use crate::sampling::Sampler;
 
 /// Follows a ray from a sensor into the scene; one value is reused for many rays.
@@ -16,6 +17,11 @@ pub(super) trait Walk {
 
     /// What the last ray found, shape `[columns]` or longer.
     fn values(&self) -> &[f32];
+
+    /// Adds what the last ray found to a cell.
+    fn add_to(&self, sums: &mut Sums, cell: usize) {
+        sums.add(cell, self.values(), 1.0);
+    }
 
     /// Rays traced so far.
     fn rays(&self) -> u64;
@@ -32,6 +38,10 @@ impl Walk for Path {
 
     fn values(&self) -> &[f32] {
         self.radiance()
+    }
+
+    fn add_to(&self, sums: &mut Sums, cell: usize) {
+        self.add_to(sums, cell);
     }
 
     fn rays(&self) -> u64 {

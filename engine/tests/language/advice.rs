@@ -27,7 +27,7 @@ const EMPTY: &str = "Scene(
         \"d\": Directions(views: List, until: Seconds),
         \"e\": Directions(views: List, until: Samples),
         \"g\": Perspective, \"h\": Fisheye, \"i\": Fisheye(look: Towards), \"j\": Fisheye(look: Target),
-        \"f\": Photons(measure: [BrfCells, BrfViews, Albedo, Fapar, Fluxes]),
+        \"f\": Photons(measure: [BrfCells, BrfViews, BrfCones, Albedo, Orders, Fapar, Fluxes]),
     },
     transport: (roulette: ()),
     variants: { \"winter\": {} },

@@ -27,6 +27,7 @@ broken! {
     bracket_never_closed
     cameras
     comma_missing
+    cones_and_layers
     comment_never_closed
     components
     crown

@@ -4,9 +4,9 @@ use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
     Axis, Band, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame, ImageMeasure,
-    Instances, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options, Origin, PhotonMeasure,
-    Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition, System, Terrain, Transport,
-    Trunk, Until, Views, read_text,
+    Instances, Layers, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options, Origin,
+    PhotonMeasure, Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition, System,
+    Terrain, Transport, Trunk, Until, Views, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -304,6 +304,7 @@ fn sensor() -> BoxedStrategy<Sensor> {
         prop::sample::select(vec![
             ImageMeasure::Radiance,
             ImageMeasure::Brf,
+            ImageMeasure::Orders,
             ImageMeasure::FourComponents,
             ImageMeasure::GapFraction,
         ])
@@ -317,7 +318,10 @@ fn sensor() -> BoxedStrategy<Sensor> {
         any::<u32>().prop_map(PhotonMeasure::BrfCells),
         views().prop_map(PhotonMeasure::BrfViews),
         Just(PhotonMeasure::Albedo),
-        number().prop_map(|layer_m| PhotonMeasure::Fapar { layer_m }),
+        Just(PhotonMeasure::Orders),
+        list((number(), number(), number())).prop_map(PhotonMeasure::BrfCones),
+        number().prop_map(|m| PhotonMeasure::Fapar { layer_m: Layers::Thickness(m) }),
+        list(number()).prop_map(|m| PhotonMeasure::Fapar { layer_m: Layers::Borders(m) }),
         (number(), list(number()))
             .prop_map(|(pixel_m, heights_m)| PhotonMeasure::Fluxes { pixel_m, heights_m }),
     ];
@@ -385,13 +389,13 @@ fn scene() -> BoxedStrategy<Scene> {
         center_nm,
         width_nm,
     });
-    let transport = (any::<u64>(), any::<u32>(), number(), any::<bool>()).prop_map(
-        |(seed, after_order, kill, first_order_only)| Transport {
+    let transport = (any::<u64>(), any::<u32>(), number(), any::<bool>(), option(any::<u32>()))
+        .prop_map(|(seed, after_order, kill, first_order_only, max_order)| Transport {
             seed,
             roulette: Roulette { after_order, kill },
             first_order_only,
-        },
-    );
+            max_order,
+        });
     let names = (any::<u32>(), text(), map(number()), map(map(number())));
     let surfaces = (list(band), map(spectrum()), map(material()), map(mesh()));
     (names, surfaces, ground(), list(instances()), light(), map(sensor()), transport)

@@ -196,4 +196,15 @@ fn check_transport(transport: &Transport, report: &mut Report<'_>) {
         let message = format!("expected a probability from 0 up to below 1, found {kill}");
         report.error("transport.roulette.kill", message, "with 1 no path would go on");
     }
+    match transport.max_order {
+        Some(0) => {
+            let help = "1 is light that was scattered once; leave the key out for all orders";
+            report.error("transport.max_order", "no light would count", help);
+        }
+        Some(order) if order > 1 && transport.first_order_only => {
+            let message = format!("`first_order_only` contradicts `max_order: {order}`");
+            report.error("transport.max_order", message, "take one of the two out");
+        }
+        _ => {}
+    }
 }

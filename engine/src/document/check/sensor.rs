@@ -2,7 +2,9 @@
 
 use std::mem::discriminant;
 
-use super::super::scene::{ImageMeasure, PhotonMeasure, Scene, Sensor, Terrain, Until, Views};
+use super::super::scene::{
+    ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, Terrain, Until, Views,
+};
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
 
@@ -111,8 +113,11 @@ fn check_photon_measure(
             }
         }
         PhotonMeasure::BrfViews(views) => check_views(path, views, scene, report),
-        PhotonMeasure::Albedo => {}
-        PhotonMeasure::Fapar { layer_m } => report.above_zero(&format!("{path}.layer_m"), *layer_m),
+        PhotonMeasure::Albedo | PhotonMeasure::Orders => {}
+        PhotonMeasure::BrfCones(cones) => check_cones(path, cones, report),
+        PhotonMeasure::Fapar { layer_m } => {
+            check_layers(&format!("{path}.layer_m"), layer_m, report);
+        }
         PhotonMeasure::Fluxes { pixel_m, heights_m } => {
             report.above_zero(&format!("{path}.pixel_m"), *pixel_m);
             report.finite(&format!("{path}.heights_m"), heights_m);
@@ -138,6 +143,44 @@ fn check_components(path: &str, measures: &[ImageMeasure], scene: &Scene, report
         let message = "two of the four components are sunlit, and there is no sun";
         let help = "write `sun: (zenith_deg: 30.0)`, or measure `GapFraction` alone";
         report.error(&format!("{path}[{index}]"), message, help);
+    }
+}
+
+fn check_cones(path: &str, cones: &[(f64, f64, f64)], report: &mut Report<'_>) {
+    if cones.is_empty() {
+        let help = "write zenith, azimuth and full angle: `BrfCones([(30.0, 90.0, 5.0)])`";
+        report.error(path, "the list of cones is empty", help);
+    }
+    for (index, (zenith, azimuth, full)) in cones.iter().enumerate() {
+        report.zenith(&format!("{path}[{index}][0]"), *zenith);
+        report.azimuth(&format!("{path}[{index}][1]"), *azimuth);
+        report.above_zero(&format!("{path}[{index}][2]"), *full);
+        if (0.0..90.0).contains(zenith) && zenith + 0.5 * full > 90.0 {
+            let message =
+                format!("a cone of {full}° about zenith {zenith}° reaches below the horizon");
+            let help = format!("write an angle of at most {}", 2.0 * (90.0 - zenith));
+            report.error(&format!("{path}[{index}][2]"), message, help);
+        }
+    }
+}
+
+fn check_layers(path: &str, layers: &Layers, report: &mut Report<'_>) {
+    match layers {
+        Layers::Thickness(thickness) => report.above_zero(path, *thickness),
+        Layers::Borders(borders) => {
+            report.finite(path, borders);
+            if borders.len() < 2 {
+                let help = "write the lower and the upper border: `layer_m: [0.0, 5.0]`";
+                report.error(path, "a layer lies between two heights", help);
+            }
+            for (index, pair) in borders.windows(2).enumerate() {
+                if pair[0] >= pair[1] {
+                    let message = format!("the border at {} m is not above {} m", pair[1], pair[0]);
+                    let at = format!("{path}[{}]", index + 1);
+                    report.error(&at, message, "write heights upwards, each once");
+                }
+            }
+        }
     }
 }
 

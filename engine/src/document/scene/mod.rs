@@ -19,7 +19,9 @@ pub use camera::{Cover, FisheyeProjection, Look, Picture};
 pub use ground::{Boundary, Instances, Terrain};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
-pub use sensor::{ImageMeasure, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views};
+pub use sensor::{
+    ImageMeasure, Layers, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
+};
 pub use spectrum::{Material, Spectrum};
 
 /// Named values in document order.

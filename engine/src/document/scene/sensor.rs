@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
+use super::super::syntax::{Node, Value};
 use super::camera::{Cover, FisheyeProjection, Look, Picture};
 
 choice! {
@@ -167,6 +167,9 @@ choice! {
         Radiance,
         /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
         Brf,
+        /// The same, split as RAMI does: `brf_uc` (scattered once, by the ground), `brf_co_sgl`
+        /// (once, by anything else) and `brf_mlt` (more often).
+        Orders,
         /// Shares of sunlit ground, sunlit canopy, shaded ground and shaded canopy in what is seen;
         /// of an image the dominant one too. Sunlit is where the sun is visible from the side that
         /// is seen; ground is the terrain.
@@ -184,12 +187,18 @@ choice! {
         BrfCells(u32 => "150"),
         /// BRF towards directions, by virtual photons.
         BrfViews(Views => "PrincipalPlane"),
+        /// BRF within cones: (zenith, azimuth, full opening angle), degrees.
+        BrfCones(Vec<(f64, f64, f64)> => "[(30.0, 90.0, 5.0)]"),
         /// Reflected over incident flux.
         Albedo,
-        /// Share of the incident flux that each material absorbs in each layer.
+        /// Splits this sensor's albedo and BRF as RAMI does: `_uc` (scattered once, by the ground),
+        /// `_co_sgl` (once, by anything else) and `_mlt` (more often).
+        Orders,
+        /// Share of the incident flux that each material absorbs in each layer and in all, and what
+        /// reaches the ground.
         Fapar {
-            /// Thickness of a layer, m.
-            layer_m: f64 = 1.0,
+            /// Thickness of a layer, m, or the heights of all borders between layers.
+            layer_m: Layers = Layers::Thickness(1.0),
         },
         /// Down- and upwelling flux density, W m⁻² nm⁻¹, on the terrain and at the top of the scene.
         Fluxes {
@@ -198,6 +207,45 @@ choice! {
             /// Further heights, m.
             heights_m: Vec<f64> = Vec::new(),
         },
+    }
+}
+
+/// Horizontal layers: `1.0` or `[0.0, 2.0, 8.0]`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layers {
+    /// Thickness of all, from the ground up, m.
+    Thickness(f64),
+    /// Heights of their borders, m.
+    Borders(Vec<f64>),
+}
+
+impl Decode for Layers {
+    fn expected() -> Cow<'static, str> {
+        "a thickness or a list of heights".into()
+    }
+
+    fn example() -> String {
+        "1.0".to_owned()
+    }
+
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+        match &node.value {
+            Value::List(_) => Self::Borders(Vec::decode(node, reader)),
+            _ => Self::Thickness(f64::decode(node, reader)),
+        }
+    }
+
+    fn placeholder() -> Self {
+        Self::Thickness(f64::placeholder())
+    }
+}
+
+impl Encode for Layers {
+    fn encode(&self) -> Text {
+        match self {
+            Self::Thickness(thickness) => thickness.encode(),
+            Self::Borders(borders) => borders.encode(),
+        }
     }
 }
 
@@ -220,12 +268,14 @@ record! {
         roulette: Roulette = Roulette::default(),
         /// Count light that was scattered once, and no more.
         first_order_only: bool = false,
+        /// Count light that was scattered so often at most.
+        max_order: Option<u32> = None,
     }
 }
 
 impl Default for Transport {
     fn default() -> Self {
-        Self { seed: 1, roulette: Roulette::default(), first_order_only: false }
+        Self { seed: 1, roulette: Roulette::default(), first_order_only: false, max_order: None }
     }
 }
 

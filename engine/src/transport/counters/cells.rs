@@ -13,7 +13,7 @@ impl Counter for CellCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        if let Event::Escape { ray, order: 1.., weight } = event
+        if let Event::Escape { ray, order: 1.., weight, .. } = event
             && stage.leaves_through_top(ray.origin, ray.direction)
         {
             sums.add(self.0.index(ray.direction), weight, 1.0);

@@ -43,7 +43,7 @@ impl Counter for EnergyCounter {
             }
             Event::Roulette { expected, kept } => sums
                 .add_with(Self::ROULETTE, |lane| f64::from(expected[lane]) - f64::from(kept[lane])),
-            Event::Escape { ray, order, weight } => {
+            Event::Escape { ray, order, weight, .. } => {
                 let reflected = *order > 0 && stage.leaves_through_top(ray.origin, ray.direction);
                 let cell = if reflected { Self::REFLECTED } else { Self::LOST };
                 sums.add(cell, weight, 1.0);

@@ -96,7 +96,7 @@ impl Counter for FluxCounter {
                     let point = ray.origin + ray.direction * along;
                     add(point, false, &|lane| weight[lane].into());
                 }
-                (FluxLevel::Top, Event::Escape { ray, order: 1.., weight })
+                (FluxLevel::Top, Event::Escape { ray, order: 1.., weight, .. })
                     if ray.direction.z > 0.0 =>
                 {
                     let along = (stage.top() - ray.origin.z).max(0.0) / ray.direction.z;

@@ -2,6 +2,7 @@
 
 mod albedo;
 mod cells;
+mod cones;
 mod energy;
 mod fluxes;
 mod layers;
@@ -15,9 +16,10 @@ use crate::film::Sums;
 
 pub use albedo::AlbedoCounter;
 pub use cells::CellCounter;
+pub use cones::ConeCounter;
 pub use energy::EnergyCounter;
 pub use fluxes::{FluxCounter, FluxLevel};
-pub use layers::LayerCounter;
+pub use layers::{GROUND_TERMS, LayerCounter};
 pub use views::ViewCounter;
 
 /// An event in a packet's life. Weights, shape `[lanes]`, are in units of the power that falls on
@@ -48,6 +50,8 @@ pub enum Event<'a> {
         wo: DVec3,
         /// How often it was scattered before.
         order: u32,
+        /// Whether any of that was at the ground.
+        met_ground: bool,
         /// Its weight.
         weight: &'a [f32],
     },
@@ -64,6 +68,8 @@ pub enum Event<'a> {
         ray: &'a Ray,
         /// How often it was scattered.
         order: u32,
+        /// Whether any of that was at the ground.
+        met_ground: bool,
         /// Its weight.
         weight: &'a [f32],
     },

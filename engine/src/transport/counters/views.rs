@@ -50,7 +50,7 @@ impl Counter for ViewCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, wo, order, weight } = event else { return 0 };
+        let Event::Arrival { hit, wo, order, weight, .. } = event else { return 0 };
         if *order >= stage.rules.max_order {
             return 0;
         }

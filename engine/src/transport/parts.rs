@@ -1,0 +1,75 @@
+use super::{Counter, counters::Event};
+use crate::extract::Stage;
+use crate::film::Sums;
+
+/// Parts of what a scene reflects, as RAMI splits it; they sum to the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Scattered once, by the ground: it has met no canopy on its way in or out.
+    Uncollided,
+    /// Scattered once, by anything but the ground.
+    Single,
+    /// Scattered more than once.
+    Multiple,
+}
+
+impl Part {
+    /// All, in the order of their cells.
+    pub const ALL: [Self; 3] = [Self::Uncollided, Self::Single, Self::Multiple];
+
+    /// What RAMI appends to a name.
+    #[must_use]
+    pub const fn suffix(self) -> &'static str {
+        match self {
+            Self::Uncollided => "uc",
+            Self::Single => "co_sgl",
+            Self::Multiple => "mlt",
+        }
+    }
+
+    /// Part of the light that was scattered so often; whether any of that was at the ground.
+    #[must_use]
+    pub const fn of(order: u32, met_ground: bool) -> Self {
+        match (order, met_ground) {
+            (..=1, true) => Self::Uncollided,
+            (..=1, false) => Self::Single,
+            _ => Self::Multiple,
+        }
+    }
+}
+
+/// Spectra of a path in a row: the whole and, on request, its parts.
+#[must_use]
+pub const fn spectra(orders: bool) -> usize {
+    if orders { 1 + Part::ALL.len() } else { 1 }
+}
+
+/// Shows a counter only the light of one part.
+pub struct PartCounter<'a> {
+    /// The counter.
+    pub counter: Box<dyn Counter + 'a>,
+    /// The part that it sees.
+    pub part: Part,
+}
+
+impl std::fmt::Debug for PartCounter<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PartCounter").field("part", &self.part).finish_non_exhaustive()
+    }
+}
+
+impl Counter for PartCounter<'_> {
+    fn cells(&self) -> usize {
+        self.counter.cells()
+    }
+
+    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+        let part = match event {
+            Event::Escape { order, met_ground, .. } => Part::of(*order, *met_ground),
+            // A virtual photon leaves after one more event.
+            Event::Arrival { hit, order, .. } => Part::of(order + 1, stage.is_ground(hit)),
+            _ => return 0,
+        };
+        if part == self.part { self.counter.count(stage, event, sums) } else { 0 }
+    }
+}

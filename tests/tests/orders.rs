@@ -1,0 +1,285 @@
+//! Light split by its order of scattering, cones, and what becomes of it in the canopy.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use sunfleck::products::{Product, Report};
+use sunfleck::run::Options;
+use sunfleck_tests::{Estimate, measure, product};
+
+const PARTS: [&str; 3] = ["uc", "co_sgl", "mlt"];
+
+fn run(text: &str, folder: &Path) -> Report {
+    measure(text, folder, &Options::default())
+}
+
+/// Trees of two bands under sun and sky.
+fn trees(boundary: &str) -> Report {
+    let views = "List([(0.0, 0.0), (40.0, 100.0), (60.0, 190.0)])";
+    run(
+        &format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
+        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
+    }},
+    meshes: {{ "tree": Crown(
+        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+        leaf: Square(side_m: 0.1), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+    sky: Fraction([0.3, 0.1]),
+    boundary: {boundary},
+    sensors: {{
+        "back": Directions(views: {views}, until: Samples(30000), measure: [Brf, Orders]),
+        "alone": Directions(views: {views}, until: Samples(320), measure: [Brf]),
+        "forth": Directions(views: {views}, until: Samples(60000), measure: [Brf, Orders], system: Forward),
+        "image": Orthographic(size_px: (4, 4), extent_m: (5.0, 5.0), samples_per_px: 256, measure: [Brf, Orders]),
+        "film": Orthographic(size_px: (4, 4), extent_m: (5.0, 5.0), samples_per_px: 1024, measure: [Brf, Orders], system: Forward),
+        "photons": Photons(per_m2: 12000.0, measure: [
+            Albedo, BrfCells(40), BrfViews({views}), Orders,
+            BrfCones([(0.0, 0.0, 8.0), (40.0, 100.0, 8.0), (60.0, 190.0, 8.0)]),
+            Fapar(layer_m: 0.7),
+        ]),
+        "layers": Photons(per_m2: 400.0, measure: [Fapar(layer_m: [-1.0, 0.0, 1.5, 9.0])]),
+    }},
+)"#
+        ),
+        Path::new("."),
+    )
+}
+
+/// The largest difference between a product and the sum of its parts, over its largest value.
+fn gap(report: &Report, sensor: &str, name: &str) -> f64 {
+    let whole = product(report, sensor, name);
+    let parts: Vec<&Product> =
+        PARTS.iter().map(|part| product(report, sensor, &format!("{name}_{part}"))).collect();
+    let sums = |of: &dyn Fn(&Product) -> Vec<f64>| {
+        let all: Vec<Vec<f64>> = parts.iter().map(|part| of(part)).collect();
+        let whole = of(whole);
+        let largest = whole.iter().copied().fold(0.0, f64::max);
+        let gaps = whole.iter().enumerate().map(|(i, value)| {
+            (value - all.iter().map(|part| part[i]).sum::<f64>()).abs() / largest
+        });
+        gaps.fold(0.0, f64::max)
+    };
+    assert!(parts.iter().all(|part| part.values.iter().any(|value| *value > 0.0)), "{name}");
+    let pixels = |product: &Product| -> Vec<f64> {
+        let image = product.image.as_ref().map_or(&[][..], |image| &image.values);
+        image.iter().map(|&value| f64::from(value)).collect()
+    };
+    // Pixels are reported as f32.
+    assert!(whole.image.is_none() || sums(&pixels) < 3e-7, "{sensor}, {name}");
+    sums(&|product| product.values.clone())
+}
+
+/// *Expected*: the three parts sum to the whole in every product; each part is the same forwards
+/// and backwards, in cones, cells and towards directions.
+#[test]
+fn parts_sum_to_the_whole_and_agree_between_all_estimators() {
+    for boundary in ["Periodic", "Isolated"] {
+        let report = trees(boundary);
+        for (sensor, name) in [
+            ("back", "hdrf"),
+            ("forth", "hdrf"),
+            ("image", "hdrf"),
+            ("film", "hdrf"),
+            ("photons", "albedo"),
+            ("photons", "hdrf_cells"),
+            ("photons", "hdrf_cones"),
+            ("photons", "hdrf_views"),
+        ] {
+            let gap = gap(&report, sensor, name);
+            assert!(gap < 1e-12, "{boundary}, {sensor}, {name}: {gap}");
+        }
+        for suffix in ["", "_uc", "_co_sgl", "_mlt"] {
+            let of = |sensor, name: &str| product(&report, sensor, &format!("{name}{suffix}"));
+            let back = of("back", "hdrf");
+            let others =
+                [of("forth", "hdrf"), of("photons", "hdrf_views"), of("photons", "hdrf_cones")];
+            for (which, other) in others.into_iter().enumerate() {
+                for index in 0..6 {
+                    let (one, other) = (Estimate::of(back, index), Estimate::of(other, index));
+                    // Over a cone of 8° the factor bends by less than this.
+                    let bend = if which == 2 { 0.01 * one.value } else { 0.0 };
+                    let allowed = 4.0 * one.error.hypot(other.error) + bend + 1e-6;
+                    assert!(
+                        (one.value - other.value).abs() < allowed,
+                        "{boundary}{suffix}, {which}, {index}: {one:?} {other:?}"
+                    );
+                }
+            }
+            // One of 150 samples a pixel backwards, and packets forwards.
+            let (image, film) = (of("image", "hdrf"), of("film", "hdrf"));
+            for band in 0..2 {
+                let (one, other) = (Estimate::of(image, band), Estimate::of(film, band));
+                let allowed = 4.0 * one.error.hypot(other.error) + 1e-6;
+                assert!(
+                    (one.value - other.value).abs() < allowed,
+                    "{boundary}{suffix}: {one:?} {other:?}"
+                );
+            }
+        }
+    }
+}
+
+/// *Expected*: in every band absorption by layer sums to that by material, that to the canopy's and
+/// the ground's; what reaches the ground does so uncollided, collided or after a bounce; and
+/// `fref + fabs + (1 - soil) ftran = 1` but for what roulette adds by chance.
+#[test]
+fn absorption_and_transmission_account_for_all_light() {
+    let report = trees("Periodic");
+    let of = |name| product(&report, "photons", name);
+    for (band, soil) in [0.1, 0.3].into_iter().enumerate() {
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "band {band}: {a} {b}");
+        let entry = |name, index: usize| Estimate::of(of(name), index * 2 + band);
+        for material in 0..2 {
+            let layers = of("fapar").values.len() / 4;
+            let sum = (0..layers).map(|layer| entry("fapar", layer * 2 + material).value).sum();
+            near(entry("fapar_material", material).value, sum);
+            near(entry("energy", 4 + material).value, sum);
+        }
+        near(entry("fapar_vegetation", 0).value, entry("fapar_material", 1).value);
+        let terms: f64 = (1..4).map(|term| entry("ftran", term).value).sum();
+        near(entry("ftran", 0).value, terms);
+        for term in 0..4 {
+            let one = entry("ftran", term);
+            assert!(one.value > 0.0 && one.error > 0.0 && one.error < 0.01, "{term}: {one:?}");
+        }
+        let sum = entry("albedo", 0).value
+            + entry("fapar_vegetation", 0).value
+            + (1.0 - soil) * entry("ftran", 0).value;
+        let allowed = 4.0 * entry("energy", 3).error + 1e-6;
+        assert!((sum - 1.0).abs() < allowed, "band {band}: {sum} +- {allowed}");
+        // Given borders: the lowest layer is under the ground, the others hold everything.
+        let layers = product(&report, "layers", "fapar");
+        let total = product(&report, "layers", "fapar_vegetation").values[band];
+        let leaf: Vec<f64> =
+            (0..3).map(|layer| layers.values[(layer * 2 + 1) * 2 + band]).collect();
+        near(leaf[0], 0.0);
+        assert!(leaf[1] > 0.0 && leaf[2] > 0.0, "{leaf:?}");
+        near(leaf.iter().sum(), total);
+    }
+}
+
+/// *Scene*: a sheet of leaf (r, t) over soil s. *Expected*: light of order 1 is r, of order 3
+/// t s t, of order 5 t s r s t, of even orders nothing; cut there, both systems give the sum.
+#[test]
+fn a_highest_order_cuts_the_series_of_a_sheet() {
+    let (r, t, s) = (0.45, 0.35, 0.2);
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(
+        dir.path().join("sheet.obj"),
+        "g sheet\nv -10 -10 0\nv 10 -10 0\nv 10 10 0\nv -10 10 0\nf 1 2 3 4\n",
+    )
+    .expect("a file");
+    let series = [r, 0.0, t * s * t, 0.0, t * s * r * s * t];
+    for order in 1..=5 {
+        let report = run(
+            &format!(
+                r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Constant({s})),
+        "leaf": Leaf(reflectance: Constant({r}), transmittance: Constant({t})),
+    }},
+    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
+    terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
+    instances: [List(of: "sheet", at_m: [(4.0, 4.0, 1.0)])],
+    sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
+    boundary: Periodic,
+    transport: (max_order: {order}),
+    sensors: {{
+        "photons": Photons(per_m2: 2000.0, measure: [Albedo]),
+        "back": Directions(views: List([(20.0, 90.0)]), until: Samples(50000)),
+        "forth": Directions(views: List([(20.0, 90.0)]), until: Samples(50000), system: Forward),
+    }},
+)"#
+            ),
+            dir.path(),
+        );
+        let expected: f64 = series[..order].iter().sum();
+        for (sensor, name) in [("photons", "albedo"), ("back", "brf"), ("forth", "brf")] {
+            let one = Estimate::of(product(&report, sensor, name), 0);
+            let allowed = 4.0 * one.error + 1e-6;
+            assert!(
+                (one.value - expected).abs() < allowed,
+                "{order}, {sensor}: {one:?} {expected}"
+            );
+        }
+    }
+}
+
+/// *Scene*: LAI 3 of small discs with spherical angles, in a periodic layer. *Expected*: single
+/// scattering as Ross has it for a turbid medium away from the hot spot, and exactly, whatever the
+/// size of the discs, where the sensor looks along the sun's rays; the transmission of the beam.
+#[test]
+fn single_scattering_by_small_discs_is_that_of_a_turbid_medium() {
+    let (rho, tau, soil, lai) = (0.4957_f64, 0.4409_f64, 0.159_f64, 3.0_f64);
+    let sun = (20_f64, 30_f64);
+    let views = [(20_f64, 30_f64), (60.0, 210.0), (45.0, 120.0), (65.0, 30.0)];
+    let list: Vec<String> = views.iter().map(|(z, a)| format!("({z:?}, {a:?})")).collect();
+    let report = run(
+        &format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "nir", center_nm: 865.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Constant({soil})),
+        "leaf": Leaf(reflectance: Constant({rho}), transmittance: Constant({tau})),
+    }},
+    meshes: {{ "layer": Crown(
+        shape: Box(size_m: (4.0, 4.0, 1.98)), base_m: 0.01, leaf_area_m2: 48.0,
+        leaf_angle: Spherical, leaf: Disc(radius_m: 0.01), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
+    instances: [List(of: "layer", at_m: [(2.0, 2.0, 0.0)])],
+    sun: (zenith_deg: {:?}, azimuth_deg: {:?}),
+    boundary: Periodic,
+    sensors: {{
+        "views": Directions(views: List([{}]), until: Samples(60000), measure: [Orders]),
+        "photons": Photons(per_m2: 10000.0, measure: [Fapar(layer_m: 1.0)]),
+    }},
+)"#,
+            sun.0,
+            sun.1,
+            list.join(", ")
+        ),
+        Path::new("."),
+    );
+    let direction = |(zenith, azimuth): (f64, f64)| {
+        let ((sz, cz), (sa, ca)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
+        [sz * sa, sz * ca, cz]
+    };
+    let (to_sun, mu0) = (direction(sun), sun.0.to_radians().cos());
+    for (index, view) in views.into_iter().enumerate() {
+        let towards = direction(view);
+        let muv = towards[2];
+        let cos_b = -to_sun.iter().zip(towards).map(|(a, b)| a * b).sum::<f64>();
+        let b = cos_b.clamp(-1.0, 1.0).acos();
+        let gamma = (rho + tau) / (3.0 * PI) * (b.sin() - b * b.cos()) + tau / 3.0 * b.cos();
+        let (k0, kv) = (0.5 / mu0, 0.5 / muv);
+        // Along the sun's rays every point that is seen is lit.
+        let k = if index == 0 { k0 } else { k0 + kv };
+        let single = gamma / (mu0 * muv) * (1.0 - (-k * lai).exp()) / k;
+        let uncollided = soil * (-k * lai).exp();
+        for (name, expected) in [("brf_co_sgl", single), ("brf_uc", uncollided)] {
+            let one = Estimate::of(product(&report, "views", name), index);
+            // One layer of many: gaps of this one differ from their mean by about a percent.
+            let allowed = 4.0 * one.error + 0.015 * expected;
+            assert!(
+                (one.value - expected).abs() < allowed,
+                "{view:?}, {name}: {one:?}, expected {expected}"
+            );
+        }
+    }
+    let transmission = Estimate::of(product(&report, "photons", "ftran"), 1);
+    let expected = (-0.5 / mu0 * lai).exp();
+    let allowed = 4.0 * transmission.error + 0.01 * expected;
+    assert!((transmission.value - expected).abs() < allowed, "{transmission:?} {expected}");
+}
