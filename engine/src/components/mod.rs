@@ -5,10 +5,11 @@
 //! | entity | components |
 //! |---|---|
 //! | mesh prototype | [`Name`], [`SceneId`], [`Mesh`], [`PartMaterials`] |
-//! | material | [`Name`], [`SceneId`], [`SurfaceOptics`] |
+//! | material | [`Name`], [`SceneId`], [`SurfaceOptics`], [`BlackBody`] where it emits |
 //! | instance | [`Placement`] (it holds its own scene id: there are millions of them) |
 //! | terrain | [`SceneId`], [`TerrainPatch`] |
 //! | sun, sky | [`Sun`], [`Sky`] |
+//! | emission | [`Emission`], where a sensor measures it |
 //! | sensor | [`Name`], [`SceneId`], [`Sensor`] |
 
 mod camera;
@@ -19,6 +20,7 @@ mod optics;
 mod placement;
 mod sensor;
 mod terrain;
+mod thermal;
 
 pub use camera::{
     Channels, Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Picture, Stand,
@@ -33,3 +35,4 @@ pub use sensor::{
     Sensor, Stop, System, View,
 };
 pub use terrain::TerrainPatch;
+pub use thermal::{BlackBody, Emission};

@@ -50,6 +50,8 @@ pub enum ImageMeasure {
     Brf,
     /// The same split by order of scattering: uncollided, single, multiple.
     Orders,
+    /// Temperature of the black body of this radiance, K, in bands that hold emission.
+    BrightnessTemperature,
     /// Shares of sunlit and shaded ground and canopy.
     FourComponents,
     /// Share of the ground, or of the sky in a camera that looks up.
@@ -60,7 +62,7 @@ impl ImageMeasure {
     /// Whether it is made of light, and not of what is seen first.
     #[must_use]
     pub const fn is_light(self) -> bool {
-        matches!(self, Self::Radiance | Self::Brf | Self::Orders)
+        matches!(self, Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod light;
 mod stage;
+mod thermal;
 
 use std::collections::BTreeMap;
 
@@ -16,6 +17,7 @@ use crate::scattering::{BiLambertian, Bsdf};
 
 pub use light::{Beam, Disc, Dome, Light};
 pub use stage::{Rules, Stage, Surface};
+pub use thermal::{Thermal, Warmth};
 
 /// What the document decides beyond entities.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +94,7 @@ pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
         size: terrain.size,
         ground: terrain.height,
         periodic: setting.boundary == Boundary::Periodic,
+        thermal: Thermal::of(world, &surfaces.ordered),
         surfaces: surfaces.finish(),
         light: Light::of(world, setting.bands),
         geometry,

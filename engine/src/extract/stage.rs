@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use super::Light;
+use super::{Light, Thermal};
 use crate::accel;
 use crate::scattering::{Bsdf, LANES};
 
@@ -23,6 +23,8 @@ pub struct Stage {
     pub surfaces: Vec<Surface>,
     /// What lights the scene.
     pub light: Light,
+    /// What surfaces and the sky emit, where a sensor measures it.
+    pub thermal: Option<Thermal>,
     /// What rays can hit.
     pub geometry: accel::Scene,
 }

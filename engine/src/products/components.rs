@@ -7,7 +7,7 @@ use super::leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller};
 use super::{Axis, Context, Image, Product, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
-use crate::transport::{COMPONENT_COLUMNS, ComponentsOutcome, GAP_COLUMN, ImageOutcome};
+use crate::transport::{COMPONENT_COLUMNS, GAP_COLUMN, ImageOutcome, ViewsOutcome};
 
 /// Names of the four components in the order of their numbers, from 1.
 const COMPONENTS: [&str; 4] = ["sunlit_ground", "sunlit_canopy", "shaded_ground", "shaded_canopy"];
@@ -72,7 +72,10 @@ pub fn components_of_image(
                 )
             }]
         }
-        ImageMeasure::Radiance | ImageMeasure::Brf | ImageMeasure::Orders => Vec::new(),
+        ImageMeasure::Radiance
+        | ImageMeasure::Brf
+        | ImageMeasure::Orders
+        | ImageMeasure::BrightnessTemperature => Vec::new(),
     }
 }
 
@@ -83,18 +86,18 @@ pub fn components_of_image(
 pub fn components_of_directions(
     measure: ImageMeasure,
     views: &[View],
-    outcome: &ComponentsOutcome,
+    outcome: &ViewsOutcome,
 ) -> Vec<Product> {
     match measure {
         ImageMeasure::FourComponents => vec![product(
             "four_components",
             vec![axes(views), vec![axis(&COMPONENTS)]],
-            &pick(&outcome.share, 0..4),
+            &pick(&outcome.mean, 0..4),
             &pick(&outcome.error, 0..4),
         )],
         ImageMeasure::GapFraction => {
             let column = GAP_COLUMN..GAP_COLUMN + 1;
-            let gaps = pick(&outcome.share, column.clone());
+            let gaps = pick(&outcome.mean, column.clone());
             let errors = pick(&outcome.error, column);
             let by_view = |name: &str, column: &str, values: &[f64], errors: &[f64]| {
                 product(name, vec![axes(views), vec![axis(&[column])]], values, errors)
@@ -124,7 +127,10 @@ pub fn components_of_directions(
             }
             products
         }
-        ImageMeasure::Radiance | ImageMeasure::Brf | ImageMeasure::Orders => Vec::new(),
+        ImageMeasure::Radiance
+        | ImageMeasure::Brf
+        | ImageMeasure::Orders
+        | ImageMeasure::BrightnessTemperature => Vec::new(),
     }
 }
 

@@ -1,4 +1,5 @@
 use super::{Axis, AxisPoints, Product};
+use crate::spectral::BandWindow;
 
 /// What all products of a run share.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,9 +12,28 @@ pub struct Context {
     pub has_sky: bool,
     /// Anchor of the local frame: easting and northing of its origin, m.
     pub origin: (f64, f64),
+    /// What the radiance in each band consists of, shape `[bands]`.
+    pub sources: Vec<BandSources>,
+}
+
+/// What the radiance in a band consists of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandSources {
+    /// The band's wavelengths.
+    pub window: BandWindow,
+    /// Whether it holds what surfaces and the sky emit.
+    pub emits: bool,
+    /// Whether it holds what is reflected of sun and sky.
+    pub reflects: bool,
 }
 
 impl Context {
+    /// Names of the bands that hold emission.
+    pub(super) fn emitting(&self) -> Vec<String> {
+        let pairs = self.bands.iter().zip(&self.sources);
+        pairs.filter(|(_, source)| source.emits).map(|(name, _)| name.clone()).collect()
+    }
+
     /// Name of the reflectance factor that this light allows.
     #[must_use]
     pub const fn factor(&self) -> &'static str {

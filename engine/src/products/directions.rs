@@ -1,45 +1,65 @@
-use super::context::numbers;
+use super::context::{labels, numbers};
+use super::thermal::{brightness, radiance_of_sources};
 use super::{Axis, Context, Product, reflectance};
 use crate::components::{ImageMeasure, View};
-use crate::film::Spread;
-use crate::transport::{DirectionsOutcome, Part};
+use crate::transport::{DirectionsOutcome, Part, ViewsOutcome};
 
-/// The products of a measurement of directions that are made of light.
+/// The products of a measurement of directions that are made of light: of what is `reflected`, as
+/// `L / E`, and of what is `emitted`, as far as they were measured; both of shape `[views, bands]`.
 #[must_use]
 pub fn of_directions(
     views: &[View],
     measures: &[ImageMeasure],
-    outcome: &DirectionsOutcome,
+    reflected: Option<&DirectionsOutcome>,
+    emitted: Option<&ViewsOutcome>,
     context: &Context,
 ) -> Vec<Product> {
     type Scale = fn(&[f64], &[f64]) -> Vec<f64>;
-    let product = |name: String, unit: &str, spread: &Spread, scale: Scale| {
-        let errors = spread.standard_error();
-        context.product((name, unit), vec![axes(views)], (spread.mean(), &errors), scale)
+    let product = |name: (&str, &str), values: (&[f64], &[f64]), scale: Scale| {
+        context.product(name, vec![axes(views)], values, scale)
     };
+    let errors = reflected.map(|outcome| outcome.spread.standard_error());
+    let relative = reflected
+        .zip(errors.as_ref())
+        .map(|(outcome, errors)| (outcome.spread.mean(), errors.as_slice()));
+    let total = emitted
+        .map(|emitted| radiance_of_sources(relative, (&emitted.mean, &emitted.error), context));
+    let radiance = ("radiance", "W m-2 sr-1 nm-1");
     let factor = context.factor();
-    measures
-        .iter()
-        .flat_map(|measure| match measure {
-            ImageMeasure::Radiance => vec![product(
-                "radiance".to_owned(),
-                "W m-2 sr-1 nm-1",
-                &outcome.spread,
-                reflectance::radiance,
-            )],
-            ImageMeasure::Brf => {
-                vec![product(factor.to_owned(), "1", &outcome.spread, reflectance::brf)]
-            }
+    let products = |measure: &ImageMeasure| -> Option<Vec<Product>> {
+        Some(match measure {
+            ImageMeasure::Radiance => vec![match &total {
+                Some((values, errors)) => {
+                    product(radiance, (values, errors), |values, _| values.to_vec())
+                }
+                None => product(radiance, relative?, reflectance::radiance),
+            }],
+            ImageMeasure::Brf => vec![product((factor, "1"), relative?, reflectance::brf)],
             ImageMeasure::Orders => Part::ALL
                 .iter()
-                .zip(&outcome.parts)
+                .zip(&reflected?.parts)
                 .map(|(part, spread)| {
-                    product(format!("{factor}_{}", part.suffix()), "1", spread, reflectance::brf)
+                    let name = format!("{factor}_{}", part.suffix());
+                    let errors = spread.standard_error();
+                    product((&name, "1"), (spread.mean(), &errors), reflectance::brf)
                 })
                 .collect(),
-            ImageMeasure::FourComponents | ImageMeasure::GapFraction => Vec::new(),
+            ImageMeasure::BrightnessTemperature => {
+                let (values, errors) = total.as_ref()?;
+                let (values, standard_error) = brightness((values, errors), context);
+                vec![Product {
+                    name: "brightness_temperature".to_owned(),
+                    unit: "K".to_owned(),
+                    dimensions: vec![axes(views), vec![labels("band", &context.emitting())]],
+                    values,
+                    standard_error,
+                    image: None,
+                }]
+            }
+            ImageMeasure::FourComponents | ImageMeasure::GapFraction => return None,
         })
-        .collect()
+    };
+    measures.iter().filter_map(products).flatten().collect()
 }
 
 /// Axes of a list of views.

@@ -2,42 +2,122 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec2;
 
+use super::context::labels;
+use super::thermal::{brightness, radiance_of_sources};
 use super::{Context, Georeference, Image, Product, Rendering, reflectance};
 use crate::components::{ImageMeasure, ImageSensor, Optics, Picture};
 use crate::extract::Stage;
 use crate::transport::{ImageOutcome, Part, footprint};
 
-/// The products of an image measurement that are made of light.
+/// The products of an image measurement that are made of light: of what is `reflected`, as `L / E`,
+/// and of what is `emitted`, as far as they were measured.
 #[must_use]
 pub fn of_image(
     sensor: &ImageSensor,
-    outcome: &ImageOutcome,
-    stage: &Stage,
-    context: &Context,
+    reflected: Option<&ImageOutcome>,
+    emitted: Option<&ImageOutcome>,
+    (stage, context): (&Stage, &Context),
 ) -> Vec<Product> {
     let place = georeference(sensor, stage, context);
-    let of = |name: (&str, &str), spectrum, scale| {
+    let image = |name: (&str, &str), (outcome, spectrum), scale| {
         image(name, sensor, (outcome, spectrum), (context, place), scale)
     };
-    sensor
-        .measure
-        .iter()
-        .flat_map(|measure| match measure {
-            ImageMeasure::Radiance => {
-                vec![of(("radiance", "W m-2 sr-1 nm-1"), 0, reflectance::radiance)]
+    let total = emitted.map(|emitted| total(reflected, emitted, context));
+    let as_it_is: Scale = |values, _| values.to_vec();
+    let relative: (Scale, Scale) = (reflectance::radiance, reflectance::radiance);
+    let brf: (Scale, Scale) = (reflectance::brf, reflectance::brf);
+    let radiance = ("radiance", "W m-2 sr-1 nm-1");
+    let factor = context.factor();
+    let products = |measure: &ImageMeasure| -> Option<Vec<Product>> {
+        Some(match measure {
+            ImageMeasure::Radiance => vec![match &total {
+                Some(total) => image(radiance, (total, 0), (as_it_is, reflectance::radiance)),
+                None => image(radiance, (reflected?, 0), relative),
+            }],
+            ImageMeasure::Brf => vec![image((factor, "1"), (reflected?, 0), brf)],
+            ImageMeasure::Orders => {
+                let outcome = reflected?;
+                let of_part = |(part, spectrum): (&Part, usize)| {
+                    let name = format!("{factor}_{}", part.suffix());
+                    image((&name, "1"), (outcome, spectrum), brf)
+                };
+                Part::ALL.iter().zip(1..).map(of_part).collect()
             }
-            ImageMeasure::Brf => vec![of((context.factor(), "1"), 0, reflectance::brf)],
-            ImageMeasure::Orders => Part::ALL
-                .iter()
-                .zip(1..)
-                .map(|(part, spectrum)| {
-                    let name = format!("{}_{}", context.factor(), part.suffix());
-                    of((&name, "1"), spectrum, reflectance::brf)
-                })
-                .collect(),
-            ImageMeasure::FourComponents | ImageMeasure::GapFraction => Vec::new(),
+            ImageMeasure::BrightnessTemperature => {
+                vec![brightness_image(sensor, total.as_ref()?, (context, place))]
+            }
+            ImageMeasure::FourComponents | ImageMeasure::GapFraction => return None,
         })
-        .collect()
+    };
+    sensor.measure.iter().filter_map(products).flatten().collect()
+}
+
+/// Values of `L / E` and irradiance to those of a product, shape `[.., bands]`.
+type Scale = fn(&[f64], &[f64]) -> Vec<f64>;
+
+/// Radiance of all sources, absolute.
+fn total(
+    reflected: Option<&ImageOutcome>,
+    emitted: &ImageOutcome,
+    context: &Context,
+) -> ImageOutcome {
+    let bands = context.bands.len();
+    let wide = |pixel: &[f32]| -> Vec<f64> { pixel.iter().map(|&value| value.into()).collect() };
+    let mut outcome = emitted.clone();
+    for (index, start) in (0..emitted.pixels.len()).step_by(bands).enumerate() {
+        // The whole; its parts may stand behind it.
+        let of = |image: &ImageOutcome| {
+            let whole = index * image.mean.len()..index * image.mean.len() + bands;
+            (wide(&image.pixels[whole.clone()]), wide(&image.errors[whole]))
+        };
+        let reflected = reflected.map(of);
+        let reflected = reflected.as_ref().map(|(l, error)| (l.as_slice(), error.as_slice()));
+        let (l, error) = of(emitted);
+        let (l, error) = radiance_of_sources(reflected, (&l, &error), context);
+        for (band, (l, error)) in l.iter().zip(&error).enumerate() {
+            outcome.pixels[start + band] = *l as f32;
+            outcome.errors[start + band] = *error as f32;
+        }
+    }
+    let reflected = reflected.map(|image| (image.mean.as_slice(), image.mean_error.as_slice()));
+    let mean = (emitted.mean.as_slice(), emitted.mean_error.as_slice());
+    (outcome.mean, outcome.mean_error) = radiance_of_sources(reflected, mean, context);
+    outcome
+}
+
+/// Brightness temperature of absolute radiance.
+fn brightness_image(
+    sensor: &ImageSensor,
+    total: &ImageOutcome,
+    (context, georeference): (&Context, Option<Georeference>),
+) -> Product {
+    let mut pixels = (Vec::new(), Vec::new());
+    let bands = context.bands.len();
+    for (pixel, errors) in total.pixels.chunks_exact(bands).zip(total.errors.chunks_exact(bands)) {
+        let wide = |values: &[f32]| -> Vec<f64> { values.iter().map(|&v| v.into()).collect() };
+        let (kelvin, error) = brightness((&wide(pixel), &wide(errors)), context);
+        pixels.0.extend(kelvin.iter().map(|&value| value as f32));
+        pixels.1.extend(error.iter().map(|&value| value as f32));
+    }
+    let emitting = context.emitting();
+    let (values, standard_error) = brightness((&total.mean, &total.mean_error), context);
+    Product {
+        name: "brightness_temperature".to_owned(),
+        unit: "K".to_owned(),
+        dimensions: vec![vec![labels("band", &emitting)]],
+        values,
+        standard_error,
+        image: Some(Image {
+            width: sensor.size.x as usize,
+            height: sensor.size.y as usize,
+            bands: emitting,
+            values: pixels.0,
+            standard_error: pixels.1,
+            coverage: total.coverage.clone(),
+            rendering: Rendering::Quicklook,
+            georeference,
+        }),
+    }
 }
 
 fn image(
@@ -45,7 +125,7 @@ fn image(
     sensor: &ImageSensor,
     (outcome, spectrum): (&ImageOutcome, usize),
     (context, georeference): (&Context, Option<Georeference>),
-    scale: fn(&[f64], &[f64]) -> Vec<f64>,
+    (scale, of_white): (Scale, Scale),
 ) -> Product {
     // Of one pixel at a time: an image is large, and f64 is needed only in between.
     let bands = context.bands.len();
@@ -62,7 +142,7 @@ fn image(
             .collect()
     };
     // `π L / E` of a white Lambertian surface on the horizontal is 1.
-    let white = scale(&vec![FRAC_1_PI; bands], &context.irradiance);
+    let white = of_white(&vec![FRAC_1_PI; bands], &context.irradiance);
     let rendering = match sensor.picture {
         Picture::Quicklook => Rendering::Quicklook,
         Picture::Colours { channels, exposure } => Rendering::Colours { channels, exposure, white },

@@ -205,6 +205,7 @@ mod tests {
             irradiance: vec![1.5],
             has_sky: false,
             origin: (0.0, 0.0),
+            sources: Vec::new(),
         };
         let product = brf_cells(&spread, &hemisphere, &context);
         assert!(product.values.iter().all(|brf| (brf - 0.4).abs() < 1e-12));

@@ -12,8 +12,9 @@ use hecs::World;
 use crate::accel::Boundary;
 use crate::document::{self, Diagnostic, Reading, Scene};
 use crate::extract::{Rules, Setting, Stage, extract};
-use crate::products::{Context, Report, SensorReport};
+use crate::products::{BandSources, Context, Report, SensorReport};
 use crate::spawn::{Spawned, missing_files, spawn};
+use crate::spectral::BandWindow;
 
 pub use failure::Failure;
 
@@ -153,6 +154,7 @@ pub fn run(
         irradiance: stage.light.irradiance.clone(),
         has_sky: stage.light.dome.is_some(),
         origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
+        sources: scene.bands.iter().map(sources).collect(),
     };
     progress.stage("tracing");
     let reports = measure(&world, &stage, &context, options, progress);
@@ -171,6 +173,12 @@ pub fn run(
         warnings: warnings.iter().map(failure::one_line).collect(),
         sensors: reports,
     })
+}
+
+/// What the radiance in a band consists of.
+fn sources(band: &document::Band) -> BandSources {
+    let window = BandWindow { center: band.center_nm, width: band.width_nm };
+    BandSources { window, emits: band.emits(), reflects: band.reflects() }
 }
 
 /// Measures every sensor of the world in document order.

@@ -13,8 +13,8 @@ use crate::sampling::Key;
 use crate::transport::{
     AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
     FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, Projection, ViewCounter, Watch,
-    measure_directions, measure_directions_components, measure_image, measure_image_components,
-    measure_image_forward, trace_photons,
+    measure_directions, measure_directions_components, measure_directions_thermal, measure_image,
+    measure_image_components, measure_image_forward, measure_image_thermal, trace_photons,
 };
 
 /// All sensors in document order.
@@ -82,17 +82,21 @@ fn image(
     // Areas are rounded: what is a whole number but for that is one.
     let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES) as u32;
     let mut measured = Measured::default();
-    if sensor.measure.iter().any(|measure| measure.is_light()) {
-        let orders = sensor.measure.contains(&ImageMeasure::Orders);
-        let outcome = match (sensor.system, &camera) {
+    let orders = sensor.measure.contains(&ImageMeasure::Orders);
+    let reflected =
+        needs_reflection(&sensor.measure, context).then(|| match (sensor.system, &camera) {
             (System::Forward, Camera::Orthographic(projection)) => {
                 measure_image_forward(stage, projection, (samples, orders), key, watch)
             }
             _ => measure_image(stage, &camera, (samples, orders), key, watch),
-        };
-        measured.products = products::of_image(sensor, &outcome, stage, context);
+        });
+    let emitted = needs_emission(&sensor.measure, context)
+        .then(|| measure_image_thermal(stage, &camera, samples, key.path("emission"), watch));
+    for outcome in reflected.iter().chain(&emitted) {
         measured.count(outcome.rays, outcome.samples);
     }
+    let setting = (stage, context);
+    measured.products = products::of_image(sensor, reflected.as_ref(), emitted.as_ref(), setting);
     if !sensor.measure.iter().all(|measure| measure.is_light()) {
         let key = key.path("components");
         let outcome = measure_image_components(stage, &camera, samples, key, watch);
@@ -123,24 +127,39 @@ fn directions(
             Stop::Samples(limit) => Stop::Samples((limit as f64 * quality).ceil() as u64),
         })
         .collect();
-    let start = Instant::now();
-    let elapsed = || start.elapsed().as_secs_f64();
     let views = sensor.views.as_slice();
     let mut measured = Measured::default();
-    if sensor.measure.iter().any(|measure| measure.is_light()) {
-        let orders = sensor.measure.contains(&ImageMeasure::Orders);
+    let orders = sensor.measure.contains(&ImageMeasure::Orders);
+    let reflected = needs_reflection(&sensor.measure, context).then(|| {
+        let start = Instant::now();
+        let elapsed = || start.elapsed().as_secs_f64();
         let scene = (views, sensor.system, orders);
-        let outcome = measure_directions(stage, scene, &until, key, &elapsed, watch);
+        measure_directions(stage, scene, &until, key, &elapsed, watch)
+    });
+    let emitted = needs_emission(&sensor.measure, context).then(|| {
+        let (key, start) = (key.path("emission"), Instant::now());
+        let elapsed = || start.elapsed().as_secs_f64();
+        measure_directions_thermal(stage, views, &until, key, &elapsed, watch)
+    });
+    if let Some(outcome) = &reflected {
         let error = outcome.spread.median_relative_error();
-        measured.products = products::of_directions(views, &sensor.measure, &outcome, context);
-        measured.count(outcome.rays, outcome.samples);
         measured.ended_by = match outcome.ended_by {
             Stop::RelError(limit) => {
                 format!("median relative standard error {error:.2e} at most {limit:.2e}")
             }
-            other => ending(other, measured.samples),
+            other => ending(other, outcome.samples),
         };
+        measured.count(outcome.rays, outcome.samples);
     }
+    if let Some(outcome) = &emitted {
+        if measured.ended_by.is_empty() {
+            measured.ended_by = ending(outcome.ended_by, outcome.samples);
+        }
+        measured.count(outcome.rays, outcome.samples);
+    }
+    let (relative, absolute) = (reflected.as_ref(), emitted.as_ref());
+    measured.products =
+        products::of_directions(views, &sensor.measure, relative, absolute, context);
     if !sensor.measure.iter().all(|measure| measure.is_light()) {
         let key = key.path("components");
         let start = Instant::now();
@@ -156,6 +175,26 @@ fn directions(
         }
     }
     measured
+}
+
+/// Whether a measure takes what is reflected of sun and sky.
+fn needs_reflection(measures: &[ImageMeasure], context: &Context) -> bool {
+    measures.iter().any(|measure| match measure {
+        ImageMeasure::Brf | ImageMeasure::Orders => true,
+        ImageMeasure::Radiance => context.sources.iter().any(|source| source.reflects),
+        ImageMeasure::BrightnessTemperature => {
+            context.sources.iter().any(|source| source.emits && source.reflects)
+        }
+        ImageMeasure::FourComponents | ImageMeasure::GapFraction => false,
+    })
+}
+
+/// Whether a measure takes what surfaces and the sky emit.
+fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
+    let takes = |measure: &ImageMeasure| {
+        matches!(measure, ImageMeasure::Radiance | ImageMeasure::BrightnessTemperature)
+    };
+    measures.iter().any(takes) && context.sources.iter().any(|source| source.emits)
 }
 
 /// What ended a measurement, for a person.

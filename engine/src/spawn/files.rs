@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use crate::document::{Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum};
+use crate::document::{Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, ThermalSky};
 
 /// Every file that a scene names and that is not there, used or not.
 ///
@@ -49,10 +49,10 @@ fn named_files(scene: &Scene) -> Vec<(String, &str)> {
     }
     for (name, material) in &scene.materials {
         let (reflectance, transmittance, back) = match material {
-            Material::Lambertian { reflectance, back_reflectance } => {
+            Material::Lambertian { reflectance, back_reflectance, .. } => {
                 (reflectance, None, back_reflectance)
             }
-            Material::Leaf { reflectance, transmittance, back_reflectance } => {
+            Material::Leaf { reflectance, transmittance, back_reflectance, .. } => {
                 (reflectance, Some(transmittance), back_reflectance)
             }
         };
@@ -69,6 +69,9 @@ fn named_files(scene: &Scene) -> Vec<(String, &str)> {
     }
     if let Sky::Isotropic { irradiance } = &scene.sky {
         spectrum("sky.irradiance".to_owned(), irradiance);
+    }
+    if let ThermalSky::Radiance(radiance) = &scene.thermal_sky {
+        spectrum("thermal_sky".to_owned(), radiance);
     }
     files
 }

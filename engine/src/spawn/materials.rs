@@ -35,8 +35,14 @@ impl Spawner<'_> {
         for (index, (name, material)) in scene.materials.iter().enumerate() {
             let path = format!("materials.{name}");
             if used.contains(&MaterialId(index as u32)) {
-                if let Some(optics) = self.optics(material, &path) {
-                    world.spawn((SceneId(index as u32), Name(name.clone()), optics));
+                let id = SceneId(index as u32);
+                let optics = self.optics(material, &path);
+                let warmth = self.black_body(material, &path);
+                if let Some(optics) = optics {
+                    let entity = world.spawn((id, Name(name.clone()), optics));
+                    if let Some(warmth) = warmth {
+                        world.insert_one(entity, warmth).expect("it was just spawned");
+                    }
                 }
                 continue;
             }
@@ -49,10 +55,10 @@ impl Spawner<'_> {
 
     fn optics(&mut self, material: &Material, path: &str) -> Option<SurfaceOptics> {
         let (reflectance, back, transmittance) = match material {
-            Material::Lambertian { reflectance, back_reflectance } => {
+            Material::Lambertian { reflectance, back_reflectance, .. } => {
                 (reflectance, back_reflectance, &Spectrum::Constant(0.0))
             }
-            Material::Leaf { reflectance, transmittance, back_reflectance } => {
+            Material::Leaf { reflectance, transmittance, back_reflectance, .. } => {
                 (reflectance, back_reflectance, transmittance)
             }
         };
@@ -88,10 +94,10 @@ impl Spawner<'_> {
 /// All spectra of a material.
 fn spectra_of(material: &Material) -> Vec<&Spectrum> {
     match material {
-        Material::Lambertian { reflectance, back_reflectance } => {
+        Material::Lambertian { reflectance, back_reflectance, .. } => {
             std::iter::once(reflectance).chain(back_reflectance).collect()
         }
-        Material::Leaf { reflectance, transmittance, back_reflectance } => {
+        Material::Leaf { reflectance, transmittance, back_reflectance, .. } => {
             [reflectance, transmittance].into_iter().chain(back_reflectance).collect()
         }
     }

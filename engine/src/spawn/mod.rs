@@ -8,6 +8,7 @@ mod materials;
 mod meshes;
 mod sensors;
 mod spectra;
+mod thermal;
 
 use std::path::{Path, PathBuf};
 
@@ -64,6 +65,7 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
     spawner.terrain(&mut world);
     spawner.light(&mut world);
+    spawner.emission(&mut world);
     spawner.sensors(&mut world);
     let Spawner { mut files, skipped, problems, .. } = spawner;
     let mut seen = std::collections::BTreeSet::new();

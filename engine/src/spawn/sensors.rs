@@ -113,6 +113,7 @@ pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMe
             document::ImageMeasure::Radiance => ImageMeasure::Radiance,
             document::ImageMeasure::Brf => ImageMeasure::Brf,
             document::ImageMeasure::Orders => ImageMeasure::Orders,
+            document::ImageMeasure::BrightnessTemperature => ImageMeasure::BrightnessTemperature,
             document::ImageMeasure::FourComponents => ImageMeasure::FourComponents,
             document::ImageMeasure::GapFraction => ImageMeasure::GapFraction,
         })

@@ -8,7 +8,7 @@ use super::{
 use crate::accel::Ray;
 use crate::components::{Stop, System, View};
 use crate::extract::Stage;
-use crate::film::{Spread, Sums};
+use crate::film::{Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 
 /// What a measurement of directions found, in units of the irradiance.
@@ -24,6 +24,59 @@ pub struct DirectionsOutcome {
     pub rays: u64,
     /// What ended it.
     pub ended_by: Stop,
+}
+
+/// Means over what each view met of the scene, shape `[views, columns]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewsOutcome {
+    /// The means; NaN where a view meets nothing.
+    pub mean: Vec<f64>,
+    /// Their standard errors.
+    pub error: Vec<f64>,
+    /// Samples a view.
+    pub samples: u64,
+    /// Rays traced.
+    pub rays: u64,
+    /// What ended it.
+    pub ended_by: Stop,
+}
+
+/// Means and standard errors of what was met, shape `[views, columns]`.
+pub(super) struct Means {
+    mean: Vec<f64>,
+    error: Vec<f64>,
+}
+
+impl Means {
+    /// Of sums whose last column counts what was met.
+    pub(super) fn of_met(rows: &[Sums]) -> Self {
+        let columns = rows.first().map_or(0, Sums::bands);
+        let values = rows.first().map_or(0, |row| row.values().len());
+        let mut means = Self { mean: Vec::new(), error: Vec::new() };
+        for start in (0..values).step_by(columns.max(1)) {
+            let of_view = |row: &Sums| row.values()[start..start + columns - 1].to_vec();
+            let sums: Vec<f64> = rows.iter().flat_map(of_view).collect();
+            let met: Vec<f64> = rows.iter().map(|row| row.values()[start + columns - 1]).collect();
+            let (mean, error) = ratio(&sums, &met);
+            means.mean.extend(mean);
+            means.error.extend(error);
+        }
+        means
+    }
+
+    /// Median of the relative errors of all means other than 0.
+    pub(super) fn median_relative_error(&self) -> f64 {
+        let pairs = self.mean.iter().zip(&self.error);
+        let mut relative: Vec<f64> = pairs
+            .filter(|(mean, _)| mean.abs() > 0.0)
+            .map(|(mean, error)| error / mean.abs())
+            .collect();
+        if relative.is_empty() {
+            return 0.0;
+        }
+        let middle = relative.len() / 2;
+        *relative.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
 }
 
 /// Samples of each randomisation in the first round.
@@ -77,11 +130,11 @@ pub(super) fn projections(stage: &Stage, views: &[View]) -> Vec<Projection> {
 /// Rounds of samples until a measurement is good enough.
 pub(super) struct Rounds {
     /// Sums of each randomisation, shape `[views, columns]`.
-    pub(super) rows: Vec<Sums>,
+    rows: Vec<Sums>,
     /// Samples of each randomisation, a view.
-    pub(super) each: u64,
-    pub(super) rays: u64,
-    pub(super) ended_by: Stop,
+    each: u64,
+    rays: u64,
+    ended_by: Stop,
 }
 
 impl Rounds {
@@ -134,8 +187,15 @@ impl Rounds {
         }
     }
 
+    /// Means over what was met; the last column counts that.
+    pub(super) fn of_met(self) -> ViewsOutcome {
+        let Means { mean, error } = Means::of_met(&self.rows);
+        let samples = self.samples();
+        ViewsOutcome { mean, error, samples, rays: self.rays, ended_by: self.ended_by }
+    }
+
     /// Samples a view.
-    pub(super) fn samples(&self) -> u64 {
+    fn samples(&self) -> u64 {
         self.each * u64::from(RANDOMISATIONS)
     }
 }

@@ -15,23 +15,24 @@ mod hemisphere;
 mod image;
 mod parts;
 mod roulette;
+mod thermal;
 mod walk;
 
 pub use backward::{Path, Traced};
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
 pub use components::{
-    COMPONENT_COLUMNS, ComponentsOutcome, GAP_COLUMN, measure_directions_components,
-    measure_image_components,
+    COMPONENT_COLUMNS, GAP_COLUMN, measure_directions_components, measure_image_components,
 };
 pub use counters::{
     AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter, FluxLevel,
     GROUND_TERMS, LayerCounter, ViewCounter,
 };
-pub use directions::{DirectionsOutcome, measure_directions};
+pub use directions::{DirectionsOutcome, ViewsOutcome, measure_directions};
 pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
 pub use parts::{Part, PartCounter, spectra};
+pub use thermal::{measure_directions_thermal, measure_image_thermal};
 use walk::Walk;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread

@@ -9,7 +9,10 @@ const EMPTY: &str = "Scene(
     frame: (),
     bands: [()],
     spectra: { \"a\": Constant, \"b\": Bands, \"c\": Points, \"d\": Table, \"e\": Named, \"f\": Prospect },
-    materials: { \"leaf\": Leaf, \"soil\": Lambertian },
+    materials: {
+        \"leaf\": Leaf(temperature: MeanDelta), \"soil\": Lambertian(temperature: SunlitShaded),
+        \"bark\": Lambertian(temperature: Uniform),
+    },
     meshes: {
         \"a\": Obj, \"b\": Gltf, \"c\": Discs, \"d\": Crown,
         \"e\": Crown(shape: Cone, leaf: Square, trunk: (), branches: ()),
@@ -21,6 +24,7 @@ const EMPTY: &str = "Scene(
     instances: [Table, List],
     sun: (position: Spa),
     sky: Isotropic,
+    thermal_sky: Radiance,
     sensors: {
         \"a\": Orthographic(cover: WholeScene, picture: Bands), \"b\": Directions,
         \"c\": Directions(views: CrossPlane, until: RelError),

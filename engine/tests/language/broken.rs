@@ -42,6 +42,7 @@ broken! {
     missing_keys
     no_bands
     no_light
+    no_thermal_band
     not_a_scene
     numbers
     params
@@ -58,6 +59,7 @@ broken! {
     sun_position
     terrain
     text_behind_the_scene
+    thermal
     unit_behind_a_number
     unknown_key
     unknown_names

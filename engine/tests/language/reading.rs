@@ -63,7 +63,7 @@ fn the_example_of_the_design_reads_as_written() {
     let reflectance = Spectrum::Named("soil".to_owned());
     assert_eq!(
         scene.materials["soil"],
-        Material::Lambertian { reflectance, back_reflectance: None }
+        Material::Lambertian { reflectance, back_reflectance: None, temperature: None }
     );
     let irradiance = Spectrum::Bands(vec![1.0, 1.0]);
     let sun = Sun {

@@ -3,10 +3,10 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Axis, Band, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame, ImageMeasure,
-    Instances, Layers, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options, Origin,
-    PhotonMeasure, Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition, System,
-    Terrain, Transport, Trunk, Until, Views, read_text,
+    Axis, Band, BandSource, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame,
+    ImageMeasure, Instances, Layers, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options,
+    Origin, PhotonMeasure, Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition,
+    System, Temperature, Terrain, ThermalSky, Transport, Trunk, Until, Views, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -63,16 +63,39 @@ fn spectrum() -> BoxedStrategy<Spectrum> {
 
 fn material() -> BoxedStrategy<Material> {
     prop_oneof![
-        (spectrum(), option(spectrum())).prop_map(|(reflectance, back_reflectance)| {
-            Material::Lambertian { reflectance, back_reflectance }
-        }),
-        (spectrum(), spectrum(), option(spectrum())).prop_map(
-            |(reflectance, transmittance, back_reflectance)| Material::Leaf {
-                reflectance,
-                transmittance,
-                back_reflectance
+        (spectrum(), option(spectrum()), option(temperature())).prop_map(
+            |(reflectance, back_reflectance, temperature)| {
+                Material::Lambertian { reflectance, back_reflectance, temperature }
             }
         ),
+        (spectrum(), spectrum(), option(spectrum()), option(temperature())).prop_map(
+            |(reflectance, transmittance, back_reflectance, temperature)| Material::Leaf {
+                reflectance,
+                transmittance,
+                back_reflectance,
+                temperature
+            }
+        ),
+    ]
+    .boxed()
+}
+
+fn temperature() -> BoxedStrategy<Temperature> {
+    prop_oneof![
+        number().prop_map(Temperature::Uniform),
+        (number(), number())
+            .prop_map(|(sunlit_k, shaded_k)| Temperature::SunlitShaded { sunlit_k, shaded_k }),
+        (number(), number())
+            .prop_map(|(mean_k, delta_k)| Temperature::MeanDelta { mean_k, delta_k }),
+    ]
+    .boxed()
+}
+
+fn thermal_sky() -> BoxedStrategy<ThermalSky> {
+    prop_oneof![
+        Just(ThermalSky::None),
+        number().prop_map(ThermalSky::BlackBody),
+        spectrum().prop_map(ThermalSky::Radiance),
     ]
     .boxed()
 }
@@ -305,6 +328,7 @@ fn sensor() -> BoxedStrategy<Sensor> {
             ImageMeasure::Radiance,
             ImageMeasure::Brf,
             ImageMeasure::Orders,
+            ImageMeasure::BrightnessTemperature,
             ImageMeasure::FourComponents,
             ImageMeasure::GapFraction,
         ])
@@ -384,11 +408,14 @@ fn ground() -> BoxedStrategy<(Frame, Terrain, Boundary)> {
 }
 
 fn scene() -> BoxedStrategy<Scene> {
-    let band = (text(), number(), number()).prop_map(|(name, center_nm, width_nm)| Band {
-        name,
-        center_nm,
-        width_nm,
-    });
+    let source = prop::sample::select(vec![
+        BandSource::Auto,
+        BandSource::Sunlight,
+        BandSource::Emission,
+        BandSource::Both,
+    ]);
+    let band = (text(), number(), number(), source)
+        .prop_map(|(name, center_nm, width_nm, source)| Band { name, center_nm, width_nm, source });
     let transport = (any::<u64>(), any::<u32>(), number(), any::<bool>(), option(any::<u32>()))
         .prop_map(|(seed, after_order, kill, first_order_only, max_order)| Transport {
             seed,
@@ -398,12 +425,20 @@ fn scene() -> BoxedStrategy<Scene> {
         });
     let names = (any::<u32>(), text(), map(number()), map(map(number())));
     let surfaces = (list(band), map(spectrum()), map(material()), map(mesh()));
-    (names, surfaces, ground(), list(instances()), light(), map(sensor()), transport)
+    (
+        names,
+        surfaces,
+        ground(),
+        list(instances()),
+        (light(), thermal_sky()),
+        map(sensor()),
+        transport,
+    )
         .prop_map(|(names, surfaces, ground, instances, light, sensors, transport)| {
             let (format, title, params, variants) = names;
             let (bands, spectra, materials, meshes) = surfaces;
             let (frame, terrain, boundary) = ground;
-            let (sun, sky) = light;
+            let ((sun, sky), thermal_sky) = light;
             Scene {
                 format,
                 title,
@@ -417,6 +452,7 @@ fn scene() -> BoxedStrategy<Scene> {
                 instances,
                 sun,
                 sky,
+                thermal_sky,
                 boundary,
                 sensors,
                 transport,

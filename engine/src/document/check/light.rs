@@ -1,8 +1,9 @@
 //! Sun and sky.
 
-use super::super::scene::{ImageMeasure, Scene, Sky, Sun};
+use super::super::scene::{Scene, Sky, Sun};
 use super::Report;
 use super::spectrum::{Quantity, check_band_count, check_spectrum};
+use super::thermal::needs_light;
 
 pub(super) fn check_sun(scene: &Scene, report: &mut Report<'_>) {
     let Some(sun) = &scene.sun else { return };
@@ -69,16 +70,4 @@ pub(super) fn check_sky(scene: &Scene, report: &mut Report<'_>) {
             check_spectrum("sky.irradiance", irradiance, Quantity::Irradiance, scene, report);
         }
     }
-}
-
-/// Whether any sensor measures light: gaps are there in the dark too, and the four components ask for
-/// a sun themselves.
-fn needs_light(scene: &Scene) -> bool {
-    scene.sensors.is_empty()
-        || scene.sensors.values().any(|sensor| match sensor.image_measures() {
-            Some(measures) => measures
-                .iter()
-                .any(|measure| matches!(measure, ImageMeasure::Radiance | ImageMeasure::Brf)),
-            None => true,
-        })
 }

@@ -6,6 +6,7 @@ mod light;
 mod mesh;
 mod sensor;
 mod spectrum;
+mod thermal;
 
 use super::diagnostic::{Diagnostic, suggestion, unknown_name};
 use super::scene::{Map, Scene, Transport};
@@ -36,6 +37,8 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
     ground::check_instances(scene, &mut report);
     light::check_sun(scene, &mut report);
     light::check_sky(scene, &mut report);
+    thermal::check_thermal_sky(scene, &mut report);
+    thermal::check_temperatures(scene, &mut report);
     sensor::check_sensors(scene, &mut report);
     check_transport(&scene.transport, &mut report);
     report.finish()

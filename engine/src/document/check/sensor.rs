@@ -7,6 +7,7 @@ use super::super::scene::{
 };
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
+use super::thermal::check_emission;
 
 /// An image or a map may hold so many values, bands included: 16 GiB as f64.
 pub(super) const VALUES: f64 = 2_147_483_648.0;
@@ -24,6 +25,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
         let path = format!("sensors.{name}");
         if let Some(measures) = sensor.image_measures() {
             check_components(&format!("{path}.measure"), measures, scene, report);
+            check_emission(&path, measures, sensor, scene, report);
         }
         match sensor {
             Sensor::Orthographic { measure, .. } => {

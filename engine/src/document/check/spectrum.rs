@@ -25,7 +25,7 @@ pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
         report.error("bands", "the scene has no band", help);
     }
     let mut names = HashMap::new();
-    for (index, Band { name, center_nm, width_nm }) in scene.bands.iter().enumerate() {
+    for (index, Band { name, center_nm, width_nm, source: _ }) in scene.bands.iter().enumerate() {
         let path = |key: &str| format!("bands[{index}].{key}");
         if name.is_empty() {
             let help = "outputs call the band by its name";
@@ -59,10 +59,10 @@ pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("materials", "a material", &scene.materials);
     for (name, material) in &scene.materials {
         let (keys, back) = match material {
-            Material::Lambertian { reflectance, back_reflectance } => {
+            Material::Lambertian { reflectance, back_reflectance, .. } => {
                 (vec![("reflectance", reflectance)], back_reflectance)
             }
-            Material::Leaf { reflectance, transmittance, back_reflectance } => (
+            Material::Leaf { reflectance, transmittance, back_reflectance, .. } => (
                 vec![("reflectance", reflectance), ("transmittance", transmittance)],
                 back_reflectance,
             ),

@@ -6,6 +6,7 @@ mod light;
 mod mesh;
 mod sensor;
 mod spectrum;
+mod thermal;
 
 use std::borrow::Cow;
 
@@ -23,6 +24,7 @@ pub use sensor::{
     ImageMeasure, Layers, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
 };
 pub use spectrum::{Material, Spectrum};
+pub use thermal::{BandSource, Temperature, ThermalSky};
 
 /// Named values in document order.
 pub type Map<T> = IndexMap<String, T>;
@@ -54,6 +56,8 @@ record! {
         sun: Option<Sun> = None,
         /// The sky.
         sky: Sky = Sky::None,
+        /// What the sky emits, in bands that hold emission.
+        thermal_sky: ThermalSky = ThermalSky::None,
         /// What lies beyond the terrain's rectangle.
         boundary: Boundary = Boundary::Isolated,
         /// What measures the light.
@@ -82,5 +86,7 @@ record! {
         center_nm: f64 => "660.0",
         /// Full width, nm; 0 means the centre wavelength alone.
         width_nm: f64 = 0.0,
+        /// Where the radiance in it comes from.
+        source: BandSource = BandSource::Auto,
     }
 }

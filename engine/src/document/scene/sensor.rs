@@ -163,13 +163,15 @@ choice! {
 choice! {
     /// What an image holds.
     pub enum ImageMeasure ("a measure of an image") {
-        /// Radiance, W m⁻² sr⁻¹ nm⁻¹.
+        /// Radiance, W m⁻² sr⁻¹ nm⁻¹, from the sources that the band names.
         Radiance,
         /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
         Brf,
         /// The same, split as RAMI does: `brf_uc` (scattered once, by the ground), `brf_co_sgl`
         /// (once, by anything else) and `brf_mlt` (more often).
         Orders,
+        /// Temperature of the black body of this radiance, K, in bands that hold emission.
+        BrightnessTemperature,
         /// Shares of sunlit ground, sunlit canopy, shaded ground and shaded canopy in what is seen;
         /// of an image the dominant one too. Sunlit is where the sun is visible from the side that
         /// is seen; ground is the terrain.

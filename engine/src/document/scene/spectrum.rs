@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
+use super::Temperature;
 
 choice! {
     /// A quantity as a function of wavelength, or given band by band.
@@ -59,6 +60,8 @@ choice! {
             reflectance: Spectrum => "Constant(0.3)",
             /// Reflectance of the back side.
             back_reflectance: Option<Spectrum> = None,
+            /// How warm it is; needed where a sensor measures what it emits.
+            temperature: Option<Temperature> = None,
         },
         /// Reflects and transmits diffusely.
         Leaf {
@@ -68,6 +71,8 @@ choice! {
             transmittance: Spectrum => "Constant(0.2)",
             /// Reflectance of the back side.
             back_reflectance: Option<Spectrum> = None,
+            /// How warm it is; needed where a sensor measures what it emits.
+            temperature: Option<Temperature> = None,
         },
     }
 }

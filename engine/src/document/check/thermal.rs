@@ -1,0 +1,112 @@
+//! Temperatures, and what is measured of them.
+
+use super::super::scene::{
+    BandSource, ImageMeasure, Scene, Sensor, System, Temperature, ThermalSky,
+};
+use super::Report;
+use super::spectrum::{Quantity, check_spectrum};
+
+pub(super) fn check_thermal_sky(scene: &Scene, report: &mut Report<'_>) {
+    match &scene.thermal_sky {
+        ThermalSky::None => {}
+        ThermalSky::BlackBody(value) => kelvin("thermal_sky", *value, report),
+        ThermalSky::Radiance(radiance) => {
+            check_spectrum("thermal_sky", radiance, Quantity::Irradiance, scene, report);
+        }
+    }
+}
+
+pub(super) fn check_temperatures(scene: &Scene, report: &mut Report<'_>) {
+    let is_measured = scene.measures_emission();
+    for (name, material) in &scene.materials {
+        let Some(temperature) = material.temperature() else { continue };
+        let path = format!("materials.{name}.temperature");
+        match temperature {
+            Temperature::Uniform(value) => kelvin(&path, *value, report),
+            Temperature::SunlitShaded { sunlit_k, shaded_k } => {
+                kelvin(&format!("{path}.sunlit_k"), *sunlit_k, report);
+                kelvin(&format!("{path}.shaded_k"), *shaded_k, report);
+            }
+            Temperature::MeanDelta { mean_k, delta_k } => {
+                kelvin(&format!("{path}.mean_k"), *mean_k, report);
+                let (sunlit, shaded) = temperature.sunlit_and_shaded();
+                if *mean_k >= 0.0 && !(sunlit >= 0.0 && shaded >= 0.0 && delta_k.is_finite()) {
+                    let message = format!("{mean_k} ± {delta_k} / 2 reaches below 0 K");
+                    let help = "`delta_k` is the sunlit temperature less the shaded one";
+                    report.error(&format!("{path}.delta_k"), message, help);
+                }
+            }
+        }
+        if is_measured
+            && temperature.needs_sun()
+            && scene.sun.is_none()
+            && report.is_readable("sun")
+        {
+            let message = "the sun tells sunlit from shaded, and there is no sun";
+            let help = "write `sun: (zenith_deg: 30.0)` too, or one `temperature: Uniform(300.0)`";
+            report.error(&path, message, help);
+        }
+    }
+}
+
+/// What a sensor can measure of emission.
+pub(super) fn check_emission(
+    path: &str,
+    measures: &[ImageMeasure],
+    sensor: &Sensor,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let is_forward = matches!(
+        sensor,
+        Sensor::Orthographic { system: System::Forward, .. }
+            | Sensor::Perspective { system: System::Forward, .. }
+            | Sensor::Fisheye { system: System::Forward, .. }
+            | Sensor::Directions { system: System::Forward, .. }
+    );
+    let emits = scene.bands.iter().any(super::super::scene::Band::emits);
+    for (index, measure) in measures.iter().enumerate() {
+        let at = format!("{path}.measure[{index}]");
+        if *measure == ImageMeasure::BrightnessTemperature && !emits && report.is_whole("bands") {
+            let message =
+                "a brightness temperature is that of emitted radiance, and no band holds any";
+            let help = "bands beyond 3000 nm hold it, and those with `source: Emission`";
+            report.error(&at, message, help);
+        } else if measure.is_radiance() && emits && is_forward {
+            let message = "`Forward` follows the light of sun and sky, and no emitted radiance";
+            let help = "write `system: Backward`";
+            report.error(&at, message, help);
+        }
+    }
+}
+
+/// Whether any sensor measures light of sun and sky: gaps are there in the dark too, emission needs
+/// no light, and the four components ask for a sun themselves.
+pub(super) fn needs_light(scene: &Scene) -> bool {
+    let reflects = scene.bands.iter().any(super::super::scene::Band::reflects);
+    let of_band = |measure: &ImageMeasure| match measure {
+        ImageMeasure::Brf | ImageMeasure::Orders => true,
+        ImageMeasure::Radiance => reflects,
+        ImageMeasure::BrightnessTemperature => {
+            scene.bands.iter().any(|band| band.source == BandSource::Both)
+        }
+        ImageMeasure::FourComponents | ImageMeasure::GapFraction => false,
+    };
+    scene.sensors.is_empty()
+        || scene.sensors.values().any(|sensor| match sensor.image_measures() {
+            Some(measures) => measures.iter().any(of_band),
+            None => true,
+        })
+}
+
+fn kelvin(path: &str, value: f64, report: &mut Report<'_>) {
+    if !(value >= 0.0 && value.is_finite()) {
+        let message = format!("expected a temperature of at least 0 K, found {value}");
+        let help = if (-273.15..0.0).contains(&value) {
+            format!("{value} °C is {:.2} K", value + 273.15)
+        } else {
+            "temperatures are in kelvins: 20 °C is 293.15".to_owned()
+        };
+        report.error(path, message, help);
+    }
+}

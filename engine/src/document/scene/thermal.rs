@@ -1,0 +1,130 @@
+//! What surfaces and the sky radiate by themselves.
+
+use std::borrow::Cow;
+
+use super::super::decode::{Decode, Reader, Variant};
+use super::super::encode::{Encode, Text};
+use super::super::syntax::Node;
+use super::{Band, ImageMeasure, Material, Scene, Sensor, Spectrum};
+
+/// Beyond this wavelength surfaces on Earth radiate more than they reflect of the sun, nm.
+const THERMAL_NM: f64 = 3000.0;
+
+choice! {
+    /// Where the radiance in a band comes from.
+    pub enum BandSource ("a source of a band's radiance") {
+        /// Sun and sky up to 3000 nm, `Emission` where the centre lies beyond.
+        Auto,
+        /// What is reflected of sun and sky alone.
+        Sunlight,
+        /// What surfaces and `thermal_sky` emit, and reflect of that, alone.
+        Emission,
+        /// Their sum; for 3 to 5 µm by day.
+        Both,
+    }
+}
+
+choice! {
+    /// A temperature, K.
+    pub enum Temperature ("a temperature") {
+        /// The same everywhere.
+        Uniform(f64 => "300.0"),
+        /// One where the sun's disc is visible and one where it is not.
+        SunlitShaded {
+            /// Where the sun is visible, K.
+            sunlit_k: f64 => "305.0",
+            /// Where it is not, K.
+            shaded_k: f64 => "295.0",
+        },
+        /// Sunlit `mean_k + delta_k / 2`, shaded `mean_k - delta_k / 2`.
+        MeanDelta {
+            /// Mean of the two, K.
+            mean_k: f64 => "300.0",
+            /// Sunlit less shaded, K.
+            delta_k: f64 => "10.0",
+        },
+    }
+}
+
+choice! {
+    /// What the sky emits.
+    pub enum ThermalSky ("a thermal sky") {
+        /// Nothing.
+        None,
+        /// Isotropic, like a black body of this temperature, K.
+        BlackBody(f64 => "250.0"),
+        /// Isotropic, of this radiance, W m⁻² sr⁻¹ nm⁻¹; π times that falls on the horizontal plane.
+        Radiance(Spectrum => "Constant(0.004)"),
+    }
+}
+
+impl Temperature {
+    /// Where the sun is visible and where it is not, K.
+    #[must_use]
+    pub fn sunlit_and_shaded(&self) -> (f64, f64) {
+        match *self {
+            Self::Uniform(kelvin) => (kelvin, kelvin),
+            Self::SunlitShaded { sunlit_k, shaded_k } => (sunlit_k, shaded_k),
+            Self::MeanDelta { mean_k, delta_k } => (mean_k + 0.5 * delta_k, mean_k - 0.5 * delta_k),
+        }
+    }
+
+    /// Whether it takes a sun to tell which of two it is.
+    #[must_use]
+    pub fn needs_sun(&self) -> bool {
+        let (sunlit, shaded) = self.sunlit_and_shaded();
+        sunlit.total_cmp(&shaded).is_ne()
+    }
+}
+
+impl Band {
+    /// Whether its radiance holds what surfaces emit.
+    #[must_use]
+    pub fn emits(&self) -> bool {
+        match self.source {
+            BandSource::Auto => self.center_nm > THERMAL_NM,
+            BandSource::Sunlight => false,
+            BandSource::Emission | BandSource::Both => true,
+        }
+    }
+
+    /// Whether its radiance holds what is reflected of sun and sky.
+    #[must_use]
+    pub fn reflects(&self) -> bool {
+        matches!(self.source, BandSource::Both) || !self.emits()
+    }
+}
+
+impl Material {
+    /// Its temperature, if it was given.
+    #[must_use]
+    pub const fn temperature(&self) -> Option<&Temperature> {
+        match self {
+            Self::Lambertian { temperature, .. } | Self::Leaf { temperature, .. } => {
+                temperature.as_ref()
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// Whether any sensor measures emitted radiance.
+    #[must_use]
+    pub fn measures_emission(&self) -> bool {
+        self.bands.iter().any(Band::emits)
+            && self
+                .sensors
+                .values()
+                .filter_map(Sensor::image_measures)
+                .flatten()
+                .any(ImageMeasure::is_radiance)
+    }
+}
+
+impl ImageMeasure {
+    /// Whether it needs the radiance, emitted or reflected, whichever the bands hold.
+    #[must_use]
+    pub const fn is_radiance(&self) -> bool {
+        matches!(self, Self::Radiance | Self::BrightnessTemperature)
+    }
+}

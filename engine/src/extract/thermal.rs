@@ -1,0 +1,53 @@
+use hecs::World;
+
+use crate::components::{BlackBody, Emission, MaterialId, SceneId};
+use crate::scattering::padded;
+
+/// What surfaces and the sky emit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Thermal {
+    /// 1 in bands that hold emitted radiance, 0 in others, shape `[lanes]`.
+    pub bands: Box<[f32]>,
+    /// Radiance of the sky, W m⁻² sr⁻¹ nm⁻¹, shape `[lanes]`.
+    pub sky: Box<[f32]>,
+    /// Warmth of each surface, by the id that hits carry.
+    pub surfaces: Vec<Warmth>,
+}
+
+/// Radiance of a black body that is as warm as a surface, W m⁻² sr⁻¹ nm⁻¹, shape `[lanes]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warmth {
+    /// Where the sun's disc is visible.
+    pub sunlit: Box<[f32]>,
+    /// Where it is not.
+    pub shaded: Box<[f32]>,
+    /// Whether the two differ.
+    pub knows_sun: bool,
+}
+
+impl Thermal {
+    /// Of these materials, in this order; `None` where nothing measures what they emit.
+    pub(super) fn of(world: &World, materials: &[MaterialId]) -> Option<Self> {
+        let emission = world.query::<&Emission>().iter().next().cloned()?;
+        let lanes = |values: &[f64]| padded(values.iter().map(|&value| value as f32));
+        let mut query = world.query::<(&SceneId, &BlackBody)>();
+        let bodies: Vec<_> = query.iter().collect();
+        let surfaces = materials
+            .iter()
+            .map(|material| {
+                let body = bodies.iter().find(|(id, _)| id.0 == material.0);
+                let (_, body) = body.expect("every material has its temperature");
+                Warmth {
+                    sunlit: lanes(&body.sunlit),
+                    shaded: lanes(&body.shaded),
+                    knows_sun: body.sunlit != body.shaded,
+                }
+            })
+            .collect();
+        Some(Self {
+            bands: padded(emission.bands.iter().map(|&emits| f32::from(emits))),
+            sky: lanes(&emission.sky),
+            surfaces,
+        })
+    }
+}
