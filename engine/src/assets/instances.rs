@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::AssetError;
 use super::table::{Table, known_columns, missing};
+use crate::document::INSTANCE_COLUMNS;
 
 /// Where one instance stands, as its row says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,19 +24,6 @@ pub struct Row {
     /// Vertical scale.
     pub scale_vertical: f64,
 }
-
-/// All columns that a table may have.
-const COLUMNS: [&str; 9] = [
-    "x_m",
-    "y_m",
-    "z_m",
-    "yaw_deg",
-    "yaw_rad",
-    "tilt_deg",
-    "tilt_azimuth_deg",
-    "scale",
-    "scale_vertical",
-];
 
 /// Rows of a table of instances, in file order.
 ///
@@ -63,7 +51,7 @@ pub fn read_instances(path: &Path, columns: Option<&[String]>) -> Result<Vec<Row
             return Err(AssetError::NoHeader { file, line, wanted });
         }
     };
-    let known = known_columns(&names, &COLUMNS, path, line)?;
+    let known = known_columns(&names, &INSTANCE_COLUMNS, path, line)?;
     let has = |name: &str| names.iter().any(|n| n == name);
     if let Some(column) = ["x_m", "y_m"].into_iter().find(|name| !has(name)) {
         return Err(missing(column, &names, path, line));

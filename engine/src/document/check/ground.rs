@@ -1,22 +1,9 @@
 //! The frame, the terrain, and what stands on it.
 
 use super::super::diagnostic::{Diagnostic, suggestion};
-use super::super::scene::{Instances, Scene, Terrain};
+use super::super::scene::{INSTANCE_COLUMNS, Instances, Scene, Terrain};
 use super::mesh::check_material;
 use super::{Report, count};
-
-/// Columns that a table of instances may have.
-const COLUMNS: [&str; 9] = [
-    "x_m",
-    "y_m",
-    "z_m",
-    "yaw_deg",
-    "yaw_rad",
-    "tilt_deg",
-    "tilt_azimuth_deg",
-    "scale",
-    "scale_vertical",
-];
 
 pub(super) fn check_frame(scene: &Scene, report: &mut Report<'_>) {
     let (x, y, z) = scene.frame.origin_m;
@@ -75,8 +62,8 @@ fn check_count(path: &str, key: &str, values: usize, places: usize, report: &mut
 fn check_columns(path: &str, columns: &[String], report: &mut Report<'_>) {
     for (index, column) in columns.iter().enumerate() {
         let at = format!("{path}[{index}]");
-        if !COLUMNS.contains(&column.as_str()) {
-            let help = suggestion(column, &COLUMNS, "columns may be");
+        if !INSTANCE_COLUMNS.contains(&column.as_str()) {
+            let help = suggestion(column, &INSTANCE_COLUMNS, "columns may be");
             report.error(&at, format!("no column `{column}`"), help);
         } else if columns[..index].contains(column) {
             report.error(&at, format!("a second column `{column}`"), "name each column once");

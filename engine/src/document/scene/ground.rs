@@ -59,3 +59,16 @@ choice! {
         },
     }
 }
+
+/// Columns that a table of instances may have.
+pub const INSTANCE_COLUMNS: [&str; 9] = [
+    "x_m",
+    "y_m",
+    "z_m",
+    "yaw_deg",
+    "yaw_rad",
+    "tilt_deg",
+    "tilt_azimuth_deg",
+    "scale",
+    "scale_vertical",
+];

@@ -17,7 +17,7 @@ use super::encode::{Encode, Text, differs};
 use super::syntax::Node;
 
 pub use camera::{Cover, FisheyeProjection, Look, Picture};
-pub use ground::{Boundary, Instances, Terrain};
+pub use ground::{Boundary, INSTANCE_COLUMNS, Instances, Terrain};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
 pub use sensor::{
