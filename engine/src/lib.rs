@@ -17,5 +17,6 @@ pub mod sampling;
 pub mod scattering;
 pub mod spawn;
 pub mod spectral;
+pub mod terrain;
 pub mod transport;
 pub mod units;

@@ -1,17 +1,46 @@
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3};
 
-use super::MaterialId;
+use super::{Mesh, PartMaterials};
 
-/// The ground: a horizontal rectangle. It is also the tile of a periodic scene and the reference
-/// area on which irradiance is counted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The ground over a rectangle, which is also the tile of a periodic scene and the reference area on
+/// which irradiance is counted.
+#[derive(Clone, Debug, PartialEq)]
 pub struct TerrainPatch {
     /// South-west corner, m, local frame.
     pub corner: DVec2,
     /// Extent to the east and to the north, m.
     pub size: DVec2,
-    /// Height, m, local frame.
-    pub height: f64,
-    /// Material of the ground.
-    pub material: MaterialId,
+    /// Height of the mesh's zero, m, local frame.
+    pub base: f64,
+    /// Length of the mesh's unit of height, m.
+    pub unit: f64,
+    /// The surface: x and y in units of the extent, so that its edges are exactly 0 and 1; the front
+    /// of each triangle is the side of the air.
+    pub mesh: Mesh,
+    /// Material of each part of the mesh.
+    pub materials: PartMaterials,
+    /// Whether the earth is below it everywhere: nothing but light that came in under an isolated
+    /// scene's edge arrives at it from below.
+    pub is_solid: bool,
+}
+
+impl TerrainPatch {
+    /// Linear part of `world_from_object` of the mesh.
+    #[must_use]
+    pub fn world_from_object(&self) -> DMat3 {
+        DMat3::from_diagonal(self.size.extend(self.unit))
+    }
+
+    /// World position of the mesh's origin, m.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.corner.extend(self.base)
+    }
+
+    /// Lowest height of the ground, m.
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        let heights = self.mesh.vertices.iter().map(|v| f64::from(v.z));
+        self.base + self.unit * heights.reduce(f64::min).unwrap_or(0.0)
+    }
 }

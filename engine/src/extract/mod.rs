@@ -6,12 +6,11 @@ mod thermal;
 
 use std::collections::BTreeMap;
 
-use glam::{DMat3, DVec2, DVec3, Vec3};
 use hecs::World;
 
 use crate::accel::{self, Boundary, BuildError, Domain, InstanceInput, MeshInput};
 use crate::components::{
-    MaterialId, Mesh, Name, Part, PartMaterials, Placement, SceneId, SurfaceOptics, TerrainPatch,
+    MaterialId, Mesh, Name, PartMaterials, Placement, SceneId, SurfaceOptics, TerrainPatch,
 };
 use crate::scattering::{BiLambertian, Bsdf};
 
@@ -42,7 +41,8 @@ pub struct Setting {
 /// If the world holds no terrain, or an instance of a prototype that it does not hold: spawning
 /// guarantees both.
 pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
-    let terrain = *world.query::<&TerrainPatch>().iter().next().expect("a scene has a terrain");
+    let mut terrains = world.query::<&TerrainPatch>();
+    let terrain = terrains.iter().next().expect("a scene has a terrain");
     let mut placements: Vec<Placement> = world.query::<&Placement>().iter().copied().collect();
     placements.sort_unstable_by_key(|placement| placement.id);
     let used: BTreeMap<u32, u32> = {
@@ -57,14 +57,13 @@ pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
     prototypes.sort_unstable_by_key(|&(id, ..)| *id);
     assert_eq!(prototypes.len(), used.len(), "every instance has its prototype");
 
-    let mut surfaces = Surfaces::new(world, terrain.material);
-    let ground = ground();
-    let ground_surfaces = [surfaces.id(terrain.material)];
+    let mut surfaces = Surfaces::new(world);
+    let ground_surfaces: Vec<u32> = terrain.materials.0.iter().map(|&id| surfaces.id(id)).collect();
     let part_surfaces: Vec<Vec<u32>> = prototypes
         .iter()
         .map(|(_, _, materials)| materials.0.iter().map(|&id| surfaces.id(id)).collect())
         .collect();
-    let mut meshes = vec![MeshInput { mesh: &ground, surfaces: &ground_surfaces }];
+    let mut meshes = vec![MeshInput { mesh: &terrain.mesh, surfaces: &ground_surfaces }];
     meshes.extend(
         prototypes
             .iter()
@@ -73,8 +72,8 @@ pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
     );
     let mut instances = vec![InstanceInput {
         mesh: 0,
-        linear: DMat3::from_diagonal(terrain.size.extend(1.0)),
-        translation: terrain.corner.extend(terrain.height),
+        linear: terrain.world_from_object(),
+        translation: terrain.origin(),
     }];
     instances.extend(placements.iter().map(|placement| InstanceInput {
         mesh: used[&placement.prototype.0],
@@ -92,24 +91,13 @@ pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
         rules: setting.rules,
         corner: terrain.corner,
         size: terrain.size,
-        ground: terrain.height,
+        ground: terrain.lowest(),
         periodic: setting.boundary == Boundary::Periodic,
         thermal: Thermal::of(world, &surfaces.ordered),
         surfaces: surfaces.finish(),
         light: Light::of(world, setting.bands),
         geometry,
     })
-}
-
-/// Unit square at height 0; its instance scales it exactly to the terrain's rectangle.
-fn ground() -> Mesh {
-    let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-    Mesh {
-        vertices: corners.map(|c| DVec3::from((c, 0.0)).as_vec3()).map(Vec3::from).to_vec(),
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        discs: Vec::new(),
-        parts: vec![Part { name: "ground".to_owned(), triangles: 0..2, discs: 0..0 }],
-    }
 }
 
 /// Surfaces of the stage, numbered as they are first asked for.
@@ -120,7 +108,7 @@ struct Surfaces {
 }
 
 impl Surfaces {
-    fn new(world: &World, ground: MaterialId) -> Self {
+    fn new(world: &World) -> Self {
         let known = world
             .query::<(&SceneId, &Name, &SurfaceOptics)>()
             .iter()
@@ -129,9 +117,7 @@ impl Surfaces {
                 (MaterialId(id.0), Surface { name: name.0.clone(), bsdf })
             })
             .collect();
-        let mut surfaces = Self { known, ids: BTreeMap::new(), ordered: Vec::new() };
-        surfaces.id(ground);
-        surfaces
+        Self { known, ids: BTreeMap::new(), ordered: Vec::new() }
     }
 
     fn id(&mut self, material: MaterialId) -> u32 {

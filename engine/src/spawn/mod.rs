@@ -8,15 +8,16 @@ mod materials;
 mod meshes;
 mod sensors;
 mod spectra;
+mod standing;
+mod terrain;
 mod thermal;
 
 use std::path::{Path, PathBuf};
 
-use glam::DVec2;
 use hecs::World;
 
-use crate::components::{SceneId, TerrainPatch};
-use crate::document::{Diagnostic, Scene, Terrain};
+use crate::components::SceneId;
+use crate::document::{Diagnostic, Scene};
 
 pub use files::missing_files;
 
@@ -56,14 +57,17 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     let mut spawner =
         Spawner { scene, folder, files: Vec::new(), skipped: Vec::new(), problems: Vec::new() };
     let mut world = World::new();
+    let ground = spawner.terrain(&mut world);
     let placements = spawner.instances();
     let meshes = spawner.meshes(&placements);
+    if let Some(ground) = &ground {
+        spawner.check_standing(&placements, &meshes, ground);
+    }
     spawner.materials(&meshes, &mut world);
     for (id, mesh) in meshes {
         world.spawn((SceneId(id), mesh.name, mesh.mesh, mesh.materials));
     }
     world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
-    spawner.terrain(&mut world);
     spawner.light(&mut world);
     spawner.emission(&mut world);
     spawner.sensors(&mut world);
@@ -82,20 +86,5 @@ impl Spawner<'_> {
         let path = self.folder.join(name);
         self.files.push(path.clone());
         path
-    }
-
-    fn terrain(&self, world: &mut World) {
-        let Terrain::Plane { size_m, material, corner_m, height_m } = &self.scene.terrain;
-        // An unknown material was reported with all others.
-        let Some(material) = self.material_id(material) else { return };
-        world.spawn((
-            SceneId(0),
-            TerrainPatch {
-                corner: DVec2::from(*corner_m),
-                size: DVec2::from(*size_m),
-                height: *height_m,
-                material,
-            },
-        ));
     }
 }

@@ -1,0 +1,66 @@
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::Spawner;
+use super::meshes::Prototype;
+use crate::components::Placement;
+use crate::document::Diagnostic;
+use crate::terrain::Ground;
+
+/// Instances of one mesh that stand wrongly in one way.
+struct Case {
+    count: usize,
+    example: String,
+}
+
+impl Spawner<'_> {
+    /// Warns of instances that float high over the ground or are sunken deep into it: by their own
+    /// height or half of it, so that crowns without trunks and roots are left alone.
+    pub(super) fn check_standing(
+        &mut self,
+        placements: &[Placement],
+        meshes: &BTreeMap<u32, Prototype>,
+        ground: &Ground,
+    ) {
+        let mut cases: BTreeMap<(u32, bool), Case> = BTreeMap::new();
+        for placement in placements {
+            let Some(bounds) = meshes.get(&placement.prototype.0).and_then(|p| p.mesh.bounds())
+            else {
+                continue;
+            };
+            let (low, high) = heights(placement, [bounds.0.as_dvec3(), bounds.1.as_dvec3()]);
+            let Some(below) = ground.height(placement.position.truncate()) else { continue };
+            let (gap, height) = (low - below, high - low);
+            let floats = gap > height;
+            if !floats && high - below >= 0.5 * height {
+                continue;
+            }
+            let DVec3 { x, y, .. } = placement.position;
+            let case = cases.entry((placement.prototype.0, floats)).or_insert_with(|| Case {
+                count: 0,
+                example: format!(
+                    "at ({x}, {y}) the ground is {below:.2} m high, and it reaches from {low:.2} to \
+                     {high:.2} m"
+                ),
+            });
+            case.count += 1;
+        }
+        for ((prototype, floats), Case { count, example }) in cases {
+            let name = &meshes[&prototype].name.0;
+            let how = if floats { "float above" } else { "are sunken into" };
+            let message = format!("{count} of `{name}` {how} the ground");
+            let help = format!("{example}; heights of instances are those of the local frame");
+            self.problems.push(Diagnostic::warning("instances", message).help(help));
+        }
+    }
+}
+
+/// Lowest and highest height of the box around a placed mesh, m.
+fn heights(placement: &Placement, bounds: [DVec3; 2]) -> (f64, f64) {
+    // The height of a corner is linear in its coordinates, so each axis has its own extremes.
+    let up = placement.world_from_object().row(2);
+    let (a, b) = (bounds[0] * up, bounds[1] * up);
+    let z = placement.position.z;
+    (z + a.min(b).element_sum(), z + a.max(b).element_sum())
+}
