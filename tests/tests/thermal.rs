@@ -243,6 +243,50 @@ fn bands_choose_their_sources() {
     }
 }
 
+/// *Scene*: an isolated plane of 4 m with a speck 3 m above it, at 4 µm by day, from 45° in the east.
+/// *Expected*: of the rectangle at the height of the speck a quarter shows the plane; what is emitted,
+/// what is reflected and their sum are all a quarter of the plane's radiance, in both systems.
+#[test]
+fn emitted_and_reflected_light_are_means_over_the_same_rectangle() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let speck = "g speck\nv 2 2 3\nv 2.001 2 3\nv 2.001 2.001 3\nf 1 2 3\n";
+    std::fs::write(dir.path().join("speck.obj"), speck).expect("a file");
+    for (source, emits, reflects) in
+        [("Emission", 1.0, 0.0), ("Sunlight", 0.0, 1.0), ("Both", 1.0, 1.0)]
+    {
+        let report = measure(
+            &format!(
+                r#"Scene(
+    format: 1,
+    bands: [(name: "mir", center_nm: 4000.0, source: {source})],
+    materials: {{ "soil": Lambertian(reflectance: Constant(0.3), temperature: Uniform(300.0)) }},
+    meshes: {{ "speck": Obj(file: "speck.obj", up: Z, unit_m: 1.0, material: Some("soil")) }},
+    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
+    instances: [List(of: "speck", at_m: [(0.0, 0.0, 0.0)])],
+    sun: (zenith_deg: 0.0, irradiance: Constant(0.01)),
+    sensors: {{
+        "back": Directions(views: List([(45.0, 90.0)]), until: Samples(32768), measure: [Radiance]),
+        "forth": Directions(views: List([(45.0, 90.0)]), until: Samples(65536), measure: [Radiance], system: Forward),
+        "photons": Photons(per_m2: 4096.0, measure: [RadianceViews(List([(45.0, 90.0)]))]),
+    }},
+)"#
+            ),
+            dir.path(),
+            &Options::default(),
+        );
+        let truth = 0.25 * (emits * 0.7 * planck(4_000.0, 300.0) + reflects * 0.3 * 0.01 / PI);
+        for (sensor, name) in
+            [("back", "radiance"), ("forth", "radiance"), ("photons", "radiance_views")]
+        {
+            let l = Estimate::of(product(&report, sensor, name), 0);
+            // The speck adds less than 1e-6 of the area.
+            let allowed = 4.0 * l.error + 1e-5 * truth;
+            assert!((l.value - truth).abs() < allowed, "{source}, {sensor}: {l:?} for {truth}");
+            assert!(l.error < 0.02 * truth, "{source}, {sensor}: {l:?} for {truth}");
+        }
+    }
+}
+
 /// What is missing for emission is said, with what to write.
 #[test]
 fn a_material_that_is_seen_to_emit_needs_a_temperature() {

@@ -18,7 +18,7 @@ pub enum Sensor {
 pub enum System {
     /// Paths from the sensor, next-event estimation to the sun.
     Backward,
-    /// Photon packets from sun and sky.
+    /// Photon packets from sun and sky, or from what emits.
     Forward,
 }
 
@@ -125,6 +125,16 @@ pub enum PhotonMeasure {
     BrfViews(Vec<View>),
     /// Reflected over incident flux.
     Albedo,
+    /// Radiance in this many equal-area cells of the hemisphere.
+    RadianceCells(u32),
+    /// Radiance towards these directions, by virtual photons.
+    RadianceViews(Vec<View>),
+    /// Radiance within cones of directions.
+    RadianceCones(Vec<Cone>),
+    /// Flux density that leaves upwards.
+    Exitance,
+    /// Temperature of the black body of each radiance that is measured.
+    BrightnessTemperature,
     /// BRF within cones of directions.
     BrfCones(Vec<Cone>),
     /// Splits what the sensor says of reflected light by order of scattering.
@@ -141,10 +151,31 @@ pub enum PhotonMeasure {
     },
 }
 
-/// Photon packets from sun and sky.
+impl PhotonMeasure {
+    /// Whether it holds light in absolute units, of whatever sources the bands name.
+    #[must_use]
+    pub const fn is_absolute(&self) -> bool {
+        match self {
+            Self::RadianceCells(_)
+            | Self::RadianceViews(_)
+            | Self::RadianceCones(_)
+            | Self::Exitance
+            | Self::Fluxes { .. } => true,
+            Self::BrfCells(_)
+            | Self::BrfViews(_)
+            | Self::BrfCones(_)
+            | Self::Albedo
+            | Self::BrightnessTemperature
+            | Self::Orders
+            | Self::Fapar(_) => false,
+        }
+    }
+}
+
+/// Photon packets from sun and sky, and from what emits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Photons {
-    /// Packets a square metre of the terrain's rectangle.
+    /// Packets a square metre of the terrain's rectangle; of emitted light, lines along which some start.
     pub per_area: f64,
     /// What to report.
     pub measure: Vec<PhotonMeasure>,

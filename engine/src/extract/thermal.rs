@@ -1,6 +1,9 @@
 use hecs::World;
 
+use super::Stage;
+use crate::accel::Hit;
 use crate::components::{BlackBody, Emission, MaterialId, SceneId};
+use crate::sampling::Sampler;
 use crate::scattering::padded;
 
 /// What surfaces and the sky emit.
@@ -49,5 +52,16 @@ impl Thermal {
             sky: lanes(&emission.sky),
             surfaces,
         })
+    }
+
+    /// Radiance of the black body that is as warm as a surface at a point, shape `[lanes]`, and the
+    /// number of rays that it took to see whether the sun is visible from there. The side does not
+    /// matter: a leaf is too thin for two temperatures.
+    pub fn black_body(&self, stage: &Stage, hit: &Hit, sampler: &mut Sampler) -> (&[f32], u64) {
+        let warmth = &self.surfaces[hit.surface as usize];
+        let sun = stage.light.sun.as_ref().filter(|_| warmth.knows_sun);
+        let is_sunlit =
+            sun.is_some_and(|sun| !stage.geometry.occluded(&hit.leave(sun.towards(sampler))));
+        (if is_sunlit { &warmth.sunlit } else { &warmth.shaded }, sun.is_some().into())
     }
 }

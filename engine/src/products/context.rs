@@ -34,6 +34,12 @@ impl Context {
         pairs.filter(|(_, source)| source.emits).map(|(name, _)| name.clone()).collect()
     }
 
+    /// The same under an irradiance of 1 in each band.
+    #[must_use]
+    pub fn of_unit_irradiance(&self) -> Self {
+        Self { irradiance: vec![1.0; self.bands.len()], ..self.clone() }
+    }
+
     /// Name of the reflectance factor that this light allows.
     #[must_use]
     pub const fn factor(&self) -> &'static str {

@@ -2,16 +2,17 @@ use super::context::{labels, numbers};
 use super::thermal::{brightness, radiance_of_sources};
 use super::{Axis, Context, Product, reflectance};
 use crate::components::{ImageMeasure, View};
-use crate::transport::{DirectionsOutcome, Part, ViewsOutcome};
+use crate::transport::{DirectionsOutcome, Part};
 
 /// The products of a measurement of directions that are made of light: of what is `reflected`, as
-/// `L / E`, and of what is `emitted`, as far as they were measured; both of shape `[views, bands]`.
+/// `L / E`, and of what is `emitted`, as far as they were measured; both of shape `[views, bands]`, and
+/// means over the scene's rectangle.
 #[must_use]
 pub fn of_directions(
     views: &[View],
     measures: &[ImageMeasure],
     reflected: Option<&DirectionsOutcome>,
-    emitted: Option<&ViewsOutcome>,
+    emitted: Option<&DirectionsOutcome>,
     context: &Context,
 ) -> Vec<Product> {
     type Scale = fn(&[f64], &[f64]) -> Vec<f64>;
@@ -22,8 +23,10 @@ pub fn of_directions(
     let relative = reflected
         .zip(errors.as_ref())
         .map(|(outcome, errors)| (outcome.spread.mean(), errors.as_slice()));
-    let total = emitted
-        .map(|emitted| radiance_of_sources(relative, (&emitted.mean, &emitted.error), context));
+    let total = emitted.map(|emitted| {
+        let errors = emitted.spread.standard_error();
+        radiance_of_sources(relative, (emitted.spread.mean(), &errors), context)
+    });
     let radiance = ("radiance", "W m-2 sr-1 nm-1");
     let factor = context.factor();
     let products = |measure: &ImageMeasure| -> Option<Vec<Product>> {

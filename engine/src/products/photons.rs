@@ -115,7 +115,8 @@ pub fn fapar(
     ]
 }
 
-/// Where the energy went, as fractions of what falls on the scene's rectangle.
+/// Where the energy went, as fractions of what falls on the scene's rectangle. Of emitted light, under
+/// an irradiance of 1: in W m⁻² nm⁻¹, where `incident` is what surfaces and the sky emit.
 ///
 /// # Panics
 /// If a term of [`EnergyCounter`] has no name here.

@@ -8,13 +8,13 @@ use crate::components::{
 };
 use crate::extract::Stage;
 use crate::film::Spread;
-use crate::products::{self, Context, Product, SensorReport};
+use crate::products::{self, BandSources, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
     AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
-    FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, Projection, ViewCounter, Watch,
-    measure_directions, measure_directions_components, measure_directions_thermal, measure_image,
-    measure_image_components, measure_image_forward, measure_image_thermal, trace_photons,
+    FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, PhotonOutcome, Projection, Source,
+    ViewCounter, Watch, measure_directions, measure_directions_components, measure_image,
+    measure_image_components, measure_image_forward, trace_photons,
 };
 
 /// All sensors in document order.
@@ -83,15 +83,16 @@ fn image(
     let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES) as u32;
     let mut measured = Measured::default();
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
+    let measure = |source, orders, key| match (sensor.system, &camera) {
+        (System::Forward, Camera::Orthographic(projection)) => {
+            measure_image_forward(stage, projection, (samples, source, orders), key, watch)
+        }
+        _ => measure_image(stage, &camera, (samples, source, orders), key, watch),
+    };
     let reflected =
-        needs_reflection(&sensor.measure, context).then(|| match (sensor.system, &camera) {
-            (System::Forward, Camera::Orthographic(projection)) => {
-                measure_image_forward(stage, projection, (samples, orders), key, watch)
-            }
-            _ => measure_image(stage, &camera, (samples, orders), key, watch),
-        });
+        needs_reflection(&sensor.measure, context).then(|| measure(Source::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
-        .then(|| measure_image_thermal(stage, &camera, samples, key.path("emission"), watch));
+        .then(|| measure(Source::Emitted, false, key.path("emission")));
     for outcome in reflected.iter().chain(&emitted) {
         measured.count(outcome.rays, outcome.samples);
     }
@@ -130,30 +131,25 @@ fn directions(
     let views = sensor.views.as_slice();
     let mut measured = Measured::default();
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
-    let reflected = needs_reflection(&sensor.measure, context).then(|| {
+    let measure = |source, orders, key| {
         let start = Instant::now();
         let elapsed = || start.elapsed().as_secs_f64();
-        let scene = (views, sensor.system, orders);
-        measure_directions(stage, scene, &until, key, &elapsed, watch)
-    });
-    let emitted = needs_emission(&sensor.measure, context).then(|| {
-        let (key, start) = (key.path("emission"), Instant::now());
-        let elapsed = || start.elapsed().as_secs_f64();
-        measure_directions_thermal(stage, views, &until, key, &elapsed, watch)
-    });
-    if let Some(outcome) = &reflected {
+        let setting = (views, sensor.system, source, orders);
+        measure_directions(stage, setting, &until, key, &elapsed, watch)
+    };
+    let reflected =
+        needs_reflection(&sensor.measure, context).then(|| measure(Source::Reflected, orders, key));
+    let emitted = needs_emission(&sensor.measure, context)
+        .then(|| measure(Source::Emitted, false, key.path("emission")));
+    for outcome in reflected.iter().chain(&emitted) {
         let error = outcome.spread.median_relative_error();
-        measured.ended_by = match outcome.ended_by {
-            Stop::RelError(limit) => {
-                format!("median relative standard error {error:.2e} at most {limit:.2e}")
-            }
-            other => ending(other, outcome.samples),
-        };
-        measured.count(outcome.rays, outcome.samples);
-    }
-    if let Some(outcome) = &emitted {
         if measured.ended_by.is_empty() {
-            measured.ended_by = ending(outcome.ended_by, outcome.samples);
+            measured.ended_by = match outcome.ended_by {
+                Stop::RelError(limit) => {
+                    format!("median relative standard error {error:.2e} at most {limit:.2e}")
+                }
+                other => ending(other, outcome.samples),
+            };
         }
         measured.count(outcome.rays, outcome.samples);
     }
@@ -213,43 +209,94 @@ fn photons(
     (key, quality): (Key, f64),
     watch: Watch<'_>,
 ) -> Measured {
-    let energy = EnergyCounter { surfaces: stage.surfaces.len() };
-    let kinds: Vec<Kind> =
-        sensor.measure.iter().filter_map(|measure| Kind::of(measure, stage)).collect();
+    let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
+        .measure
+        .iter()
+        .filter_map(|measure| Some((measure, Kind::of(measure, stage)?)))
+        .collect();
     let parts: &[Part] =
         if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] };
-    let mut counters: Vec<Box<dyn Counter + '_>> = vec![Box::new(energy)];
-    counters.extend(kinds.iter().map(Kind::counter));
-    let split: Vec<(&Kind, Part)> = kinds
-        .iter()
-        .filter(|kind| kind.is_of_reflection())
-        .flat_map(|kind| parts.iter().map(move |&part| (kind, part)))
-        .collect();
-    counters.extend(split.iter().map(|&(kind, part)| -> Box<dyn Counter + '_> {
-        Box::new(PartCounter { counter: kind.counter(), part })
-    }));
     let packets = (sensor.per_area * stage.area() * quality).ceil() as u64;
-    let outcome = trace_photons(stage, &counters, packets, key, watch);
-    let mut products = Vec::new();
-    let (_, spreads) = outcome.spreads.split_at(1);
-    let (wholes, of_parts) = spreads.split_at(kinds.len());
-    for (kind, spread) in kinds.iter().zip(wholes) {
-        products.extend(kind.products(spread, stage, context));
-        let of_parts = split.iter().zip(of_parts).filter(|((of, _), _)| std::ptr::eq(*of, kind));
-        for ((_, part), spread) in of_parts {
-            let products_of_part = kind.products(spread, stage, context).into_iter();
-            products.extend(products_of_part.map(|product| Product {
-                name: format!("{}_{}", product.name, part.suffix()),
-                ..product
+    let trace = |source, asked: Vec<(usize, Option<Part>)>, key| {
+        (!asked.is_empty()).then(|| {
+            let mut counters: Vec<Box<dyn Counter + '_>> =
+                vec![Box::new(EnergyCounter { surfaces: stage.surfaces.len() })];
+            counters.extend(asked.iter().map(|&(index, part)| {
+                let counter = kinds[index].1.counter();
+                match part {
+                    None => counter,
+                    Some(part) => Box::new(PartCounter { counter, part }),
+                }
             }));
+            let outcome = trace_photons(stage, source, &counters, packets, key, watch);
+            Counted { asked, outcome }
+        })
+    };
+    let holds = |of: fn(&BandSources) -> bool| context.sources.iter().any(of);
+    let (reflects, emits) = (holds(|source| source.reflects), holds(|source| source.emits));
+    let numbered = || kinds.iter().enumerate();
+    let wholes = numbered().filter(|(_, (measure, _))| reflects || !measure.is_absolute());
+    let split =
+        numbered().filter(|(_, (measure, kind))| !measure.is_absolute() && kind.is_of_reflection());
+    let asked = wholes
+        .map(|(index, _)| (index, None))
+        .chain(split.flat_map(|(index, _)| parts.iter().map(move |&part| (index, Some(part)))));
+    let reflected = trace(Source::Reflected, asked.collect(), key);
+    let asked = numbered().filter(|(_, (measure, _))| emits && measure.is_absolute());
+    let asked = asked.map(|(index, _)| (index, None)).collect();
+    let emitted = trace(Source::Emitted, asked, key.path("emission"));
+
+    let mut measured = Measured::default();
+    let unit = context.of_unit_irradiance();
+    for (index, (measure, kind)) in numbered() {
+        let of = |counted: &Option<Counted>, part, context: &Context| -> Vec<Product> {
+            let spread = counted.as_ref().and_then(|counted| counted.spread(index, part));
+            spread.map_or_else(Vec::new, |spread| kind.products(spread, stage, context))
+        };
+        if !measure.is_absolute() {
+            measured.products.extend(of(&reflected, None, context));
+            for &part in parts {
+                let products = of(&reflected, Some(part), context).into_iter();
+                measured.products.extend(products.map(|product| Product {
+                    name: format!("{}_{}", product.name, part.suffix()),
+                    ..product
+                }));
+            }
+            continue;
+        }
+        let (mut reflected, mut emitted) =
+            (of(&reflected, None, &unit).into_iter(), of(&emitted, None, &unit).into_iter());
+        for _ in 0..reflected.len().max(emitted.len()) {
+            let product =
+                products::of_sources(reflected.next().as_ref(), emitted.next().as_ref(), context);
+            let kelvin = sensor.measure.contains(&PhotonMeasure::BrightnessTemperature);
+            let kelvin = kelvin.then(|| products::brightness_of(&product, context)).flatten();
+            measured.products.extend(std::iter::once(product).chain(kelvin));
         }
     }
-    products.push(products::energy(&outcome.spreads[0], stage, context));
-    Measured {
-        products,
-        rays: outcome.rays,
-        samples: outcome.packets,
-        ended_by: format!("{} packets", outcome.packets),
+    for (counted, context, name) in
+        [(&reflected, context, "energy"), (&emitted, &unit, "emitted_energy")]
+    {
+        let Some(Counted { outcome, .. }) = counted else { continue };
+        let energy = products::energy(&outcome.spreads[0], stage, context);
+        let unit = if name == "energy" { energy.unit.clone() } else { "W m-2 nm-1".to_owned() };
+        measured.products.push(Product { name: name.to_owned(), unit, ..energy });
+        measured.count(outcome.rays, outcome.packets);
+    }
+    measured.ended_by = format!("{} packets", measured.samples);
+    measured
+}
+
+/// What was counted: the energy, and then what was asked for, kinds by number.
+struct Counted {
+    asked: Vec<(usize, Option<Part>)>,
+    outcome: PhotonOutcome,
+}
+
+impl Counted {
+    fn spread(&self, index: usize, part: Option<Part>) -> Option<&Spread> {
+        let at = self.asked.iter().position(|asked| *asked == (index, part))?;
+        self.outcome.spreads.get(1 + at)
     }
 }
 
@@ -266,13 +313,15 @@ enum Kind {
 impl Kind {
     fn of(measure: &PhotonMeasure, stage: &Stage) -> Option<Self> {
         Some(match measure {
-            PhotonMeasure::Orders => return None,
-            PhotonMeasure::BrfCones(cones) => Self::Cones(ConeCounter::new(cones.clone())),
-            PhotonMeasure::Albedo => Self::Albedo(AlbedoCounter),
-            PhotonMeasure::BrfCells(cells) => {
+            PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature => return None,
+            PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {
+                Self::Cones(ConeCounter::new(cones.clone()))
+            }
+            PhotonMeasure::Albedo | PhotonMeasure::Exitance => Self::Albedo(AlbedoCounter),
+            PhotonMeasure::BrfCells(cells) | PhotonMeasure::RadianceCells(cells) => {
                 Self::Cells(CellCounter(Hemisphere::new(*cells as usize)))
             }
-            PhotonMeasure::BrfViews(views) => {
+            PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
                 let projections =
                     views.iter().map(|&view| Projection::of_scene(view, stage)).collect();
                 Self::Views(ViewCounter::new(projections), views.clone())

@@ -48,14 +48,22 @@ impl Spawner<'_> {
                             PhotonMeasure::BrfViews(self.views(views, &at)?)
                         }
                         document::PhotonMeasure::Albedo => PhotonMeasure::Albedo,
-                        document::PhotonMeasure::BrfCones(list) => PhotonMeasure::BrfCones(
-                            list.iter()
-                                .map(|&(zenith, azimuth, full)| Cone {
-                                    axis: view(zenith, azimuth),
-                                    half_angle: 0.5 * full.to_radians(),
-                                })
-                                .collect(),
-                        ),
+                        document::PhotonMeasure::BrfCones(list) => {
+                            PhotonMeasure::BrfCones(cones(list))
+                        }
+                        document::PhotonMeasure::RadianceCells(cells) => {
+                            PhotonMeasure::RadianceCells(*cells)
+                        }
+                        document::PhotonMeasure::RadianceViews(views) => {
+                            PhotonMeasure::RadianceViews(self.views(views, &at)?)
+                        }
+                        document::PhotonMeasure::RadianceCones(list) => {
+                            PhotonMeasure::RadianceCones(cones(list))
+                        }
+                        document::PhotonMeasure::Exitance => PhotonMeasure::Exitance,
+                        document::PhotonMeasure::BrightnessTemperature => {
+                            PhotonMeasure::BrightnessTemperature
+                        }
                         document::PhotonMeasure::Orders => PhotonMeasure::Orders,
                         document::PhotonMeasure::Fapar { layer_m } => {
                             PhotonMeasure::Fapar(match layer_m {
@@ -104,6 +112,14 @@ impl Spawner<'_> {
 
 pub(super) fn view(zenith_deg: f64, azimuth_deg: f64) -> View {
     View { zenith: zenith_deg.to_radians(), azimuth: azimuth_deg.to_radians() }
+}
+
+fn cones(list: &[(f64, f64, f64)]) -> Vec<Cone> {
+    let cone = |&(zenith, azimuth, full): &(f64, f64, f64)| Cone {
+        axis: view(zenith, azimuth),
+        half_angle: 0.5 * full.to_radians(),
+    };
+    list.iter().map(cone).collect()
 }
 
 pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMeasure> {

@@ -203,7 +203,7 @@ impl Path {
         for (weight, factor) in self.throughput.iter_mut().zip(scattered.spectrum) {
             *weight *= factor * scattered.scale;
         }
-        if !roulette::survives(&stage.rules, order, &mut self.throughput, chance) {
+        if !roulette::survives(&stage.rules, order, 1.0, &mut self.throughput, chance) {
             return None;
         }
         let onward = hit.leave(scattered.direction);

@@ -2,8 +2,8 @@ use std::ops::Range;
 
 use super::forward::trace_packets;
 use super::{
-    Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, ViewCounter, Walk, Watch, blocks,
-    spectra,
+    Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, Source, ThermalPath, ViewCounter,
+    Walk, Watch, blocks, spectra,
 };
 use crate::accel::Ray;
 use crate::components::{Stop, System, View};
@@ -11,14 +11,16 @@ use crate::extract::Stage;
 use crate::film::{Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 
-/// What a measurement of directions found, in units of the irradiance.
+/// What a measurement of directions found.
 #[derive(Clone, Debug)]
 pub struct DirectionsOutcome {
-    /// `L / E` towards each view, sr⁻¹, shape `[views, bands]`, with its standard error.
+    /// Radiance towards each view in the unit of its [`Source`], shape `[views, bands]`, with its
+    /// standard error: the mean over the scene's rectangle, of which what misses an isolated scene
+    /// is dark.
     pub spread: Spread,
     /// The same of each [`Part`], if asked for.
     pub parts: Vec<Spread>,
-    /// Paths a view, or photon packets.
+    /// Paths a view, photon packets, or lines along which some start.
     pub samples: u64,
     /// Rays traced.
     pub rays: u64,
@@ -89,7 +91,7 @@ const FIRST_ROUND: u64 = 16;
 #[must_use]
 pub fn measure_directions(
     stage: &Stage,
-    (views, system, orders): (&[View], System, bool),
+    (views, system, source, orders): (&[View], System, Source, bool),
     until: &[Stop],
     key: Key,
     elapsed: &dyn Fn() -> f64,
@@ -100,12 +102,17 @@ pub fn measure_directions(
         (views.len(), stage.bands * spectra(orders)),
         until,
         (elapsed, watch),
-        |range, rows| match system {
-            System::Backward => {
+        |range, rows| match (system, source) {
+            (System::Backward, Source::Reflected) => {
                 let path = || Path::of_orders(stage.lanes(), orders);
                 walk_views(stage, &projections, range, key, rows, path)
             }
-            System::Forward => trace_photons_to(stage, &projections, range, (key, orders), rows),
+            (System::Backward, Source::Emitted) => {
+                walk_views(stage, &projections, range, key, rows, || ThermalPath::new(stage))
+            }
+            (System::Forward, _) => {
+                trace_photons_to(stage, &projections, range, (key, source, orders), rows)
+            }
         },
         |rows, each| spread(rows, each, 0..stage.bands).median_relative_error(),
     );
@@ -272,7 +279,7 @@ fn trace_photons_to(
     stage: &Stage,
     projections: &[Projection],
     range: Range<u64>,
-    (key, orders): (Key, bool),
+    (key, source, orders): (Key, Source, bool),
     rows: &mut [Sums],
 ) -> u64 {
     let counter = ViewCounter::new(projections.to_vec());
@@ -283,7 +290,7 @@ fn trace_photons_to(
             Box::new(PartCounter { counter: Box::new(counter.clone()), part })
         }));
     }
-    trace_packets(stage, &counters, range, key, &|_| {}, |randomisation, sums| {
+    trace_packets(stage, source, &counters, range, key, &|_| {}, |randomisation, sums| {
         for (view, (projection, cell)) in projections.iter().zip(&cells).enumerate() {
             let per_count = projection.radiance_of_count(stage);
             let bands = cell * stage.bands..(cell + 1) * stage.bands;

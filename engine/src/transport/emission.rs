@@ -1,3 +1,5 @@
+use std::f64::consts::PI;
+
 use glam::{DVec2, DVec3};
 
 use crate::accel::Ray;
@@ -116,18 +118,39 @@ impl Emission {
             factor = gain / self.sun_chance;
         } else {
             let pick = (pick - self.sun_chance) / (1.0 - self.sun_chance);
-            face = self.face(pick, |face| face.sky_until);
-            let [u, v, ..] = sampler.next_event();
-            direction = face.sky_light(cosine_hemisphere(u, v));
+            (face, direction) = self.sky(pick, sampler);
             share = &self.sky_share;
             factor = self.sky_gain / (1.0 - self.sun_chance);
         }
         for (weight, share) in weight.iter_mut().zip(share) {
             *weight = share * factor as f32;
         }
-        let at = DVec2::new(u, v);
+        self.ray(face, direction, DVec2::new(u, v))
+    }
+
+    /// A ray as the light of an isotropic sky comes: such rays are lines of uniform measure among
+    /// all that cross the scene.
+    pub(super) fn start_anywhere(&self, sampler: &mut Sampler) -> Ray {
+        let [pick, u, v, _] = sampler.next_event();
+        let (face, direction) = self.sky(pick, sampler);
+        self.ray(face, direction, DVec2::new(u, v))
+    }
+
+    /// Flux density over the scene's rectangle that comes through all faces from a sky of radiance 1.
+    pub(super) const fn sky_etendue(&self) -> f64 {
+        PI * self.sky_gain
+    }
+
+    fn ray(&self, face: &Face, direction: DVec3, at: DVec2) -> Ray {
         let origin = face.corner + face.u * at.x + face.v * at.y - direction * self.back_off;
         Ray { origin, direction, from: None }
+    }
+
+    /// The face that light of the sky comes through, and its direction.
+    fn sky(&self, pick: f64, sampler: &mut Sampler) -> (&Face, DVec3) {
+        let face = self.face(pick, |face| face.sky_until);
+        let [u, v, ..] = sampler.next_event();
+        (face, face.sky_light(cosine_hemisphere(u, v)))
     }
 
     /// Direction towards a point of the sun, the face that its light comes through, and the power

@@ -2,7 +2,9 @@ use std::ops::Range;
 
 use super::counters::Event;
 use super::emission::Emission;
-use super::{Counter, RANDOMISATIONS, Watch, blocks, roulette};
+use super::glow::Glow;
+use super::{Counter, RANDOMISATIONS, Source, Watch, blocks, roulette};
+use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::{Spread, Sums};
 use crate::sampling::{Key, Sampler};
@@ -26,13 +28,15 @@ const BLOCK: u64 = 2048;
 /// Blocks whose results may wait in memory.
 const BATCH: usize = 16;
 
-/// Traces at least `packets` photon packets from sun and sky and shows every event to every counter.
+/// Traces at least `packets` photon packets of sun and sky, or lines along which surfaces and the
+/// sky emit some, and shows every event to every counter.
 ///
 /// Source: LESS manual, section 2.1: packets start in proportion to the power of each source, lose
 /// `1 - ρ - τ` at each surface, and go on from a direction sampled from its BSDF.
 #[must_use]
 pub fn trace_photons(
     stage: &Stage,
+    source: Source,
     counters: &[Box<dyn Counter + '_>],
     packets: u64,
     key: Key,
@@ -41,7 +45,7 @@ pub fn trace_photons(
     let each = packets.div_ceil(RANDOMISATIONS.into()).max(1);
     let mut spreads: Vec<Spread> =
         counters.iter().map(|counter| Spread::new(counter.cells() * stage.bands)).collect();
-    let rays = trace_packets(stage, counters, 0..each, key, watch, |_, sums| {
+    let rays = trace_packets(stage, source, counters, 0..each, key, watch, |_, sums| {
         for (spread, sums) in spreads.iter_mut().zip(sums) {
             let per_packet: Vec<f64> = sums.values().iter().map(|sum| sum / each as f64).collect();
             spread.push(&per_packet);
@@ -54,6 +58,7 @@ pub fn trace_photons(
 /// the number of rays.
 pub(super) fn trace_packets(
     stage: &Stage,
+    source: Source,
     counters: &[Box<dyn Counter + '_>],
     indices: Range<u64>,
     key: Key,
@@ -61,6 +66,7 @@ pub(super) fn trace_packets(
     mut finish: impl FnMut(usize, Vec<Sums>),
 ) -> u64 {
     let emission = Emission::of(stage);
+    let glow = (source == Source::Emitted).then(|| Glow::of(stage, &emission)).flatten();
     let per_randomisation = (indices.end - indices.start).div_ceil(BLOCK) as usize;
     let count = per_randomisation * RANDOMISATIONS as usize;
     let mut rays = 0;
@@ -71,8 +77,18 @@ pub(super) fn trace_packets(
         |block| {
             let randomisation = (block / per_randomisation) as u64;
             let start = indices.start + (block % per_randomisation) as u64 * BLOCK;
-            let range = start..(start + BLOCK).min(indices.end);
-            trace_block(stage, &emission, counters, key.index(randomisation), range)
+            let full = glow.as_ref().map_or(1.0, Glow::full_weight);
+            let mut packet = Packet::new(stage, counters, full);
+            for index in start..(start + BLOCK).min(indices.end) {
+                let mut sampler = Sampler::new(key.index(randomisation), index);
+                if let Some(glow) = &glow {
+                    glow.trace(&mut packet, &mut sampler);
+                } else {
+                    let ray = emission.start(&mut sampler, &mut packet.weight);
+                    packet.arrive(ray, &mut sampler);
+                }
+            }
+            (packet.sums, packet.rays)
         },
         |block, (sums, traced)| {
             rays += traced;
@@ -92,66 +108,95 @@ pub(super) fn trace_packets(
     rays
 }
 
-fn trace_block(
-    stage: &Stage,
-    emission: &Emission,
-    counters: &[Box<dyn Counter + '_>],
-    randomisation: Key,
-    indices: Range<u64>,
-) -> (Vec<Sums>, u64) {
-    let mut sums: Vec<Sums> =
-        counters.iter().map(|counter| Sums::new(counter.cells(), stage.bands)).collect();
-    let mut weight = vec![0.0; stage.lanes()];
-    let mut before = vec![0.0; stage.lanes()];
-    let mut rays = 0;
-    for index in indices {
-        let mut sampler = Sampler::new(randomisation, index);
-        let mut ray = emission.start(&mut sampler, &mut weight);
-        let mut show = |event: Event<'_>| -> u64 {
-            counters
-                .iter()
-                .zip(&mut sums)
-                .map(|(counter, sums)| counter.count(stage, &event, sums))
-                .sum()
-        };
-        rays += show(Event::Start { ray: &ray, weight: &weight });
-        let mut order = 0;
-        let mut met_ground = false;
+/// A photon packet and what the counters saw of it and of those before it; one value is reused for
+/// many, so that a packet allocates nothing.
+pub(super) struct Packet<'a> {
+    pub(super) stage: &'a Stage,
+    counters: &'a [Box<dyn Counter + 'a>],
+    sums: Vec<Sums>,
+    /// Its weight when it starts, and then what is left of it; shape `[lanes]`.
+    pub(super) weight: Vec<f32>,
+    before: Vec<f32>,
+    /// What the strongest packets weigh when they start.
+    full: f32,
+    pub(super) rays: u64,
+}
+
+impl<'a> Packet<'a> {
+    fn new(stage: &'a Stage, counters: &'a [Box<dyn Counter + '_>], full: f32) -> Self {
+        let dark = vec![0.0; stage.lanes()];
+        let sums = counters.iter().map(|counter| Sums::new(counter.cells(), stage.bands)).collect();
+        Self { stage, counters, sums, weight: dark.clone(), before: dark, full, rays: 0 }
+    }
+
+    /// Follows one of this weight that comes from outside.
+    pub(super) fn arrive(&mut self, ray: Ray, sampler: &mut Sampler) {
+        self.rays += show(
+            (self.stage, self.counters, &mut self.sums),
+            &Event::Start { ray: &ray, weight: &self.weight },
+        );
+        self.follow(ray, (0, false), sampler);
+    }
+
+    /// Follows one of this weight that a surface emits.
+    pub(super) fn emerge(&mut self, hit: &Hit, ray: Ray, sampler: &mut Sampler) {
+        self.rays += show(
+            (self.stage, self.counters, &mut self.sums),
+            &Event::Emission { hit, ray: &ray, weight: &self.weight },
+        );
+        // It has left a surface once, and has not been scattered.
+        self.follow(ray, (1, self.stage.is_ground(hit)), sampler);
+    }
+
+    /// Follows one that has left so many surfaces, until it ends.
+    fn follow(&mut self, mut ray: Ray, (left, ground): (u32, bool), sampler: &mut Sampler) {
+        let Self { stage, counters, sums, weight, before, full, rays } = self;
+        let (stage, full, most) = (*stage, *full, self.stage.rules.max_order.saturating_add(left));
+        let mut show = |event: Event<'_>| show((stage, counters, sums), &event);
+        let (mut order, mut met_ground) = (left, ground);
         loop {
-            rays += 1;
+            *rays += 1;
             let hit = stage.geometry.closest(&ray);
             let distance = hit.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
-            rays += show(Event::Flight { ray: &ray, distance, weight: &weight });
+            *rays += show(Event::Flight { ray: &ray, distance, weight });
             let Some(hit) = hit else {
-                rays += show(Event::Escape { ray: &ray, order, met_ground, weight: &weight });
-                break;
+                *rays += show(Event::Escape { ray: &ray, order, met_ground, weight });
+                return;
             };
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
-            rays += show(Event::Arrival { hit: &hit, wo, order, met_ground, weight: &weight });
+            let is_last = order >= most;
+            *rays += show(Event::Arrival { hit: &hit, wo, order, met_ground, is_last, weight });
             met_ground |= stage.is_ground(&hit);
-            before.copy_from_slice(&weight);
+            before.copy_from_slice(weight);
             let scattered = bsdf.scattered(hit.normal, wo);
             for (weight, share) in before.iter_mut().zip(scattered) {
                 *weight *= share;
             }
             let [lobe, u, v, chance] = sampler.next_event();
-            let next = bsdf.sample(hit.normal, wo, &weight, [lobe, u, v]);
-            let lives = order < stage.rules.max_order
+            let next = bsdf.sample(hit.normal, wo, weight, [lobe, u, v]);
+            let lives = !is_last
                 && next.is_some_and(|next| {
                     for (weight, factor) in weight.iter_mut().zip(next.spectrum) {
                         *weight *= factor * next.scale;
                     }
-                    roulette::survives(&stage.rules, order + 1, &mut weight, chance)
+                    roulette::survives(&stage.rules, order + 1 - left, full, weight, chance)
                 });
             if !lives {
                 weight.fill(0.0);
             }
-            rays += show(Event::Roulette { expected: &before, kept: &weight });
-            let Some(next) = next.filter(|_| lives) else { break };
+            *rays += show(Event::Roulette { expected: before, kept: weight });
+            let Some(next) = next.filter(|_| lives) else { return };
             order += 1;
             ray = hit.leave(next.direction);
         }
     }
-    (sums, rays)
+}
+
+/// Shows an event to every counter; returns the number of rays that this took.
+fn show(
+    (stage, counters, sums): (&Stage, &[Box<dyn Counter + '_>], &mut [Sums]),
+    event: &Event<'_>,
+) -> u64 {
+    counters.iter().zip(sums).map(|(counter, sums)| counter.count(stage, event, sums)).sum()
 }

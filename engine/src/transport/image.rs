@@ -1,24 +1,24 @@
 use glam::{DVec2, UVec2};
 
 use super::{
-    Camera, Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, Traced, ViewCounter,
-    Walk, Watch, blocks, spectra, trace_photons,
+    Camera, Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, Source, ThermalPath,
+    Traced, ViewCounter, Walk, Watch, blocks, spectra, trace_photons,
 };
 use crate::extract::Stage;
 use crate::film::{Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 
-/// What an image measurement found, in units of the irradiance.
+/// What an image measurement found.
 #[derive(Clone, Debug)]
 pub struct ImageOutcome {
-    /// `L / E` of each pixel, sr⁻¹, shape `[rows, columns, spectra, bands]` (the whole and, if asked
+    /// Radiance of each pixel in the unit of its [`Source`], shape `[rows, columns, spectra, bands]` (the whole and, if asked
     /// for, its parts): the mean over the samples that met the scene; NaN where none did.
     pub pixels: Vec<f32>,
     /// Its standard error.
     pub errors: Vec<f32>,
     /// Share of each pixel's samples that met the scene, shape `[rows, columns]`.
     pub coverage: Vec<f32>,
-    /// `L / E` over all samples that met the scene, shape `[spectra, bands]`.
+    /// The same over all samples that met the scene, shape `[spectra, bands]`.
     pub mean: Vec<f64>,
     /// Its standard error.
     pub mean_error: Vec<f64>,
@@ -76,13 +76,21 @@ struct Tile {
 pub fn measure_image(
     stage: &Stage,
     camera: &Camera,
-    (samples, orders): (u32, bool),
+    (samples, source, orders): (u32, Source, bool),
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
-    let columns = stage.bands * spectra(orders);
-    let path = || Path::of_orders(stage.lanes(), orders);
-    walk_pixels(stage, (camera, samples), key, watch, columns, path)
+    let setting = (camera, samples);
+    match source {
+        Source::Reflected => {
+            let path = || Path::of_orders(stage.lanes(), orders);
+            walk_pixels(stage, setting, key, watch, stage.bands * spectra(orders), path)
+        }
+        Source::Emitted => {
+            let path = || ThermalPath::new(stage);
+            walk_pixels(stage, setting, key, watch, stage.bands, path)
+        }
+    }
 }
 
 /// Walks `samples` times a pixel from the sensor and averages what the walks that met the scene
@@ -158,7 +166,7 @@ pub(super) fn walk_pixels<W: Walk>(
 pub fn measure_image_forward(
     stage: &Stage,
     projection: &Projection,
-    (samples, orders): (u32, bool),
+    (samples, source, orders): (u32, Source, bool),
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
@@ -171,7 +179,7 @@ pub fn measure_image_forward(
         }));
     }
     let packets = pixels as u64 * u64::from(samples);
-    let outcome = trace_photons(stage, &counters, packets, key, watch);
+    let outcome = trace_photons(stage, source, &counters, packets, key, watch);
     let per_count = projection.radiance_of_count(stage);
     let means: Vec<&[f64]> = outcome.spreads.iter().map(Spread::mean).collect();
     let errors: Vec<Vec<f64>> = outcome.spreads.iter().map(Spread::standard_error).collect();

@@ -1,7 +1,7 @@
 //! Transport systems: functions over a [`Stage`](crate::extract::Stage), one file each.
 //!
-//! Everything is computed for a total horizontal irradiance of 1 in each band (see
-//! [`Light`](crate::extract::Light)); products put the units back.
+//! What is reflected is computed for a total horizontal irradiance of 1 in each band (see
+//! [`Light`](crate::extract::Light)), and products put the units back; what is emitted is absolute.
 
 mod backward;
 mod blocks;
@@ -11,6 +11,7 @@ mod counters;
 mod directions;
 mod emission;
 mod forward;
+mod glow;
 mod hemisphere;
 mod image;
 mod parts;
@@ -32,12 +33,21 @@ pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
 pub use parts::{Part, PartCounter, spectra};
-pub use thermal::{measure_directions_thermal, measure_image_thermal};
+use thermal::ThermalPath;
 use walk::Walk;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread
 /// gives the standard error; with 32 the error of that error is 13 %.
 pub const RANDOMISATIONS: u32 = 32;
+
+/// Where light comes from, and the unit that radiance is found in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Reflected of sun and sky, `L / E`, sr⁻¹.
+    Reflected,
+    /// Emitted by surfaces and the sky, and reflected of that, W m⁻² sr⁻¹ nm⁻¹.
+    Emitted,
+}
 
 /// Watches a measurement: receives the part that is done, 0 to 1.
 pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);

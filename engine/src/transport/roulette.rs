@@ -1,19 +1,26 @@
 use crate::extract::Rules;
 
-/// Throughput below which a path is played for, whatever its order. A path of less weight than this
-/// changes a result by less than its noise, so most of them may end; the others stand for them.
+/// Share of its full weight below which a path is played for, whatever its order. A path of less than
+/// this changes a result by less than its noise, so most of them may end; the others stand for them.
 const WEAK: f32 = 0.05;
 
-/// Russian roulette: whether a path that was scattered `order` times goes on. The throughput of one
+/// Russian roulette: whether a path that was scattered `order` times goes on; `full` is the weight of
+/// one that has lost nothing. The throughput of one
 /// that does is divided by its chance to do so.
 ///
 /// Beyond `roulette_after` orders a path ends with the probability `roulette_kill` (LESS manual,
 /// section 2.1); at any order, one that no band carries much on ends in proportion.
-pub(super) fn survives(rules: &Rules, order: u32, throughput: &mut [f32], u: f64) -> bool {
+pub(super) fn survives(
+    rules: &Rules,
+    order: u32,
+    full: f32,
+    throughput: &mut [f32],
+    u: f64,
+) -> bool {
     let strongest = throughput.iter().copied().fold(0.0, f32::max);
     let constant =
         if order > rules.roulette_after { 1.0 - rules.roulette_kill as f32 } else { 1.0 };
-    let survival = constant.min(strongest / WEAK);
+    let survival = constant.min(strongest / (full * WEAK));
     if survival >= 1.0 {
         return true;
     }
@@ -45,6 +52,7 @@ mod tests {
                     let on = survives(
                         &rules,
                         order,
+                        1.0,
                         &mut throughput,
                         (f64::from(i) + 0.5) / f64::from(n),
                     );

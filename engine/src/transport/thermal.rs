@@ -1,76 +1,27 @@
-//! Emitted radiance, backward from the sensor, in absolute units.
-
 use glam::DVec3;
 
-use super::directions::{Means, Rounds, projections, walk_views};
-use super::image::walk_pixels;
-use super::{Camera, ImageOutcome, ViewsOutcome, Walk, Watch, roulette};
+use super::{Walk, roulette};
 use crate::accel::{Hit, Ray};
-use crate::components::{Stop, View};
 use crate::extract::{Stage, Thermal};
-use crate::sampling::{Key, Sampler};
+use crate::sampling::Sampler;
 
-/// Emitted radiance of each pixel, W m⁻² sr⁻¹ nm⁻¹; 0 in bands that hold none.
+/// A random walk from the sensor that gathers what surfaces and the sky emit, W m⁻² sr⁻¹ nm⁻¹; 0 in
+/// bands that hold no emission.
 ///
-/// At each point of a random walk the surface adds `(1 - ρ - τ) B(T)` with the reflectance of the
-/// side that is seen, and the sky adds its radiance where the walk leaves the scene. Nothing of the
-/// sun is in it. `T` is the sunlit temperature where the sun is visible from the point, on whichever
-/// side of the surface: a leaf is too thin for two temperatures.
-#[must_use]
-pub fn measure_image_thermal(
-    stage: &Stage,
-    camera: &Camera,
-    samples: u32,
-    key: Key,
-    watch: Watch<'_>,
-) -> ImageOutcome {
-    let path = || ThermalPath::new(stage);
-    walk_pixels(stage, (camera, samples), key, watch, stage.bands, path)
-}
-
-/// Emitted radiance of what each view sees of the scene, shape `[views, bands]`, see
-/// [`measure_image_thermal`]; `elapsed` tells the seconds since the start.
-///
-/// # Panics
-/// If there is no condition to end.
-#[must_use]
-pub fn measure_directions_thermal(
-    stage: &Stage,
-    views: &[View],
-    until: &[Stop],
-    key: Key,
-    elapsed: &dyn Fn() -> f64,
-    watch: Watch<'_>,
-) -> ViewsOutcome {
-    let projections = projections(stage, views);
-    // The last column counts the rays that met the scene.
-    let columns = stage.bands + 1;
-    Rounds::measure(
-        (views.len(), columns),
-        until,
-        (elapsed, watch),
-        |range, rows| walk_views(stage, &projections, range, key, rows, || ThermalPath::new(stage)),
-        |rows, _| Means::of_met(rows).median_relative_error(),
-    )
-    .of_met()
-}
-
-/// A random walk from the sensor that gathers what surfaces and the sky emit.
+/// At each point the surface adds `(1 - ρ - τ) B(T)` with the reflectance of the side that is seen,
+/// and the sky adds its radiance where the walk leaves the scene. Nothing of the sun is in it. `T` is
+/// the sunlit temperature where the sun is visible from the point, on whichever side.
 #[derive(Clone, Debug)]
-struct ThermalPath {
+pub(super) struct ThermalPath {
     throughput: Vec<f32>,
-    /// Shape `[bands + 1]` or longer; behind the bands stands a 1.
     radiance: Vec<f32>,
     rays: u64,
 }
 
 impl ThermalPath {
-    fn new(stage: &Stage) -> Self {
-        Self {
-            throughput: vec![0.0; stage.lanes()],
-            radiance: vec![0.0; stage.lanes() + 1],
-            rays: 0,
-        }
+    pub(super) fn new(stage: &Stage) -> Self {
+        let dark = vec![0.0; stage.lanes()];
+        Self { throughput: dark.clone(), radiance: dark, rays: 0 }
     }
 
     fn closest(&mut self, stage: &Stage, ray: &Ray) -> Option<Hit> {
@@ -86,13 +37,8 @@ impl ThermalPath {
         (hit, scattered): (&Hit, &[f32]),
         sampler: &mut Sampler,
     ) {
-        let warmth = &thermal.surfaces[hit.surface as usize];
-        let is_sunlit = warmth.knows_sun
-            && stage.light.sun.as_ref().is_some_and(|sun| {
-                self.rays += 1;
-                !stage.geometry.occluded(&hit.leave(sun.towards(sampler)))
-            });
-        let black = if is_sunlit { &warmth.sunlit } else { &warmth.shaded };
+        let (black, rays) = thermal.black_body(stage, hit, sampler);
+        self.rays += rays;
         let paths = self.radiance.iter_mut().zip(&self.throughput);
         for ((radiance, weight), (black, scattered)) in paths.zip(black.iter().zip(scattered)) {
             *radiance += weight * (1.0 - scattered) * black;
@@ -133,7 +79,7 @@ impl ThermalPath {
             for (weight, factor) in self.throughput.iter_mut().zip(scattered.spectrum) {
                 *weight *= factor * scattered.scale;
             }
-            if !roulette::survives(&stage.rules, order, &mut self.throughput, chance) {
+            if !roulette::survives(&stage.rules, order, 1.0, &mut self.throughput, chance) {
                 return true;
             }
             ray = hit.leave(scattered.direction);
@@ -144,16 +90,13 @@ impl ThermalPath {
 impl Walk for ThermalPath {
     fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
         self.radiance.fill(0.0);
-        self.radiance[stage.bands] = 1.0;
         let Some(thermal) = &stage.thermal else { return false };
-        // Padding behind the bands has no weight, so the 1 there stays.
         self.walk(stage, thermal, ray, sampler)
     }
 
     fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
         let Some(thermal) = &stage.thermal else { return false };
-        self.radiance[..thermal.sky.len()].copy_from_slice(&thermal.sky);
-        self.radiance[stage.bands] = 1.0;
+        self.radiance.copy_from_slice(&thermal.sky);
         direction.z > 0.0
     }
 

@@ -7,7 +7,7 @@ use super::super::scene::{
 };
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
-use super::thermal::check_emission;
+use super::thermal::{check_emission, check_photon_emission};
 
 /// An image or a map may hold so many values, bands included: 16 GiB as f64.
 pub(super) const VALUES: f64 = 2_147_483_648.0;
@@ -25,7 +25,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
         let path = format!("sensors.{name}");
         if let Some(measures) = sensor.image_measures() {
             check_components(&format!("{path}.measure"), measures, scene, report);
-            check_emission(&path, measures, sensor, scene, report);
+            check_emission(&path, measures, scene, report);
         }
         match sensor {
             Sensor::Orthographic { measure, .. } => {
@@ -49,9 +49,10 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
                 report.above_zero(&format!("{path}.per_m2"), *per_m2);
                 let path = format!("{path}.measure");
                 check_measures(&path, measure, "Albedo", report);
-                for (index, measure) in measure.iter().enumerate() {
-                    check_photon_measure(&format!("{path}[{index}]"), measure, scene, report);
+                for (index, one) in measure.iter().enumerate() {
+                    check_photon_measure(&format!("{path}[{index}]"), one, scene, report);
                 }
+                check_photon_emission(&path, measure, scene, report);
             }
         }
     }
@@ -108,15 +109,22 @@ fn check_photon_measure(
     report: &mut Report<'_>,
 ) {
     match measure {
-        PhotonMeasure::BrfCells(cells) => {
+        PhotonMeasure::BrfCells(cells) | PhotonMeasure::RadianceCells(cells) => {
             if !(4..=100_000).contains(cells) {
                 let message = format!("expected 4 to 100000 cells, found {cells}");
-                report.error(path, message, "150 is usual: `BrfCells(150)`");
+                report.error(path, message, "150 is usual");
             }
         }
-        PhotonMeasure::BrfViews(views) => check_views(path, views, scene, report),
-        PhotonMeasure::Albedo | PhotonMeasure::Orders => {}
-        PhotonMeasure::BrfCones(cones) => check_cones(path, cones, report),
+        PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
+            check_views(path, views, scene, report);
+        }
+        PhotonMeasure::Albedo
+        | PhotonMeasure::Orders
+        | PhotonMeasure::Exitance
+        | PhotonMeasure::BrightnessTemperature => {}
+        PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {
+            check_cones(path, cones, report);
+        }
         PhotonMeasure::Fapar { layer_m } => {
             check_layers(&format!("{path}.layer_m"), layer_m, report);
         }
@@ -150,7 +158,7 @@ fn check_components(path: &str, measures: &[ImageMeasure], scene: &Scene, report
 
 fn check_cones(path: &str, cones: &[(f64, f64, f64)], report: &mut Report<'_>) {
     if cones.is_empty() {
-        let help = "write zenith, azimuth and full angle: `BrfCones([(30.0, 90.0, 5.0)])`";
+        let help = "write zenith, azimuth and full angle: `[(30.0, 90.0, 5.0)]`";
         report.error(path, "the list of cones is empty", help);
     }
     for (index, (zenith, azimuth, full)) in cones.iter().enumerate() {

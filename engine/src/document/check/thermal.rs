@@ -1,7 +1,7 @@
 //! Temperatures, and what is measured of them.
 
 use super::super::scene::{
-    BandSource, ImageMeasure, Scene, Sensor, System, Temperature, ThermalSky,
+    Band, BandSource, ImageMeasure, PhotonMeasure, Scene, Sensor, Temperature, ThermalSky,
 };
 use super::Report;
 use super::spectrum::{Quantity, check_spectrum};
@@ -53,37 +53,46 @@ pub(super) fn check_temperatures(scene: &Scene, report: &mut Report<'_>) {
 pub(super) fn check_emission(
     path: &str,
     measures: &[ImageMeasure],
-    sensor: &Sensor,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let is_forward = matches!(
-        sensor,
-        Sensor::Orthographic { system: System::Forward, .. }
-            | Sensor::Perspective { system: System::Forward, .. }
-            | Sensor::Fisheye { system: System::Forward, .. }
-            | Sensor::Directions { system: System::Forward, .. }
-    );
-    let emits = scene.bands.iter().any(super::super::scene::Band::emits);
     for (index, measure) in measures.iter().enumerate() {
-        let at = format!("{path}.measure[{index}]");
-        if *measure == ImageMeasure::BrightnessTemperature && !emits && report.is_whole("bands") {
-            let message =
-                "a brightness temperature is that of emitted radiance, and no band holds any";
-            let help = "bands beyond 3000 nm hold it, and those with `source: Emission`";
-            report.error(&at, message, help);
-        } else if measure.is_radiance() && emits && is_forward {
-            let message = "`Forward` follows the light of sun and sky, and no emitted radiance";
-            let help = "write `system: Backward`";
-            report.error(&at, message, help);
+        if *measure == ImageMeasure::BrightnessTemperature {
+            check_band(&format!("{path}.measure[{index}]"), scene, report);
         }
+    }
+}
+
+/// What photons can measure of emission.
+pub(super) fn check_photon_emission(
+    path: &str,
+    measures: &[PhotonMeasure],
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    let asked = |measure: &PhotonMeasure| matches!(measure, PhotonMeasure::BrightnessTemperature);
+    let Some(index) = measures.iter().position(asked) else { return };
+    let at = format!("{path}[{index}]");
+    check_band(&at, scene, report);
+    if !measures.iter().any(PhotonMeasure::is_radiance) && report.is_whole(path) {
+        let message = "a brightness temperature is that of a radiance, and none is measured here";
+        report.error(&at, message, "write, for example, `RadianceViews(List([(0.0, 0.0)]))` too");
+    }
+}
+
+/// A band that holds emission.
+fn check_band(at: &str, scene: &Scene, report: &mut Report<'_>) {
+    if !scene.bands.iter().any(Band::emits) && report.is_whole("bands") {
+        let message = "a brightness temperature is that of emitted radiance, and no band holds any";
+        let help = "bands beyond 3000 nm hold it, and those with `source: Emission`";
+        report.error(at, message, help);
     }
 }
 
 /// Whether any sensor measures light of sun and sky: gaps are there in the dark too, emission needs
 /// no light, and the four components ask for a sun themselves.
 pub(super) fn needs_light(scene: &Scene) -> bool {
-    let reflects = scene.bands.iter().any(super::super::scene::Band::reflects);
+    let reflects = scene.bands.iter().any(Band::reflects);
     let of_band = |measure: &ImageMeasure| match measure {
         ImageMeasure::Brf | ImageMeasure::Orders => true,
         ImageMeasure::Radiance => reflects,
@@ -92,10 +101,14 @@ pub(super) fn needs_light(scene: &Scene) -> bool {
         }
         ImageMeasure::FourComponents | ImageMeasure::GapFraction => false,
     };
+    let of_photons = |measure: &PhotonMeasure| match measure {
+        PhotonMeasure::BrightnessTemperature | PhotonMeasure::Orders => false,
+        measure => reflects || !measure.is_absolute(),
+    };
     scene.sensors.is_empty()
-        || scene.sensors.values().any(|sensor| match sensor.image_measures() {
-            Some(measures) => measures.iter().any(of_band),
-            None => true,
+        || scene.sensors.values().any(|sensor| match sensor {
+            Sensor::Photons { measure, .. } => measure.iter().any(of_photons),
+            other => other.image_measures().into_iter().flatten().any(of_band),
         })
 }
 

@@ -102,9 +102,10 @@ choice! {
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
-        /// Photon packets from sun and sky.
+        /// Photon packets from sun and sky, and from what surfaces and `thermal_sky` emit.
         Photons {
-            /// Packets a square metre of the terrain's rectangle.
+            /// Packets a square metre of the terrain's rectangle; of emitted light, lines through the
+            /// scene along each of which several start.
             per_m2: f64 = 1000.0,
             /// What to count them for.
             measure: Vec<PhotonMeasure> = vec![PhotonMeasure::Albedo],
@@ -193,6 +194,18 @@ choice! {
         BrfCones(Vec<(f64, f64, f64)> => "[(30.0, 90.0, 5.0)]"),
         /// Reflected over incident flux.
         Albedo,
+        /// Radiance in so many equal-area cells of the hemisphere, W m⁻² sr⁻¹ nm⁻¹, from the sources
+        /// that the band names; of an isolated scene, over the terrain's rectangle.
+        RadianceCells(u32 => "150"),
+        /// The same towards directions, by virtual photons.
+        RadianceViews(Views => "PrincipalPlane"),
+        /// The same within cones: (zenith, azimuth, full opening angle), degrees.
+        RadianceCones(Vec<(f64, f64, f64)> => "[(30.0, 90.0, 5.0)]"),
+        /// Flux density that leaves upwards, W m⁻² nm⁻¹, from the sources that the band names.
+        Exitance,
+        /// Temperature of the black body of each radiance that this sensor measures, K, in bands that
+        /// hold emission.
+        BrightnessTemperature,
         /// Splits this sensor's albedo and BRF as RAMI does: `_uc` (scattered once, by the ground),
         /// `_co_sgl` (once, by anything else) and `_mlt` (more often).
         Orders,
@@ -202,7 +215,8 @@ choice! {
             /// Thickness of a layer, m, or the heights of all borders between layers.
             layer_m: Layers = Layers::Thickness(1.0),
         },
-        /// Down- and upwelling flux density, W m⁻² nm⁻¹, on the terrain and at the top of the scene.
+        /// Down- and upwelling flux density, W m⁻² nm⁻¹, on the terrain and at the top of the scene,
+        /// from the sources that the band names.
         Fluxes {
             /// Side of a square pixel, m.
             pixel_m: f64 = 1.0,
@@ -256,7 +270,7 @@ choice! {
     pub enum System ("a transport system") {
         /// Paths from the sensor.
         Backward,
-        /// Photon packets from sun and sky.
+        /// Photon packets from sun and sky, or from what emits.
         Forward,
     }
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Reader, Variant};
 use super::super::encode::{Encode, Text};
 use super::super::syntax::Node;
-use super::{Band, ImageMeasure, Material, Scene, Sensor, Spectrum};
+use super::{Band, ImageMeasure, Material, PhotonMeasure, Scene, Sensor, Spectrum};
 
 /// Beyond this wavelength surfaces on Earth radiate more than they reflect of the sun, nm.
 const THERMAL_NM: f64 = 3000.0;
@@ -112,12 +112,12 @@ impl Scene {
     #[must_use]
     pub fn measures_emission(&self) -> bool {
         self.bands.iter().any(Band::emits)
-            && self
-                .sensors
-                .values()
-                .filter_map(Sensor::image_measures)
-                .flatten()
-                .any(ImageMeasure::is_radiance)
+            && self.sensors.values().any(|sensor| match sensor {
+                Sensor::Photons { measure, .. } => measure.iter().any(PhotonMeasure::is_absolute),
+                other => {
+                    other.image_measures().into_iter().flatten().any(ImageMeasure::is_radiance)
+                }
+            })
     }
 }
 
@@ -126,5 +126,19 @@ impl ImageMeasure {
     #[must_use]
     pub const fn is_radiance(&self) -> bool {
         matches!(self, Self::Radiance | Self::BrightnessTemperature)
+    }
+}
+
+impl PhotonMeasure {
+    /// Whether it is a radiance.
+    #[must_use]
+    pub const fn is_radiance(&self) -> bool {
+        matches!(self, Self::RadianceCells(_) | Self::RadianceViews(_) | Self::RadianceCones(_))
+    }
+
+    /// Whether it holds light in absolute units, emitted or reflected, whichever the bands hold.
+    #[must_use]
+    pub const fn is_absolute(&self) -> bool {
+        self.is_radiance() || matches!(self, Self::Exitance | Self::Fluxes { .. })
     }
 }

@@ -14,7 +14,7 @@ pub struct EnergyCounter {
 }
 
 impl EnergyCounter {
-    /// Power of all packets when they start.
+    /// Power of all packets when they start, from outside or from a surface.
     pub const INCIDENT: usize = 0;
     /// Power that is scattered out through the scene's rectangle at the top.
     pub const REFLECTED: usize = 1;
@@ -33,7 +33,9 @@ impl Counter for EnergyCounter {
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
         match event {
-            Event::Start { weight, .. } => sums.add(Self::INCIDENT, weight, 1.0),
+            Event::Start { weight, .. } | Event::Emission { weight, .. } => {
+                sums.add(Self::INCIDENT, weight, 1.0);
+            }
             Event::Arrival { hit, wo, weight, .. } => {
                 let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);
                 sums.add_with(Self::ABSORBED + hit.surface as usize, |lane| {

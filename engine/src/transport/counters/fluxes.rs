@@ -90,6 +90,11 @@ impl Counter for FluxCounter {
                     let up = stage.surface(hit).bsdf.reflected(hit.normal, *wo);
                     add(hit.point, true, &|lane| (weight[lane] * up[lane]).into());
                 }
+                (FluxLevel::Terrain, Event::Emission { hit, weight, .. })
+                    if stage.is_ground(hit) =>
+                {
+                    add(hit.point, true, &|lane| weight[lane].into());
+                }
                 // Nothing is above the top: light comes down through it once and goes up once.
                 (FluxLevel::Top, Event::Start { ray, weight }) => {
                     let along = (stage.top() - ray.origin.z) / ray.direction.z;

@@ -73,7 +73,7 @@ impl Counter for LayerCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, wo, order, met_ground, weight } = event else { return 0 };
+        let Event::Arrival { hit, wo, order, met_ground, weight, .. } = event else { return 0 };
         let surface = hit.surface as usize;
         let is_ground = stage.is_ground(hit);
         let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);

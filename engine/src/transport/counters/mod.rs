@@ -23,7 +23,8 @@ pub use layers::{GROUND_TERMS, LayerCounter};
 pub use views::ViewCounter;
 
 /// An event in a packet's life. Weights, shape `[lanes]`, are in units of the power that falls on
-/// the scene's rectangle over the number of packets.
+/// the scene's rectangle over the number of packets; of emitted light, in W m⁻² nm⁻¹ times the area
+/// of the rectangle over the number of lines.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
     /// It starts.
@@ -31,6 +32,15 @@ pub enum Event<'a> {
         /// From where and in which direction.
         ray: &'a Ray,
         /// Its weight.
+        weight: &'a [f32],
+    },
+    /// A surface emits it.
+    Emission {
+        /// From where.
+        hit: &'a Hit,
+        /// In which direction.
+        ray: &'a Ray,
+        /// Its weight: over all lines, directions follow Lambert's law.
         weight: &'a [f32],
     },
     /// It flies.
@@ -48,10 +58,12 @@ pub enum Event<'a> {
         hit: &'a Hit,
         /// Unit vector to where it comes from.
         wo: DVec3,
-        /// How often it was scattered before.
+        /// How many surfaces it has left before.
         order: u32,
-        /// Whether any of that was at the ground.
+        /// Whether any of them was the ground.
         met_ground: bool,
+        /// Whether scattering here counts no more.
+        is_last: bool,
         /// Its weight.
         weight: &'a [f32],
     },
@@ -66,9 +78,10 @@ pub enum Event<'a> {
     Escape {
         /// Its last flight.
         ray: &'a Ray,
-        /// How often it was scattered.
+        /// How many surfaces it has left: as often as it was scattered, or once more if a surface
+        /// emitted it.
         order: u32,
-        /// Whether any of that was at the ground.
+        /// Whether any of them was the ground.
         met_ground: bool,
         /// Its weight.
         weight: &'a [f32],

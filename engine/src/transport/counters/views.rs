@@ -1,9 +1,11 @@
+use glam::DVec3;
+
 use super::{Counter, Event};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::transport::Projection;
 
-/// Virtual photons: at each scattering event, the power that a surface sends towards each of several
+/// Virtual photons: at each scattering or emission, the power that a surface sends towards each of several
 /// parallel projections, per steradian (LESS manual eq. 7); cells are the pixels of each projection
 /// and then their total, one projection after the other.
 ///
@@ -50,14 +52,26 @@ impl Counter for ViewCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, wo, order, weight, .. } = event else { return 0 };
-        if *order >= stage.rules.max_order {
-            return 0;
-        }
-        let bsdf = &stage.surface(hit).bsdf;
+        let (hit, weight) = match event {
+            Event::Arrival { is_last: false, hit, weight, .. }
+            | Event::Emission { hit, weight, .. } => (*hit, *weight),
+            _ => return 0,
+        };
+        // π f towards the view, or 1 on the side that emits.
+        let factor = |towards: DVec3| match event {
+            Event::Arrival { wo, .. } => {
+                stage.surface(hit).bsdf.eval(hit.normal, *wo, towards).map(Some)
+            }
+            Event::Emission { ray, .. } => {
+                let is_same_side =
+                    (hit.normal.dot(ray.direction) >= 0.0) == (hit.normal.dot(towards) >= 0.0);
+                is_same_side.then_some(None)
+            }
+            _ => None,
+        };
         let mut rays = 0;
         for (projection, &first) in self.projections.iter().zip(&self.first_cells) {
-            let Some(spectrum) = bsdf.eval(hit.normal, *wo, projection.towards) else { continue };
+            let Some(spectrum) = factor(projection.towards) else { continue };
             let mut is_visible = None;
             projection.for_each_pixel(hit.point, stage, |pixel| {
                 let visible = *is_visible.get_or_insert_with(|| {
@@ -69,7 +83,8 @@ impl Counter for ViewCounter {
                     let scale = cosine / std::f64::consts::PI;
                     for cell in [first + pixel, first + projection.pixels()] {
                         sums.add_with(cell, |lane| {
-                            f64::from(weight[lane] * spectrum[lane]) * scale
+                            let factor = spectrum.map_or(1.0, |spectrum| spectrum[lane]);
+                            f64::from(weight[lane] * factor) * scale
                         });
                     }
                 }
