@@ -55,7 +55,8 @@ impl<'a> Glow<'a> {
             let bsdf = &stage.surface(&hit).bsdf;
             for direction in [-line.direction, line.direction] {
                 // Nothing is below the ground.
-                if stage.is_ground(&hit) && direction.z < 0.0 {
+                let is_above = (hit.normal.dot(direction) >= 0.0) == (hit.normal.z >= 0.0);
+                if stage.is_ground(&hit) && !is_above {
                     continue;
                 }
                 let scattered = bsdf.scattered(hit.normal, direction);
