@@ -6,6 +6,8 @@ mod advice;
 mod broken;
 #[path = "language/hostile.rs"]
 mod hostile;
+#[path = "language/include.rs"]
+mod include;
 #[path = "language/reading.rs"]
 mod reading;
 #[path = "language/writing.rs"]

@@ -3,6 +3,8 @@
 //! Ours, because exmex (0.21) reads `-2^2` as 4, reads neither `1e-3` nor `max(1, max(2, 3))`, takes
 //! a parameter called `e` for Euler's number and does not say where a formula is wrong.
 
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::f64::consts;
 use std::ops::Range;
 
@@ -32,16 +34,31 @@ impl FormulaError {
     }
 }
 
-/// Value of a formula over `params`, of which those without a value are NaN.
+/// What the names in a formula mean.
+#[derive(Debug)]
+pub(super) struct Scope<'a> {
+    /// Parameters that have been settled, by their full names; those without a value are NaN.
+    pub(super) params: &'a IndexMap<String, f64>,
+    /// What the full names of the formula's own file start with.
+    pub(super) namespace: &'a str,
+    /// Parameters that are settled later.
+    pub(super) later: &'a HashSet<&'a str>,
+    /// What names of included files start with that could not be read.
+    pub(super) lost: &'a [String],
+    /// Parameters that some formula has used.
+    pub(super) used: &'a RefCell<HashSet<String>>,
+}
+
+/// Value of a formula.
 ///
 /// # Errors
 /// Where it is not a formula, names what is unknown, or comes to no finite number.
-pub(super) fn evaluate(formula: &str, params: &IndexMap<String, f64>) -> Result {
+pub(super) fn evaluate(formula: &str, scope: &Scope<'_>) -> Result {
     let error = |message: String| FormulaError::new(0..formula.len(), message, None);
     if formula.len() > LENGTH {
         return Err(error(format!("this formula is longer than {LENGTH} bytes")));
     }
-    let mut parser = Parser { text: formula, at: 0, depth: 0, params };
+    let mut parser = Parser { text: formula, at: 0, depth: 0, scope };
     let value = parser.sum()?;
     parser.skip_blank();
     if parser.at < formula.len() {
@@ -91,7 +108,7 @@ struct Parser<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
-    params: &'a IndexMap<String, f64>,
+    scope: &'a Scope<'a>,
 }
 
 type Result = std::result::Result<f64, FormulaError>;
@@ -186,7 +203,14 @@ impl Parser<'_> {
     fn name(&mut self) -> Result {
         let start = self.at;
         let rest = &self.text[start..];
-        let length = rest.find(|c: char| c != '_' && !c.is_alphanumeric()).unwrap_or(rest.len());
+        let letter = |c: char| c == '_' || c.is_alphabetic();
+        let mut length = 0;
+        // `birch.lai` is one name, `birch.5` is none.
+        while let Some(c) = rest[length..].chars().next()
+            && (letter(c) || c.is_numeric() || c == '.' && rest[length + 1..].starts_with(letter))
+        {
+            length += c.len_utf8();
+        }
         let name = &rest[..length];
         self.at += length;
         if self.take('(') {
@@ -194,19 +218,39 @@ impl Parser<'_> {
         }
         let at = start..start + length;
         let constant = || CONSTANTS.iter().find(|(known, _)| *known == name).map(|&(_, v)| v);
-        match self.params.get(name).copied().or_else(constant) {
+        let full = format!("{}{name}", self.scope.namespace);
+        let param = self.scope.params.get(&full).copied();
+        match param.or_else(constant) {
             Some(value) if value.is_nan() => Err(FormulaError { at, message: None, help: None }),
-            Some(value) => Ok(value),
-            None => Err(self.unknown_name(name, at)),
+            Some(value) => {
+                if param.is_some() {
+                    self.scope.used.borrow_mut().insert(full);
+                }
+                Ok(value)
+            }
+            None if self.scope.lost.iter().any(|lost| full.starts_with(lost)) => {
+                Err(FormulaError { at, message: None, help: None })
+            }
+            None => Err(self.unknown_name(name, &full, at)),
         }
     }
 
-    fn unknown_name(&self, name: &str, at: Range<usize>) -> FormulaError {
+    /// Parameters by the names that the formula's file has for them.
+    fn params(&self) -> impl Iterator<Item = &str> {
+        self.scope.params.keys().filter_map(|name| name.strip_prefix(self.scope.namespace))
+    }
+
+    fn unknown_name(&self, name: &str, full: &str, at: Range<usize>) -> FormulaError {
+        if self.scope.later.contains(full) {
+            let message = format!("the parameter `{name}` has no value yet here");
+            let help = "a parameter may use those above it, neither itself nor those below";
+            return FormulaError::new(at, message, Some(help.to_owned()));
+        }
         if FUNCTIONS.iter().any(|(function, _)| *function == name) {
             let message = format!("the function `{name}` needs a value");
             return FormulaError::new(at, message, Some(format!("write `{name}(..)`")));
         }
-        let names: Vec<_> = self.params.keys().map(String::as_str).collect();
+        let names: Vec<_> = self.params().collect();
         let help = if names.is_empty() {
             format!("define it: `params: {{ \"{name}\": 1.0 }}`")
         } else {
@@ -237,7 +281,7 @@ impl Parser<'_> {
             .map(|(known, _)| *known)
             .chain(FUNCTIONS_OF_TWO.iter().map(|(known, _)| *known))
             .collect();
-        let help = if self.params.contains_key(name) {
+        let help = if self.params().any(|param| param == name) {
             format!("`{name}` is a parameter; to multiply, write `{name} * (..)`")
         } else {
             suggestion(name, &known, "functions")
@@ -294,15 +338,21 @@ mod tests {
     use indexmap::IndexMap;
     use proptest::prelude::*;
 
-    use super::{FormulaError, evaluate};
+    use super::{FormulaError, Scope, evaluate};
+
+    fn over(params: &IndexMap<String, f64>, formula: &str) -> super::Result {
+        let (later, used) = Default::default();
+        let scope = Scope { params, namespace: "", later: &later, lost: &[], used: &used };
+        evaluate(formula, &scope)
+    }
 
     fn value(formula: &str) -> f64 {
         let params = IndexMap::from([("n".to_owned(), 3.0), ("e".to_owned(), 0.5)]);
-        evaluate(formula, &params).expect("a value")
+        over(&params, formula).expect("a value")
     }
 
     fn error(formula: &str) -> FormulaError {
-        evaluate(formula, &IndexMap::from([("sza".to_owned(), 30.0)])).expect_err("no value")
+        over(&IndexMap::from([("sza".to_owned(), 30.0)]), formula).expect_err("no value")
     }
 
     #[test]
@@ -383,7 +433,7 @@ mod tests {
             let other = exmex::parse::<f64>(&formula).expect("a formula");
             let names = vec![3.0; other.var_names().len()];
             let other = other.eval(&names).expect("a value");
-            match evaluate(&formula, &params) {
+            match over(&params, &formula) {
                 Ok(own) => prop_assert_eq!(own.to_bits(), other.to_bits(), "{}", formula),
                 Err(error) => prop_assert!(!other.is_finite(), "{formula}: {error:?}"),
             }

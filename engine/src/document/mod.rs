@@ -7,6 +7,7 @@ mod decode;
 mod diagnostic;
 mod encode;
 mod formula;
+mod include;
 mod params;
 mod read;
 mod scene;

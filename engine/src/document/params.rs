@@ -1,39 +1,62 @@
 //! Parameters and formulas: settles `params`, then gives every formula its number.
 
-use std::collections::HashMap;
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
 
 use indexmap::IndexMap;
 
 use super::decode::Reader;
 use super::diagnostic::{Diagnostic, unknown_name};
-use super::formula::evaluate;
+use super::formula::{Scope, evaluate};
 use super::read::Options;
 use super::syntax::{BadNumber, Field, Node, Span, Step, Value};
 
-/// Values of the parameters: of the file, of the variant, of the options, the later before the
-/// earlier. NaN where a value could not be read.
+/// The parameters of a scene, and what its formulas have made of them.
+pub(super) struct Params {
+    /// Value of each; NaN where it could not be read.
+    pub(super) values: IndexMap<String, f64>,
+    /// What names of included files start with that could not be read.
+    lost: Vec<String>,
+    used: RefCell<HashSet<String>>,
+}
+
+impl Params {
+    /// Parameters of the scene file that no formula has used.
+    pub(super) fn unused(&self) -> Vec<String> {
+        let used = self.used.borrow();
+        let own = self.values.keys().filter(|name| !name.contains('.'));
+        own.filter(|name| !used.contains(*name)).cloned().collect()
+    }
+}
+
+/// Values of the parameters: of the file, of the variant, of the point of the sweep, of the options,
+/// the later before the earlier.
 pub(super) fn settle_params<'a>(
     tree: &'a Node,
     options: &Options,
+    lost: Vec<String>,
     reader: &mut Reader<'a>,
-) -> IndexMap<String, f64> {
+) -> Params {
     let variant = options.variant.as_deref().and_then(|name| chosen_variant(tree, name, reader));
-    let mut params = IndexMap::<String, f64>::new();
+    let mut params = Params { values: IndexMap::new(), lost, used: RefCell::default() };
+    let mut later: HashSet<_> = entries(key(tree, "params")).map(|(name, _)| name).collect();
     for (name, node) in entries(key(tree, "params")) {
         let own = reader.within(Step::Key("params"), |reader| {
             reader.within(Step::Key(name), |reader| match &node.value {
-                Value::Formula(formula) => compute(formula, node, &params, reader),
+                Value::Formula(formula) => compute(formula, node, &params, &later, reader),
                 _ => plain_number(node),
             })
         });
         let varied = variant.iter().flatten().find(|(varied, _)| *varied == name);
-        let set = options.set.iter().rev().find(|(set, _)| set == name);
-        let value = set.map(|&(_, value)| value).or(varied.map(|&(_, value)| value)).or(own);
-        params.insert(name.to_owned(), value.unwrap_or(f64::NAN));
+        let mut given = options.set.iter().rev().chain(options.point.iter().rev());
+        let given = given.find(|(given, _)| given == name).map(|&(_, value)| value);
+        let value = given.or(varied.map(|&(_, value)| value)).or(own);
+        later.remove(name);
+        params.values.insert(name.to_owned(), value.unwrap_or(f64::NAN));
     }
-    for (name, value) in &options.set {
-        if !params.contains_key(name) {
-            let known = params.keys().map(String::as_str);
+    for (name, value) in options.set.iter().chain(&options.point) {
+        if !params.values.contains_key(name) {
+            let known = params.values.keys().map(String::as_str);
             let message = format!("no parameter `{name}` to set");
             reader.push(Diagnostic { message, ..unknown_name("params", "parameter", name, known) });
         } else if !value.is_finite() {
@@ -46,7 +69,7 @@ pub(super) fn settle_params<'a>(
 
 /// One walk over the tree: evaluates formulas, and reports repeated keys and numbers that no scene
 /// can hold.
-pub(super) fn survey<'a>(tree: &'a Node, params: &IndexMap<String, f64>, reader: &mut Reader<'a>) {
+pub(super) fn survey<'a>(tree: &'a Node, params: &Params, reader: &mut Reader<'a>) {
     walk(tree, params, true, reader);
 }
 
@@ -64,14 +87,14 @@ fn chosen_variant<'a>(
     Some(entries(Some(node)).filter_map(|(name, node)| Some((name, plain_number(node)?))).collect())
 }
 
-fn key<'a>(tree: &'a Node, name: &str) -> Option<&'a Node> {
+pub(super) fn key<'a>(tree: &'a Node, name: &str) -> Option<&'a Node> {
     match &tree.inner().value {
         Value::Record(fields) => fields.iter().find(|field| field.name == name).map(|f| &f.value),
         _ => None,
     }
 }
 
-fn entries(map: Option<&Node>) -> impl Iterator<Item = (&str, &Node)> {
+pub(super) fn entries(map: Option<&Node>) -> impl Iterator<Item = (&str, &Node)> {
     let entries = match map.map(|map| &map.inner().value) {
         Some(Value::Map(entries)) => entries.as_slice(),
         _ => &[],
@@ -82,7 +105,7 @@ fn entries(map: Option<&Node>) -> impl Iterator<Item = (&str, &Node)> {
     })
 }
 
-fn plain_number(node: &Node) -> Option<f64> {
+pub(super) fn plain_number(node: &Node) -> Option<f64> {
     match node.value {
         Value::Float(value) => Some(value),
         Value::Integer { negative, magnitude } => {
@@ -95,10 +118,18 @@ fn plain_number(node: &Node) -> Option<f64> {
 fn compute<'a>(
     formula: &str,
     node: &'a Node,
-    params: &IndexMap<String, f64>,
+    params: &Params,
+    later: &HashSet<&str>,
     reader: &mut Reader<'a>,
 ) -> Option<f64> {
-    let value = match evaluate(formula, params) {
+    let scope = Scope {
+        params: &params.values,
+        namespace: reader.namespace(node),
+        later,
+        lost: &params.lost,
+        used: &params.used,
+    };
+    let value = match evaluate(formula, &scope) {
         Ok(value) => Some(value),
         Err(error) => {
             match error.message {
@@ -127,17 +158,12 @@ fn within_text(text: &str, span: Span, formula: &str, at: &std::ops::Range<usize
     }
 }
 
-fn walk<'a>(
-    node: &'a Node,
-    params: &IndexMap<String, f64>,
-    is_scene: bool,
-    reader: &mut Reader<'a>,
-) {
+fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader<'a>) {
     let node = node.inner();
     match &node.value {
         Value::BadNumber(bad) => report_bad_number(node, *bad, reader),
         Value::Formula(formula) => {
-            compute(formula, node, params, reader);
+            compute(formula, node, params, &HashSet::new(), reader);
         }
         Value::List(items) | Value::Tuple(items) => {
             for (index, item) in items.iter().enumerate() {
@@ -148,7 +174,8 @@ fn walk<'a>(
             report_repeated(fields.iter().map(|f| (f.name.as_str(), f.name_span)), reader);
             for Field { name, value, .. } in fields {
                 // `params` are settled, variants hold plain numbers, and a title is what it says.
-                let own = is_scene && matches!(name.as_str(), "params" | "variants" | "title");
+                let own =
+                    is_scene && matches!(name.as_str(), "params" | "variants" | "sweep" | "title");
                 reader.within(Step::Key(name), |reader| match &value.inner().value {
                     Value::Formula(_) if own => {}
                     Value::Map(_) if own => walk_plain(value, reader),
@@ -172,6 +199,11 @@ fn walk<'a>(
 fn walk_plain<'a>(node: &'a Node, reader: &mut Reader<'a>) {
     match &node.inner().value {
         Value::BadNumber(bad) => report_bad_number(node, *bad, reader),
+        Value::List(items) => {
+            for (index, item) in items.iter().enumerate() {
+                reader.within(Step::Index(index), |reader| walk_plain(item, reader));
+            }
+        }
         Value::Map(entries) => {
             report_repeated(names(entries), reader);
             for (key, value) in entries {

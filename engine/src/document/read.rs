@@ -1,24 +1,29 @@
 //! Reading: a file or a text to a scene, with all that is wrong in it.
 
+use std::collections::HashSet;
 use std::io;
+use std::io::Read as _;
 use std::path::Path;
 
 use super::check::check_readable;
 use super::decode::{Decode, Findings, Reader};
-use super::diagnostic::Diagnostic;
+use super::diagnostic::{Diagnostic, Place};
+use super::include::{Included, include};
 use super::params::{settle_params, survey};
 use super::scene::Scene;
 use super::source::Source;
 use super::syntax::parse;
 
-/// A scene file may hold so many bytes; large stands belong into tables.
-const FILE_SIZE: u64 = 256 << 20;
+/// A scene may hold so many bytes, included files among them; large stands belong into tables.
+pub(super) const FILE_SIZE: u64 = 256 << 20;
 
 /// How a scene is to be read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Parameters to set, by name; they go before those of the file and of the variant.
+    /// Parameters to set, by name; they go before those of the file, of the variant and of the point.
     pub set: Vec<(String, f64)>,
+    /// Parameters at a point of a sweep; they go before those of the file and of the variant.
+    pub point: Vec<(String, f64)>,
     /// The variant to apply.
     pub variant: Option<String>,
 }
@@ -57,6 +62,8 @@ pub enum ReadError {
     Io { file: String, source: io::Error },
     #[error("{file} is a folder: name the scene file in it")]
     Folder { file: String },
+    #[error("{file} is neither a file nor a folder")]
+    NoFile { file: String },
     #[error(
         "{file} holds {bytes} bytes, more than the {limit} that a scene file may hold: put long lists into tables (CSV)"
     )]
@@ -75,16 +82,29 @@ pub enum ReadError {
 /// Where the file cannot be read, or is not RON. Whatever else is wrong with the scene is among
 /// [`Reading::diagnostics`].
 pub fn read_file(path: &Path, options: &Options) -> Result<Reading, ReadError> {
+    let text = text_of_file(path, false)?;
+    read_text(&path.display().to_string(), &text, options)
+}
+
+/// The text of a scene file. What is no file on a disk (a pipe, say) might never end or never start:
+/// whether that will do is for the caller to say.
+pub(super) fn text_of_file(path: &Path, only_files: bool) -> Result<String, ReadError> {
     let file = path.display().to_string();
     let io_error = |source| ReadError::Io { file: file.clone(), source };
     let metadata = std::fs::metadata(path).map_err(io_error)?;
     if metadata.is_dir() {
         return Err(ReadError::Folder { file });
     }
-    if metadata.len() > FILE_SIZE {
-        return Err(ReadError::TooLarge { file, bytes: metadata.len(), limit: FILE_SIZE });
+    if only_files && !metadata.is_file() {
+        return Err(ReadError::NoFile { file });
     }
-    let bytes = std::fs::read(path).map_err(io_error)?;
+    let mut bytes = Vec::new();
+    let opened = std::fs::File::open(path).map_err(io_error)?;
+    opened.take(FILE_SIZE + 1).read_to_end(&mut bytes).map_err(io_error)?;
+    let length = metadata.len().max(bytes.len() as u64);
+    if length > FILE_SIZE {
+        return Err(ReadError::TooLarge { file, bytes: length, limit: FILE_SIZE });
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let bytes = error.as_bytes();
@@ -96,16 +116,13 @@ pub fn read_file(path: &Path, options: &Options) -> Result<Reading, ReadError> {
         };
         ReadError::NotUtf8 { file: file.clone(), found }
     })?;
-    read_text(&file, &text, options)
+    refuse_odd(&file, &text)?;
+    Ok(text)
 }
 
-/// The scene of a text; `name` is what places in it are called by.
-///
-/// # Errors
-/// Where the text is not RON. Whatever else is wrong with the scene is among
-/// [`Reading::diagnostics`].
-pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, ReadError> {
-    let file = name.to_owned();
+/// Texts that cannot be a scene.
+fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
+    let file = file.to_owned();
     if text.len() as u64 > FILE_SIZE {
         return Err(ReadError::TooLarge { file, bytes: text.len() as u64, limit: FILE_SIZE });
     }
@@ -115,8 +132,19 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
     if text.contains('\0') {
         return Err(ReadError::NotUtf8 { file, found: "UTF-16 or binary".to_owned() });
     }
-    let source = Source::new(name, text);
-    let tree = parse(text).map_err(|error| {
+    Ok(())
+}
+
+/// The scene of a text; `name` is what places in it are called by, and files that it includes are
+/// relative to the folder of `name`.
+///
+/// # Errors
+/// Where the text is not RON. Whatever else is wrong with the scene is among
+/// [`Reading::diagnostics`].
+pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, ReadError> {
+    refuse_odd(name, text)?;
+    let mut source = Source::new(name, text);
+    let mut tree = parse(text).map_err(|error| {
         let place = source.place_of(error.span);
         let diagnostic = Diagnostic::error("", error.message).at(place);
         let diagnostic = Diagnostic { help: error.help, ..diagnostic };
@@ -124,16 +152,22 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
         ReadError::Syntax { diagnostic: Box::new(diagnostic), rendered }
     })?;
 
+    let Included { diagnostics, lost } = include(&mut tree, &mut source);
     let mut reader = Reader::new(&source);
-    let params = settle_params(&tree, options, &mut reader);
+    reader.start_with(diagnostics, &lost);
+    let params = settle_params(&tree, options, lost, &mut reader);
     survey(&tree, &params, &mut reader);
     let mut scene = Scene::decode(&tree, &mut reader);
-    scene.params = params;
     let Findings { mut diagnostics, dropped, broken } = reader.finish();
+    let unused = params.unused();
+    scene.params = params.values;
 
     let source = source.with_tree(tree);
     if dropped == 0 {
         diagnostics.extend(check_readable(&scene, &broken));
+    }
+    if diagnostics.is_empty() {
+        diagnostics.extend(unused.iter().map(|name| unused_param(name)));
     }
     for diagnostic in &mut diagnostics {
         if diagnostic.place.is_none() && !diagnostic.path.is_empty() {
@@ -142,10 +176,22 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
     }
     // What has no place of its own stands last.
     diagnostics.sort_by_key(|one| one.place.as_ref().map_or(u32::MAX, |place| place.span.start));
+    // A file that is included twice is wrong once.
+    let mut seen = HashSet::new();
+    diagnostics.retain(|Diagnostic { place, message, .. }| {
+        place.as_ref().is_none_or(|Place { file, line, column, .. }| {
+            seen.insert((file.clone(), *line, *column, message.clone()))
+        })
+    });
     if dropped > 0 {
         diagnostics.push(Diagnostic::error("", format!("and {dropped} more errors")));
     }
     Ok(Reading { scene, source, diagnostics })
+}
+
+fn unused_param(name: &str) -> Diagnostic {
+    Diagnostic::warning(format!("params.{name}"), format!("no formula uses the parameter `{name}`"))
+        .help(format!("write `\"={name}\"` where its value is meant, or take it out"))
 }
 
 impl Scene {

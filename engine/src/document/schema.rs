@@ -14,6 +14,8 @@ macro_rules! record {
         pub struct $name { $($(#[$field_meta])* pub $field: $type),* }
 
         impl Decode for $name {
+            const KEYS: &'static [&'static str] = &[$(stringify!($field)),*];
+
             fn expected() -> Cow<'static, str> {
                 $kind.into()
             }
@@ -25,8 +27,7 @@ macro_rules! record {
             }
 
             fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
-                const KEYS: &[&str] = &[$(stringify!($field)),*];
-                match Fields::of_record(node, stringify!($name), $kind, KEYS) {
+                match Fields::of_record(node, stringify!($name), $kind, Self::KEYS) {
                     Some(fields) => {
                         fields.refuse_others(reader);
                         Self {

@@ -5,33 +5,70 @@ use std::fmt::Write as _;
 use super::diagnostic::{Diagnostic, Place, Severity};
 use super::syntax::{Node, Span, Value};
 
-/// A scene's text, its tree, and where lines start.
+/// A scene's text and that of the files that it includes, one behind the other; its tree, and where
+/// lines start.
 #[derive(Clone, Debug)]
 pub struct Source {
-    name: String,
+    files: Vec<SourceFile>,
     text: String,
     lines: Vec<usize>,
     tree: Option<Node>,
 }
 
+/// A file of a scene.
+#[derive(Clone, Debug)]
+struct SourceFile {
+    name: String,
+    /// What its names start with in the scene: nothing, or `birch.`.
+    namespace: String,
+    /// First byte and first line in the text of all.
+    start: usize,
+    line: usize,
+}
+
 impl Source {
     pub(super) fn new(name: &str, text: &str) -> Self {
-        let after_newlines = text.match_indices('\n').map(|(at, _)| at + 1);
-        let lines = std::iter::once(0).chain(after_newlines).collect();
-        Self { name: name.to_owned(), text: text.to_owned(), lines, tree: None }
+        let mut source =
+            Self { files: Vec::new(), text: String::new(), lines: Vec::new(), tree: None };
+        source.add(name, text, "");
+        source
+    }
+
+    /// Appends a file; returns its first byte.
+    pub(super) fn add(&mut self, name: &str, text: &str, namespace: &str) -> usize {
+        if !self.text.is_empty() && !self.text.ends_with('\n') {
+            self.text.push('\n');
+        }
+        let start = self.text.len();
+        let (name, namespace) = (name.to_owned(), namespace.to_owned());
+        self.files.push(SourceFile { name, namespace, start, line: self.lines.len() });
+        self.lines.push(start);
+        self.lines.extend(text.match_indices('\n').map(|(at, _)| start + at + 1));
+        self.text.push_str(text);
+        start
+    }
+
+    fn file_at(&self, byte: usize) -> &SourceFile {
+        // Files may be empty: of those that start there, the last holds the byte.
+        &self.files[self.files.partition_point(|file| file.start <= byte).max(1) - 1]
+    }
+
+    /// What the names of a file start with: nothing, or `birch.`.
+    pub(super) fn namespace(&self, span: Span) -> &str {
+        &self.file_at(span.start as usize).namespace
     }
 
     pub(super) fn with_tree(self, tree: Node) -> Self {
         Self { tree: Some(tree), ..self }
     }
 
-    /// File, as the reader was given it.
+    /// The scene file, as the reader was given it.
     #[must_use]
     pub fn name(&self) -> &str {
-        &self.name
+        &self.files[0].name
     }
 
-    /// The whole text.
+    /// The text of all files, the scene's own first.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
@@ -60,10 +97,16 @@ impl Source {
 
     pub(super) fn place_of(&self, span: Span) -> Place {
         let at = span.start as usize;
-        let line = self.lines.partition_point(|&start| start <= at).max(1);
-        let start = self.lines[line - 1];
+        let (line, start) = self.line_at(at);
+        let file = self.file_at(at);
         let column = self.text.get(start..at).map_or(0, |before| before.chars().count()) + 1;
-        Place { file: self.name.clone(), line, column, span }
+        Place { file: file.name.clone(), line: line - file.line, column, span }
+    }
+
+    /// Line of a byte, counted from 1 through all files, and that line's first byte.
+    fn line_at(&self, at: usize) -> (usize, usize) {
+        let line = self.lines.partition_point(|&start| start <= at).max(1);
+        (line, self.lines[line - 1])
     }
 
     /// What a person reads: each diagnostic with its line of the text and a caret below it.
@@ -94,11 +137,11 @@ impl Source {
                 gutter = " ".repeat(number.len().max(2) + 3);
                 write_line(&mut out, format_args!("  --> {file}:{line}:{column}{at}"));
                 write_line(&mut out, format_args!("{gutter}|"));
-                let (excerpt, marks) = self.excerpt(line, column, span);
+                let (excerpt, marks) = self.excerpt(column, span);
                 write_line(&mut out, format_args!("  {number:>2} | {excerpt}"));
                 write_line(&mut out, format_args!("{gutter}| {marks}"));
             }
-            None => write_line(&mut out, format_args!("  --> {}{at}", self.name)),
+            None => write_line(&mut out, format_args!("  --> {}{at}", self.name())),
         }
         if let Some(advice) = help {
             write_line(&mut out, format_args!("{gutter}= help: {advice}"));
@@ -107,10 +150,10 @@ impl Source {
     }
 
     /// A line of the text, cut to a window where it is long, and the carets for the line below it.
-    fn excerpt(&self, line: usize, column: usize, span: Span) -> (String, String) {
+    fn excerpt(&self, column: usize, span: Span) -> (String, String) {
         const BEFORE: usize = 60;
         const SHOWN: usize = 110;
-        let start = self.lines.get(line - 1).copied().unwrap_or(0);
+        let (_, start) = self.line_at(span.start as usize);
         let text = self.text.get(start..).unwrap_or("");
         let text = text.lines().next().unwrap_or("");
         let skipped = (column - 1).saturating_sub(BEFORE);

@@ -30,7 +30,7 @@ fn read(text: &str) -> Reading {
 
 fn sound(text: &str) -> Scene {
     let reading = read(text);
-    assert!(reading.diagnostics.is_empty(), "{}", reading.render());
+    assert!(reading.is_sound(), "{}", reading.render());
     reading.scene
 }
 
@@ -48,7 +48,7 @@ fn red(scene: &Scene) -> f64 {
 
 fn options(set: &[(&str, f64)], variant: Option<&str>) -> Options {
     let set = set.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
-    Options { set, variant: variant.map(str::to_owned) }
+    Options { set, variant: variant.map(str::to_owned), ..Options::default() }
 }
 
 fn messages(found: &[Diagnostic]) -> Vec<String> {
@@ -148,7 +148,7 @@ fn params_are_those_of_the_file_then_of_the_variant_then_of_the_options() {
     );
     let red = |set: &[(&str, f64)], variant| {
         let reading = read_with(&text, &options(set, variant));
-        assert!(reading.diagnostics.is_empty(), "{}", reading.render());
+        assert!(reading.is_sound(), "{}", reading.render());
         red(&reading.scene)
     };
     assert_eq!(red(&[], None).to_bits(), 0.2_f64.to_bits());

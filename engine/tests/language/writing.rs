@@ -6,7 +6,7 @@ use sunfleck::document::{
     Axis, Band, BandSource, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame,
     ImageMeasure, Instances, Layers, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options,
     Origin, PhotonMeasure, Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition,
-    System, Temperature, Terrain, ThermalSky, Transport, Trunk, Until, Views, read_text,
+    Sweep, System, Temperature, Terrain, ThermalSky, Transport, Trunk, Until, Views, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -423,7 +423,11 @@ fn scene() -> BoxedStrategy<Scene> {
             first_order_only,
             max_order,
         });
-    let names = (any::<u32>(), text(), map(number()), map(map(number())));
+    let sweep = prop_oneof![
+        map(list(number())).prop_map(Sweep::Grid),
+        map(list(number())).prop_map(Sweep::Zip),
+    ];
+    let names = (any::<u32>(), text(), map(number()), map(map(number())), option(sweep));
     let surfaces = (list(band), map(spectrum()), map(material()), map(mesh()));
     (
         names,
@@ -435,7 +439,7 @@ fn scene() -> BoxedStrategy<Scene> {
         transport,
     )
         .prop_map(|(names, surfaces, ground, instances, light, sensors, transport)| {
-            let (format, title, params, variants) = names;
+            let (format, title, params, variants, sweep) = names;
             let (bands, spectra, materials, meshes) = surfaces;
             let (frame, terrain, boundary) = ground;
             let ((sun, sky), thermal_sky) = light;
@@ -443,6 +447,8 @@ fn scene() -> BoxedStrategy<Scene> {
                 format,
                 title,
                 params,
+                // Reading takes included files into the scene: `include.rs` shows that.
+                include: Map::new(),
                 frame,
                 bands,
                 spectra,
@@ -457,6 +463,7 @@ fn scene() -> BoxedStrategy<Scene> {
                 sensors,
                 transport,
                 variants,
+                sweep,
             }
         })
         .boxed()

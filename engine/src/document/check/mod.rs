@@ -4,11 +4,12 @@ mod camera;
 mod ground;
 mod light;
 mod mesh;
+mod program;
 mod sensor;
 mod spectrum;
 mod thermal;
 
-use super::diagnostic::{Diagnostic, suggestion, unknown_name};
+use super::diagnostic::{Diagnostic, unknown_name};
 use super::scene::{Map, Scene, Transport};
 
 /// No more errors than this are kept: nobody reads them.
@@ -27,7 +28,8 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
         let message = format!("format {} is unknown", scene.format);
         report.push(Diagnostic::error("format", message).help("this version reads `format: 1`"));
     }
-    check_params(scene, &mut report);
+    program::check_params(scene, &mut report);
+    program::check_sweep(scene, &mut report);
     spectrum::check_bands(scene, &mut report);
     spectrum::check_spectra(scene, &mut report);
     spectrum::check_materials(scene, &mut report);
@@ -83,6 +85,12 @@ impl Report<'_> {
     /// Whether nothing below a path is wrong either.
     fn is_whole(&self, path: &str) -> bool {
         self.is_readable(path) && !self.broken.iter().any(|broken| is_within(broken, path))
+    }
+
+    /// Whether a name belongs to an included file that could not be read.
+    fn is_lost(&self, name: &str) -> bool {
+        let prefixes = self.broken.iter().filter_map(|path| path.strip_prefix("include."));
+        prefixes.into_iter().any(|lost| lost.ends_with('.') && name.starts_with(lost))
     }
 
     fn above_zero(&mut self, path: &str, value: f64) {
@@ -141,7 +149,7 @@ impl Report<'_> {
 
     /// A name that must be defined, unless its definitions could not be read.
     fn name<T>(&mut self, path: &str, kind: &str, name: &str, defined: &Map<T>, in_key: &str) {
-        if !defined.contains_key(name) && self.is_readable(in_key) {
+        if !defined.contains_key(name) && self.is_readable(in_key) && !self.is_lost(name) {
             self.push(unknown_name(path, kind, name, defined.keys().map(String::as_str)));
         }
     }
@@ -162,35 +170,6 @@ fn count(count: usize, noun: &str) -> String {
 fn is_within(path: &str, ancestor: &str) -> bool {
     path.strip_prefix(ancestor)
         .is_some_and(|rest| ancestor.is_empty() || rest.is_empty() || rest.starts_with(['.', '[']))
-}
-
-fn check_params(scene: &Scene, report: &mut Report<'_>) {
-    for (name, value) in &scene.params {
-        let path = format!("params.{name}");
-        let mut letters = name.chars();
-        let lawful = letters.next().is_some_and(|c| c == '_' || c.is_alphabetic())
-            && letters.all(|c| c == '_' || c.is_alphanumeric());
-        if !lawful {
-            let help = "start with a letter, go on with letters, digits and `_`";
-            report.error(&path, format!("`{name}` cannot be a parameter's name"), help);
-        }
-        report.finite(&path, &[*value]);
-    }
-    for (variant, changes) in &scene.variants {
-        let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
-        for (name, value) in changes {
-            let path = format!("variants.{variant}.{name}");
-            report.finite(&path, &[*value]);
-            if !scene.params.contains_key(name) && report.is_readable("params") {
-                let help = if known.is_empty() {
-                    format!("add it: `params: {{ \"{name}\": {value:?} }}`")
-                } else {
-                    suggestion(name, &known, "a variant may change")
-                };
-                report.error(&path, format!("no parameter `{name}` to change"), help);
-            }
-        }
-    }
 }
 
 fn check_transport(transport: &Transport, report: &mut Report<'_>) {

@@ -89,7 +89,7 @@ impl<'a> Fields<'a> {
         reader.within(Step::Key(name), |reader| match self.find(name) {
             Some(field) => reader.by_example(example, |reader| T::decode(&field.value, reader)),
             // Under a name like this one it is there, and that has been reported.
-            None if self.is_misspelt(name) => {
+            None if self.is_misspelt(name) || self.may_be_lost(reader) => {
                 reader.mark_broken();
                 T::placeholder()
             }
@@ -111,20 +111,23 @@ impl<'a> Fields<'a> {
     ) -> T {
         match self.find(name) {
             Some(field) => reader.within(Step::Key(name), |reader| T::decode(&field.value, reader)),
+            None if self.may_be_lost(reader) => {
+                reader.within(Step::Key(name), Reader::mark_broken);
+                default()
+            }
             None => default(),
         }
+    }
+
+    /// Whether a key that is missing may stand in a file that could not be included.
+    fn may_be_lost(&self, reader: &Reader<'_>) -> bool {
+        self.owner == "the scene" && reader.has_lost_files()
     }
 }
 
 /// What the language will know, but this version does not.
 fn later(owner: &str, name: &str) -> Option<(&'static str, &'static str)> {
     match (owner, name) {
-        ("the scene", "include") => {
-            Some(("`include`", "write the included values into this file and take the key out"))
-        }
-        ("the scene", "sweep") => {
-            Some(("`sweep`", "take the key out and run the scene once a point with `--set`"))
-        }
         ("instances", "Scatter") => {
             Some(("`Scatter(..)`", "write the places with `List(..)` or `Table(..)`"))
         }

@@ -15,8 +15,14 @@ use super::syntax::{Node, Span, Step, Value, path_of};
 /// No more errors than this are kept: nobody reads them.
 const ERRORS: usize = 100;
 
+/// Nor more paths without a value.
+const BROKEN: usize = 1000;
+
 /// A type that can be read from the tree.
 pub(super) trait Decode: Sized {
+    /// Keys of a record.
+    const KEYS: &'static [&'static str] = &[];
+
     /// What a person calls such a value: `a number`.
     fn expected() -> Cow<'static, str>;
 
@@ -66,6 +72,19 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// What was wrong before reading started; `lost` is what names start with that cannot be known.
+    pub(super) fn start_with(&mut self, diagnostics: Vec<Diagnostic>, lost: &[String]) {
+        for one in diagnostics {
+            self.push(one);
+        }
+        self.broken.extend(lost.iter().take(BROKEN / 2).map(|lost| format!("include.{lost}")));
+    }
+
+    /// Whether some included file could not be read: what is missing may stand there.
+    fn has_lost_files(&self) -> bool {
+        self.broken.iter().any(|path| path.starts_with("include."))
+    }
+
     /// What was wrong.
     pub(super) fn finish(self) -> Findings {
         let Self { diagnostics, dropped, mut broken, .. } = self;
@@ -75,7 +94,7 @@ impl<'a> Reader<'a> {
 
     /// There is no value here, for a reason that has been reported elsewhere.
     pub(super) fn mark_broken(&mut self) {
-        if self.broken.len() < ERRORS {
+        if self.broken.len() < BROKEN {
             self.broken.push(path_of(&self.path));
         }
     }
@@ -111,6 +130,11 @@ impl<'a> Reader<'a> {
         let has_room = self.diagnostics.len() < ERRORS;
         self.dropped += usize::from(!has_room);
         has_room
+    }
+
+    /// What the names of a node's file start with: nothing, or `birch.`.
+    pub(super) fn namespace(&self, node: &Node) -> &'a str {
+        self.source.namespace(node.span)
     }
 
     pub(super) fn place_of(&self, span: Span) -> Place {

@@ -4,6 +4,7 @@ mod camera;
 mod ground;
 mod light;
 mod mesh;
+mod program;
 mod sensor;
 mod spectrum;
 mod thermal;
@@ -20,6 +21,7 @@ pub use camera::{Cover, FisheyeProjection, Look, Picture};
 pub use ground::{Boundary, INSTANCE_COLUMNS, Instances, Terrain};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
+pub use program::{Include, Sweep};
 pub use sensor::{
     ImageMeasure, Layers, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
 };
@@ -38,6 +40,9 @@ record! {
         title: String = String::new(),
         /// Values that `"=expr"` strings may use.
         params: Map<f64> = Map::new(),
+        /// Other files, whose definitions have names that start with the include's: `birch.leaf`.
+        /// Reading a scene takes them into it and leaves nothing here.
+        include: Map<Include> = Map::new(),
         /// Where the local frame lies on Earth.
         frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0) },
         /// Spectral bands, in the order of all band lists.
@@ -66,6 +71,8 @@ record! {
         transport: Transport = Transport::default(),
         /// Named sets of changes to `params`.
         variants: Map<Map<f64>> = Map::new(),
+        /// Points that `sunfleck sweep` runs the scene at.
+        sweep: Option<Sweep> = None,
     }
 }
 

@@ -24,6 +24,11 @@ impl Span {
         Self { start: start as u32, end: end as u32 }
     }
 
+    /// The same bytes where the text stands behind so many others.
+    pub(super) fn shifted(self, by: usize) -> Self {
+        Self { start: self.start + by as u32, end: self.end + by as u32 }
+    }
+
     /// The bytes as a range, to index the text.
     #[must_use]
     pub fn range(self) -> std::ops::Range<usize> {
@@ -109,6 +114,37 @@ pub(super) fn path_of(steps: &[Step<'_>]) -> String {
 }
 
 impl Node {
+    /// Moves all places to where the text stands behind so many bytes.
+    pub(super) fn shift(&mut self, by: usize) {
+        self.span = self.span.shifted(by);
+        match &mut self.value {
+            Value::List(items) | Value::Tuple(items) => {
+                for item in items {
+                    item.shift(by);
+                }
+            }
+            Value::Record(fields) => {
+                for field in fields {
+                    field.name_span = field.name_span.shifted(by);
+                    field.value.shift(by);
+                }
+            }
+            Value::Named(named) => {
+                named.name_span = named.name_span.shifted(by);
+                if let Some(body) = &mut named.body {
+                    body.shift(by);
+                }
+            }
+            Value::Map(entries) => {
+                for (key, value) in entries {
+                    key.shift(by);
+                    value.shift(by);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// The node that a path's next step starts from: names with one unnamed value, such as
     /// `Bands([..])` and `Some(..)`, are no step of a path.
     pub(super) fn inner(&self) -> &Self {

@@ -1,0 +1,381 @@
+//! Included files: their definitions become part of the scene's tree, under names of their own.
+//!
+//! Each map of an included file (`materials`, `meshes`, `params`, ..) joins the scene's, its keys
+//! behind the name of the include; its instances stand behind the scene's own; any other key counts
+//! where no file closer to the scene has it. What stands closer to the scene always goes first.
+
+mod names;
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use super::decode::{Decode as _, Reader};
+use super::diagnostic::{Diagnostic, unknown_name};
+use super::params::{entries, key, plain_number};
+use super::read::{FILE_SIZE, ReadError, text_of_file};
+use super::scene::{Include, Map, Scene};
+use super::source::Source;
+use super::syntax::{Field, Node, Span, Step, Value, parse};
+
+/// Files may include others so deep.
+const DEPTH: usize = 32;
+
+/// A scene may include so many files.
+const FILES: usize = 1000;
+
+/// What including has come to.
+pub(super) struct Included {
+    pub(super) diagnostics: Vec<Diagnostic>,
+    /// What names of files start with that could not be read.
+    pub(super) lost: Vec<String>,
+}
+
+/// Takes the files that `tree` includes into it and into `source`; paths are relative to the folder
+/// of the scene file.
+pub(super) fn include(tree: &mut Node, source: &mut Source) -> Included {
+    let file = PathBuf::from(source.name());
+    let chain = vec![Link { real: real_path(&file), shown: file.display().to_string() }];
+    let mut including = Including {
+        source,
+        chain,
+        files: 0,
+        single: Vec::new(),
+        included: Included { diagnostics: Vec::new(), lost: Vec::new() },
+    };
+    let Some(includes) = take_includes(tree) else { return including.included };
+    let mut own = fields(tree).map(std::mem::take).unwrap_or_default();
+    including.single = own.iter().map(|field| (field.name.clone(), String::new())).collect();
+    including.entries(&includes, "", &mut own);
+    if let Some(fields) = fields(tree) {
+        *fields = own;
+    }
+    including.included
+}
+
+/// Parameters that an include passes, by name.
+type Passed = Vec<(Node, Node)>;
+
+/// A file that is being included.
+struct Link {
+    real: PathBuf,
+    shown: String,
+}
+
+struct Including<'a> {
+    source: &'a mut Source,
+    /// From the scene file to the file at hand.
+    chain: Vec<Link>,
+    files: usize,
+    /// Keys of the scene, and the namespace that each was taken from.
+    single: Vec<(String, String)>,
+    included: Included,
+}
+
+impl Including<'_> {
+    /// The files that an `include` names, into the scene's keys.
+    fn entries(&mut self, includes: &Node, namespace: &str, scene: &mut Vec<Field>) {
+        let mut plain = includes.clone();
+        let written = simplify(&mut plain);
+        let mut reader = Reader::new(self.source);
+        let map = reader.within(Step::Key("include"), |r| Map::<Include>::decode(&plain, r));
+        let findings = reader.finish();
+        let broken = findings.broken;
+        self.included.diagnostics.extend(findings.diagnostics);
+        for (name, node, passed) in written {
+            let at = format!("include.{name}");
+            let full = format!("{namespace}{name}.");
+            let Some(include) = map
+                .get(&name)
+                .filter(|_| !broken.iter().any(|path| path == "include" || path.starts_with(&at)))
+            else {
+                self.included.lost.push(full);
+                continue;
+            };
+            let lawful = name.chars().all(|c| c == '_' || c.is_alphanumeric());
+            if !lawful || name.chars().next().is_none_or(char::is_numeric) {
+                let message = format!("`{name}` cannot be the name of an included file");
+                let help = "start with a letter, go on with letters, digits and `_`";
+                self.error(node.span, &at, message, help.to_owned());
+                self.included.lost.push(full);
+            } else if self.one(include, passed, &node, &full, scene).is_none() {
+                self.included.lost.push(full);
+            }
+        }
+    }
+
+    fn error(&mut self, span: Span, path: &str, message: String, help: String) {
+        let place = self.source.place_of(span);
+        self.included.diagnostics.push(Diagnostic::error(path, message).help(help).at(place));
+    }
+
+    /// One file, and those that it includes.
+    fn one(
+        &mut self,
+        include: &Include,
+        passed: Passed,
+        entry: &Node,
+        namespace: &str,
+        scene: &mut Vec<Field>,
+    ) -> Option<()> {
+        let at = format!("include.{}", namespace.trim_end_matches('.'));
+        let (includer, depth) = (self.chain.last()?, self.chain.len());
+        let folder = Path::new(&includer.shown).parent().unwrap_or(Path::new(""));
+        let path = folder.join(&include.file);
+        let link = Link { real: real_path(&path), shown: path.display().to_string() };
+        if let Some(first) = self.chain.iter().position(|other| other.real == link.real) {
+            let circle = self.chain[first..].iter().chain([&link]);
+            let circle: Vec<_> = circle.map(|link| link.shown.as_str()).collect();
+            let message = format!("{} includes itself", link.shown);
+            self.error(entry.span, &at, message, format!("the circle: {}", circle.join(" -> ")));
+            return None;
+        }
+        self.files += 1;
+        if depth > DEPTH || self.files > FILES {
+            // One word of it is enough.
+            if self.files <= FILES + 1 {
+                let message = if depth > DEPTH {
+                    format!("files include others more than {DEPTH} deep here")
+                } else {
+                    format!("more than {FILES} files are included")
+                };
+                self.error(entry.span, &at, message, "include fewer files".to_owned());
+            }
+            return None;
+        }
+        let read = text_of_file(&path, true).and_then(|text| {
+            let bytes = (self.source.text().len() + text.len()) as u64;
+            let file = link.shown.clone();
+            if bytes > FILE_SIZE {
+                return Err(ReadError::TooLarge { file, bytes, limit: FILE_SIZE });
+            }
+            Ok(text)
+        });
+        let text = match read {
+            Ok(text) => text,
+            Err(error) => {
+                let help = match &error {
+                    ReadError::Io { .. } => {
+                        "paths are relative to the folder of the file that includes"
+                    }
+                    _ => "an included file looks like `Library(materials: { .. }, meshes: { .. })`",
+                };
+                self.error(entry.span, &at, error.to_string(), help.to_owned());
+                return None;
+            }
+        };
+        let start = self.source.add(&link.shown, &text, namespace);
+        let mut tree = match parse(&text) {
+            Ok(tree) => tree,
+            Err(error) => {
+                let span = error.span.shifted(start);
+                let place = self.source.place_of(span);
+                let diagnostic = Diagnostic::error(&at, error.message).at(place);
+                self.included.diagnostics.push(Diagnostic { help: error.help, ..diagnostic });
+                return None;
+            }
+        };
+        tree.shift(start);
+        let inner = take_includes(&mut tree);
+        let folder = relative_folder(&self.chain[0].shown, &path);
+        names::qualify(&mut tree, namespace, &folder);
+        self.pass(&mut tree, include, passed, entry, namespace)?;
+        let Some(fields) = fields(&mut tree).map(std::mem::take) else {
+            let message = format!("expected definitions, found {}", tree.describe());
+            let help = "write, for example, `Library(materials: { .. }, meshes: { .. })`";
+            self.error(tree.opening(), &at, message, help.to_owned());
+            return None;
+        };
+        self.merge(fields, namespace, scene);
+        if let Some(inner) = inner {
+            self.chain.push(link);
+            self.entries(&inner, namespace, scene);
+            self.chain.pop();
+        }
+        Some(())
+    }
+
+    /// Gives the parameters of an included file the values of its variant and of its include.
+    fn pass(
+        &mut self,
+        tree: &mut Node,
+        include: &Include,
+        mut passed: Passed,
+        entry: &Node,
+        namespace: &str,
+    ) -> Option<()> {
+        let at = format!("include.{}", namespace.trim_end_matches('.'));
+        if let Some(name) = &include.variant {
+            let full = format!("{namespace}{name}");
+            let Some((_, variant)) =
+                entries(key(tree, "variants")).find(|(variant, _)| *variant == full)
+            else {
+                let own = entries(key(tree, "variants")).map(|(name, _)| &name[namespace.len()..]);
+                let error = unknown_name(format!("{at}.variant"), "variant", name, own);
+                let error = error.at(self.source.place_of(entry.span));
+                self.included.diagnostics.push(Diagnostic {
+                    message: format!("no variant `{name}` in {}", include.file),
+                    help: error.help.map(|help| help.replace("this scene", "that file")),
+                    ..error
+                });
+                return None;
+            };
+            if let Value::Map(changes) = &variant.inner().value {
+                let changes = changes.iter().filter(|(_, value)| plain_number(value).is_some());
+                passed.extend(changes.cloned().map(|(mut key, value)| {
+                    if let Value::Text(name) = &mut key.value {
+                        *name = name[namespace.len()..].to_owned();
+                    }
+                    (key, value)
+                }));
+            }
+        }
+        let own: Vec<String> = entries(key(tree, "params"))
+            .map(|(name, _)| name[namespace.len()..].to_owned())
+            .collect();
+        for (key, _) in &passed {
+            let Value::Text(name) = &key.value else { continue };
+            if !own.contains(name) {
+                let path = format!("{at}.params.{name}");
+                let error = unknown_name(path, "parameter", name, own.iter().map(String::as_str));
+                let message = format!("no parameter `{name}` in {}", include.file);
+                let help = error.help.map(|help| help.replace("this scene", "that file"));
+                let place = self.source.place_of(key.span);
+                let error = Diagnostic { message, help, ..error }.at(place);
+                self.included.diagnostics.push(error);
+            }
+        }
+        let params = fields(tree)?.iter_mut().find(|field| field.name == "params");
+        if let Some(Field { value: Node { value: Value::Map(params), .. }, .. }) = params {
+            for (key, value) in params {
+                let Value::Text(name) = &key.value else { continue };
+                let given = |(key, _): &&(Node, Node)| matches!(&key.value, Value::Text(given) if *given == name[namespace.len()..]);
+                if let Some((_, given)) = passed.iter().find(given) {
+                    *value = given.clone();
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Adds what a file defines and what no file closer to the scene does.
+    fn merge(&mut self, fields: Vec<Field>, namespace: &str, scene: &mut Vec<Field>) {
+        let known: HashSet<String> = scene.iter().map(|field| field.name.clone()).collect();
+        for field in fields {
+            let Field { name, name_span, value } = field;
+            if name == "format" && plain_number(&value) != Some(1.0) {
+                let message = "this version reads `format: 1`".to_owned();
+                self.error(value.span, "format", message, "write `format: 1`".to_owned());
+            }
+            if matches!(name.as_str(), "format" | "title") {
+                continue;
+            }
+            let own = scene.iter_mut().find(|field| field.name == name);
+            match (own.map(|field| &mut field.value.value), value.value) {
+                (Some(Value::Map(own)), Value::Map(more)) if known.contains(&name) => {
+                    let taken: HashSet<String> = own
+                        .iter()
+                        .filter_map(|(key, _)| match &key.value {
+                            Value::Text(name) => Some(name.clone()),
+                            _ => None,
+                        })
+                        .collect();
+                    own.extend(more.into_iter().filter(
+                        |(key, _)| !matches!(&key.value, Value::Text(name) if taken.contains(name)),
+                    ));
+                }
+                (Some(Value::List(own)), Value::List(more)) if name == "instances" => {
+                    own.extend(more);
+                }
+                (Some(_), _) if known.contains(&name) => {
+                    self.refuse_second(&name, name_span, namespace);
+                }
+                (_, kind) => {
+                    self.single.push((name.clone(), namespace.to_owned()));
+                    let value = Node { span: value.span, value: kind };
+                    scene.push(Field { name, name_span, value });
+                }
+            }
+        }
+    }
+
+    /// A key that the scene has once, from two files of which neither includes the other.
+    fn refuse_second(&mut self, name: &str, span: Span, namespace: &str) {
+        let Some((_, from)) = self.single.iter().find(|(single, _)| single == name) else { return };
+        if Scene::KEYS.contains(&name) && !namespace.starts_with(from.as_str()) {
+            let (a, b) = (from.trim_end_matches('.'), namespace.trim_end_matches('.'));
+            let message = format!("both `{a}` and `{b}` say `{name}`");
+            let help = format!("write the `{name}` that is meant into the file that includes them");
+            self.error(span, name, message, help);
+        }
+    }
+}
+
+/// Keys of a file, with or without a word before the parentheses.
+fn fields(tree: &mut Node) -> Option<&mut Vec<Field>> {
+    let is_file = |name: &str| matches!(name, "Scene" | "Library");
+    let body = if matches!(&tree.value, Value::Named(named) if is_file(&named.name)) {
+        let Value::Named(named) = &mut tree.value else { return None };
+        named.body.as_mut()?
+    } else {
+        tree
+    };
+    match &mut body.value {
+        Value::Record(fields) => Some(fields),
+        _ => None,
+    }
+}
+
+fn take_includes(tree: &mut Node) -> Option<Node> {
+    let fields = fields(tree)?;
+    let index = fields.iter().position(|field| field.name == "include")?;
+    Some(fields.remove(index).value)
+}
+
+/// Each file by its name, where it stands, and the parameters that are passed to it. Leaves what the
+/// decoder can read: formulas have their place in the tree, not here.
+fn simplify(includes: &mut Node) -> Vec<(String, Node, Passed)> {
+    let mut found = Vec::new();
+    let Value::Map(map) = &mut includes.value else { return found };
+    for (key, node) in map {
+        let Value::Text(name) = &key.value else { continue };
+        let mut passed = Vec::new();
+        let mut place = node.clone();
+        if let Value::Text(_) = node.value {
+            let name = "file".to_owned();
+            let file = Field { name, name_span: node.span, value: node.clone() };
+            node.value = Value::Record(vec![file]);
+        } else if let Value::Record(fields) = &mut node.value {
+            if let Some(file) = fields.iter().find(|field| field.name == "file") {
+                place = file.value.clone();
+            }
+            let params = fields.iter_mut().find(|field| field.name == "params");
+            if let Some(Field { value: Node { value: Value::Map(params), .. }, .. }) = params {
+                passed.clone_from(params);
+                for (_, value) in params {
+                    if let Value::Formula(_) = value.value {
+                        value.value = Value::Float(0.0);
+                    }
+                }
+            }
+        }
+        found.push((name.clone(), place, passed));
+    }
+    found
+}
+
+/// What tells a file from all others, however it is called.
+fn real_path(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_not_there| path.to_owned())
+}
+
+/// The folder of an included file as the scene file would name it: empty, or with a `/` at its end.
+fn relative_folder(scene: &str, file: &Path) -> String {
+    let scene = Path::new(scene).parent().unwrap_or(Path::new(""));
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let folder = folder.strip_prefix(scene).unwrap_or(folder);
+    let parts: Vec<_> = folder.iter().map(|part| part.to_string_lossy()).collect();
+    match parts.join("/").replace("//", "/") {
+        folder if folder.is_empty() => folder,
+        folder => folder + "/",
+    }
+}

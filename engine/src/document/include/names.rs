@@ -1,0 +1,124 @@
+//! What a definition is called, and what it names, once it is part of another scene.
+
+use super::super::syntax::{Node, Value};
+
+/// Keys whose strings are names of the scene's own definitions: alone, in a list, as the values of
+/// a map, or, where those are no strings, as its keys.
+const NAMES: [&str; 5] = ["leaf_material", "material", "of", "parts", "wood_material"];
+
+/// Keys whose strings are paths of files.
+const FILES: [&str; 1] = ["file"];
+
+/// Variants whose string is a name of the scene's own definitions.
+const NAMING_VARIANTS: [&str; 1] = ["Named"];
+
+/// What a string stands for.
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    Plain,
+    Name,
+    File,
+}
+
+/// Puts the namespace before every name that a file defines or uses, and the folder before every
+/// path in it.
+pub(super) fn qualify(file: &mut Node, namespace: &str, folder: &str) {
+    let with = Qualify { namespace, folder };
+    let Some(fields) = super::fields(file) else { return };
+    for field in fields {
+        match (&mut field.value.value, field.name.as_str()) {
+            (Value::Map(map), key) => {
+                for (name, value) in map {
+                    with.text(name, Role::Name);
+                    match (&mut value.value, key) {
+                        // What a variant changes are parameters.
+                        (Value::Map(changes), "variants") => {
+                            for (name, _) in changes {
+                                with.text(name, Role::Name);
+                            }
+                        }
+                        _ => with.walk(value, Role::Plain),
+                    }
+                }
+            }
+            (Value::Named(sweep), "sweep") => {
+                if let Some(body) = &mut sweep.body
+                    && let Value::Tuple(items) = &mut body.value
+                {
+                    for item in items {
+                        with.keys(item);
+                    }
+                }
+            }
+            (_, key) => with.walk(&mut field.value, role(key)),
+        }
+    }
+}
+
+fn role(key: &str) -> Role {
+    if NAMES.contains(&key) {
+        Role::Name
+    } else if FILES.contains(&key) {
+        Role::File
+    } else {
+        Role::Plain
+    }
+}
+
+struct Qualify<'a> {
+    namespace: &'a str,
+    folder: &'a str,
+}
+
+impl Qualify<'_> {
+    fn text(&self, node: &mut Node, role: Role) {
+        let Value::Text(text) = &mut node.value else { return };
+        match role {
+            Role::Plain => {}
+            Role::Name => text.insert_str(0, self.namespace),
+            Role::File if std::path::Path::new(text.as_str()).is_absolute() => {}
+            Role::File => text.insert_str(0, self.folder),
+        }
+    }
+
+    fn keys(&self, node: &mut Node) {
+        if let Value::Map(map) = &mut node.value {
+            for (key, _) in map {
+                self.text(key, Role::Name);
+            }
+        }
+    }
+
+    fn walk(&self, node: &mut Node, own: Role) {
+        match &mut node.value {
+            Value::Text(_) => self.text(node, own),
+            Value::List(items) | Value::Tuple(items) => {
+                for item in items {
+                    self.walk(item, own);
+                }
+            }
+            Value::Record(fields) => {
+                for field in fields {
+                    self.walk(&mut field.value, role(&field.name));
+                }
+            }
+            Value::Map(map) => {
+                let texts = map.iter().all(|(_, value)| matches!(value.value, Value::Text(_)));
+                for (key, value) in map.iter_mut() {
+                    if !texts {
+                        self.text(key, own);
+                    }
+                    self.walk(value, own);
+                }
+            }
+            Value::Named(named) => {
+                let role =
+                    if NAMING_VARIANTS.contains(&named.name.as_str()) { Role::Name } else { own };
+                if let Some(body) = &mut named.body {
+                    self.walk(body, role);
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! What makes a scene a program: files that it includes, and points that it runs over.
+
+use std::borrow::Cow;
+
+use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
+use super::super::encode::{Encode, Text, differs};
+use super::super::syntax::Node;
+use super::Map;
+
+record! {
+    /// A file whose definitions are part of the scene, by names that start with the include's own:
+    /// `birch.leaf`. In place of `(file: "species/birch.ron")`, `"species/birch.ron"` will do.
+    pub struct Include ("an included file") {
+        /// Path, relative to the file that includes it.
+        file: String => r#""species/birch.ron""#,
+        /// Values for its `params`; they go before the file's own and before its variant's.
+        params: Map<f64> = Map::new(),
+        /// The variant of the file that is meant.
+        variant: Option<String> = None,
+    }
+}
+
+choice! {
+    /// Points that `sunfleck sweep` runs a scene at.
+    pub enum Sweep ("a sweep") {
+        /// Every combination of the parameters' values; the last parameter varies fastest.
+        Grid(Map<Vec<f64>> => r#"{ "sza": [0.0, 30.0, 60.0] }"#),
+        /// The first values of all parameters, then the second ones, and so on.
+        Zip(Map<Vec<f64>> => r#"{ "sza": [30.0, 60.0], "vza": [0.0, 45.0] }"#),
+    }
+}
+
+impl Sweep {
+    /// How many points there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Grid(axes) => {
+                axes.values().fold(1, |points, values| points.saturating_mul(values.len()))
+            }
+            Self::Zip(axes) => axes.values().map(Vec::len).min().unwrap_or(0),
+        }
+    }
+
+    /// Whether there is no point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Parameters that it varies.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let (Self::Grid(axes) | Self::Zip(axes)) = self;
+        axes.keys().map(String::as_str)
+    }
+
+    /// The parameters at a point, in the order of [`Sweep::names`].
+    ///
+    /// # Panics
+    /// If there is no such point.
+    #[must_use]
+    pub fn point(&self, index: usize) -> Vec<(String, f64)> {
+        assert!(index < self.len(), "the sweep has such a point");
+        match self {
+            Self::Zip(axes) => {
+                axes.iter().map(|(name, values)| (name.clone(), values[index])).collect()
+            }
+            Self::Grid(axes) => {
+                let mut rest = index;
+                let mut point: Vec<_> = axes
+                    .iter()
+                    .rev()
+                    .map(|(name, values)| {
+                        let value = values[rest % values.len()];
+                        rest /= values.len();
+                        (name.clone(), value)
+                    })
+                    .collect();
+                point.reverse();
+                point
+            }
+        }
+    }
+
+    /// The same with each of these parameters at one value, where it varies them.
+    #[must_use]
+    pub fn fixed(&self, set: &[(String, f64)]) -> Self {
+        let mut sweep = self.clone();
+        let points = self.len();
+        let (axes, copies) = match &mut sweep {
+            Self::Grid(axes) => (axes, 1),
+            Self::Zip(axes) => (axes, points),
+        };
+        for (name, value) in set {
+            if let Some(values) = axes.get_mut(name) {
+                *values = vec![*value; copies];
+            }
+        }
+        sweep
+    }
+}
