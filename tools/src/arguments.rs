@@ -19,6 +19,9 @@ use clap::{Args, Parser, Subcommand};
 pub(crate) enum Command {
     /// Trace a scene and write what its sensors measure
     Run(Run),
+    /// Run a scene at every point of its `sweep`, and write one table of all; goes on where an earlier
+    /// run of the same sweep has stopped
+    Sweep(Run),
     /// Say what is wrong with a scene, and trace nothing
     Check(Scene),
     /// Measure how fast this machine is on a scene

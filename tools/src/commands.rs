@@ -17,6 +17,7 @@ const SKIPPED: &str = "skipped: ";
 pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Run(arguments) => trace(arguments),
+        Command::Sweep(arguments) => sweep(arguments),
         Command::Check(scene) => check(scene),
         Command::Expand(scene) => expand(scene),
         Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
@@ -42,11 +43,7 @@ fn trace(arguments: &Run) -> anyhow::Result<()> {
     let folder = arguments.folder();
     // Better now than after hours of tracing.
     output::probe(&folder)?;
-    let options = run::Options {
-        document: document_options(&arguments.scene),
-        threads: arguments.threads.map(Into::into),
-        quality: arguments.quality,
-    };
+    let options = run_options(arguments);
     let bars = Bars::new();
     let report = run::run_file(&arguments.scene.file, &options, &bars);
     bars.clear();
@@ -63,6 +60,47 @@ fn trace(arguments: &Run) -> anyhow::Result<()> {
         report.seconds
     )?;
     print(&text)
+}
+
+fn sweep(arguments: &Run) -> anyhow::Result<()> {
+    let folder = arguments.folder();
+    output::probe(&folder)?;
+    let mut sweep = run::Sweep::read(&arguments.scene.file, &run_options(arguments))?;
+    let points = sweep.points().to_vec();
+    let mut ran = 0;
+    for (index, point) in points.iter().enumerate() {
+        if output::is_complete(point, &folder) {
+            continue;
+        }
+        let bars = Bars::new();
+        bars.heading(&format!("point {} of {}: {}", index + 1, points.len(), point.name()));
+        let report = sweep.run(point, &bars);
+        bars.clear();
+        let report = report?;
+        if ran == 0 {
+            warn(&report.warnings);
+        }
+        output::write_point(&report, point, &folder)?;
+        ran += 1;
+    }
+    let table = output::write_sweep(&points, &folder)?;
+    print(&format!(
+        "{}: {ran} points run, {} kept; geometry built {}\n",
+        table.display(),
+        points.len() - ran,
+        match sweep.builds() {
+            1 => "once".to_owned(),
+            builds => format!("{builds} times"),
+        }
+    ))
+}
+
+fn run_options(arguments: &Run) -> run::Options {
+    run::Options {
+        document: document_options(&arguments.scene),
+        threads: arguments.threads.map(Into::into),
+        quality: arguments.quality,
+    }
 }
 
 fn check(scene: &Scene) -> anyhow::Result<()> {
@@ -82,11 +120,15 @@ fn expand(scene: &Scene) -> anyhow::Result<()> {
     if !reading.is_sound() {
         bail!(reading.render());
     }
-    print(&reading.scene.to_ron())
+    print(&reading.scene.resolved().to_ron())
 }
 
 pub(crate) fn document_options(scene: &Scene) -> document::Options {
-    document::Options { set: scene.settings.clone(), variant: scene.variant.clone() }
+    document::Options {
+        set: scene.settings.clone(),
+        variant: scene.variant.clone(),
+        ..document::Options::default()
+    }
 }
 
 fn warn(warnings: &[String]) {

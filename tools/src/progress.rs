@@ -32,6 +32,12 @@ impl Bars {
         Self { all, stage, sensors: Mutex::default() }
     }
 
+    /// A line above all others.
+    pub(crate) fn heading(&self, text: &str) {
+        // Without a terminal there is nobody to tell.
+        drop(self.all.println(text));
+    }
+
     /// Takes all lines off the terminal.
     pub(crate) fn clear(&self) {
         self.stage.finish_and_clear();

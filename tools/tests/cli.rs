@@ -219,3 +219,75 @@ fn help_tells_every_command_and_option() {
     let (code, stdout, _) = outcome(folder.path(), &["--version"]);
     assert_eq!((code, stdout.as_str()), (0, concat!("sunfleck ", env!("CARGO_PKG_VERSION"), "\n")));
 }
+
+/// A sweep over the sun's zenith angle and the soil, of which only the soil's height is geometry.
+fn swept() -> String {
+    SOIL.replace("\"sza\": 30.0 }", "\"sza\": 30.0, \"height\": 0.0 }")
+        .replace("material: \"soil\")", "material: \"soil\", height_m: \"=height\")")
+        .replace("variants:", "sweep: Grid({ \"sza\": [0.0, 60.0] }), variants:")
+}
+
+#[test]
+fn a_sweep_writes_one_table_and_goes_on_where_it_stopped() {
+    let folder = folder_with(&swept());
+    let (code, stdout, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    assert_eq!(stdout, "out/soil/sweep.csv: 2 points run, 0 kept; geometry built once\n");
+    assert_eq!(names(&folder.path().join("out/soil")), ["points", "sweep.csv"]);
+    assert_eq!(names(&folder.path().join("out/soil/points")), ["sza=0", "sza=60"]);
+    let table = || fs::read_to_string(folder.path().join("out/soil/sweep.csv")).unwrap();
+    let first = table();
+    let mut lines = first.lines();
+    assert_eq!(
+        lines.next(),
+        Some("sza,sensor,product,unit,at,band,value,standard_error"),
+        "{first}"
+    );
+    assert!(lines.next().is_some_and(|line| line.starts_with("0.0,top,brf,1,,red,")), "{first}");
+    assert!(first.contains("\n60.0,views,brf,1,zenith_deg=30.0;azimuth_deg=90.0,red,"), "{first}");
+
+    // A point of a run that was interrupted has no table yet.
+    fs::remove_file(folder.path().join("out/soil/points/sza=60/point.csv")).unwrap();
+    fs::remove_file(folder.path().join("out/soil/sweep.csv")).unwrap();
+    let (_, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron"]);
+    assert!(stdout.contains("1 points run, 1 kept"), "{stdout}");
+    assert_eq!(table(), first, "the same numbers");
+    // Another scene is another result.
+    let (_, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1"]);
+    assert!(stdout.contains("2 points run, 0 kept"), "{stdout}");
+    let text = swept().replace("[0.0, 60.0]", "[60.0, 45.0]");
+    fs::write(folder.path().join("soil.ron"), text).unwrap();
+    let (_, stdout, _) =
+        outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1", "--threads", "1"]);
+    assert!(stdout.contains("1 points run, 1 kept"), "{stdout}");
+    // What `--set` gives is not varied.
+    let (_, stdout, _) =
+        outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1", "--set", "sza=45"]);
+    assert!(stdout.contains("0 points run, 1 kept"), "{stdout}");
+}
+
+#[test]
+fn geometry_that_a_sweep_changes_is_built_anew() {
+    let text = swept().replace("Grid({ ", "Grid({ \"height\": [0.0, 2.0, 2.0], ");
+    let folder = folder_with(&text);
+    let (code, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron"]);
+    assert_eq!(code, 0);
+    assert!(stdout.contains("4 points run, 2 kept; geometry built 2 times"), "{stdout}");
+}
+
+#[test]
+fn a_sweep_that_is_wrong_somewhere_runs_nowhere() {
+    let folder = folder_with(&swept().replace("60.0]", "60.0, 95.0]"));
+    let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);
+    assert_eq!(code, 1);
+    assert!(stderr.starts_with("error: at sza=95: error: expected an angle"), "{stderr}");
+    assert_eq!(names(folder.path()), ["soil.ron"]);
+    let folder = folder_with(SOIL);
+    let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);
+    assert_eq!(code, 1);
+    assert!(stderr.starts_with("error: soil.ron has no `sweep`: write, for example"), "{stderr}");
+    let folder = folder_with(&swept().replace("\"=sza\"", "30.0"));
+    let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("no formula uses the parameter `sza`"), "{stderr}");
+}

@@ -5,6 +5,7 @@ mod stage;
 mod thermal;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use hecs::World;
 
@@ -31,6 +32,9 @@ pub struct Setting {
 
 /// Builds the stage of a world. Reads every component but those of sensors.
 ///
+/// `built` is the geometry of a stage that was extracted from the same meshes, instances and terrain;
+/// without it, the ray engine's trees are built.
+///
 /// Entities are taken in document order, because a `World` has none. Prototypes that nothing
 /// instantiates and materials that no used part wears do not reach the stage.
 ///
@@ -40,7 +44,11 @@ pub struct Setting {
 /// # Panics
 /// If the world holds no terrain, or an instance of a prototype that it does not hold: spawning
 /// guarantees both.
-pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
+pub fn extract(
+    world: &World,
+    setting: &Setting,
+    built: Option<Arc<accel::Scene>>,
+) -> Result<Stage, BuildError> {
     let mut terrains = world.query::<&TerrainPatch>();
     let terrain = terrains.iter().next().expect("a scene has a terrain");
     let mut placements: Vec<Placement> = world.query::<&Placement>().iter().copied().collect();
@@ -63,29 +71,35 @@ pub fn extract(world: &World, setting: &Setting) -> Result<Stage, BuildError> {
         .iter()
         .map(|(_, _, materials)| materials.0.iter().map(|&id| surfaces.id(id)).collect())
         .collect();
-    let mut meshes = vec![MeshInput { mesh: &terrain.mesh, surfaces: &ground_surfaces }];
-    meshes.extend(
-        prototypes
-            .iter()
-            .zip(&part_surfaces)
-            .map(|(&(_, mesh, _), surfaces)| MeshInput { mesh, surfaces }),
-    );
-    let mut instances = vec![InstanceInput {
-        mesh: 0,
-        linear: terrain.world_from_object(),
-        translation: terrain.origin(),
-    }];
-    instances.extend(placements.iter().map(|placement| InstanceInput {
-        mesh: used[&placement.prototype.0],
-        linear: placement.world_from_object(),
-        translation: placement.position,
-    }));
-    let domain = Domain {
-        min: terrain.corner,
-        max: terrain.corner + terrain.size,
-        boundary: setting.boundary,
+    let build = || {
+        let mut meshes = vec![MeshInput { mesh: &terrain.mesh, surfaces: &ground_surfaces }];
+        meshes.extend(
+            prototypes
+                .iter()
+                .zip(&part_surfaces)
+                .map(|(&(_, mesh, _), surfaces)| MeshInput { mesh, surfaces }),
+        );
+        let mut instances = vec![InstanceInput {
+            mesh: 0,
+            linear: terrain.world_from_object(),
+            translation: terrain.origin(),
+        }];
+        instances.extend(placements.iter().map(|placement| InstanceInput {
+            mesh: used[&placement.prototype.0],
+            linear: placement.world_from_object(),
+            translation: placement.position,
+        }));
+        let domain = Domain {
+            min: terrain.corner,
+            max: terrain.corner + terrain.size,
+            boundary: setting.boundary,
+        };
+        accel::Scene::build(&meshes, &instances, domain)
     };
-    let geometry = accel::Scene::build(&meshes, &instances, domain)?;
+    let geometry = match built {
+        Some(geometry) => geometry,
+        None => Arc::new(build()?),
+    };
     Ok(Stage {
         bands: setting.bands,
         rules: setting.rules,

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::{Light, Thermal};
@@ -26,7 +28,7 @@ pub struct Stage {
     /// What surfaces and the sky emit, where a sensor measures it.
     pub thermal: Option<Thermal>,
     /// What rays can hit.
-    pub geometry: accel::Scene,
+    pub geometry: Arc<accel::Scene>,
 }
 
 /// A surface with the name that its absorption is reported under.

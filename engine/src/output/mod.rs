@@ -11,6 +11,7 @@ mod picture;
 mod rows;
 mod staging;
 mod summary;
+mod sweep;
 mod table;
 
 use std::io;
@@ -19,6 +20,7 @@ use std::path::{Path, PathBuf};
 use crate::products::{Image, Product, Report};
 
 pub use picture::Picture;
+pub use sweep::{is_complete, write_point, write_sweep};
 pub use table::table;
 
 /// Why a report is not on disk. Nothing of it is, then.
@@ -34,6 +36,8 @@ pub enum OutputError {
     Taken { path: PathBuf },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    #[error("cannot read {} again", path.display())]
+    Read { path: PathBuf, source: io::Error },
     #[error("{sensor}.{product} has {found} {what}, but its axes say {expected}")]
     Shape { sensor: String, product: String, what: &'static str, expected: usize, found: usize },
 }

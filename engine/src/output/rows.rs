@@ -70,7 +70,7 @@ fn heading(axis: &Axis, index: usize) -> String {
     }
 }
 
-fn point(axis: &Axis, index: usize) -> String {
+pub(super) fn point(axis: &Axis, index: usize) -> String {
     match &axis.points {
         AxisPoints::Labels(labels) => labels[index].clone(),
         AxisPoints::Numbers(numbers) => number(numbers[index]),
@@ -78,6 +78,6 @@ fn point(axis: &Axis, index: usize) -> String {
 }
 
 /// The shortest text that reads back as the same number.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     format!("{value:?}")
 }

@@ -20,6 +20,8 @@ pub use images::of_image;
 pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
-pub use report::{Axis, AxisPoints, Georeference, Image, Product, Rendering, Report, SensorReport};
+pub use report::{
+    Axis, AxisPoints, Georeference, Image, Point, Product, Rendering, Report, SensorReport,
+};
 pub use sources::{brightness_of, of_sources};
 pub use thermal::{brightness, radiance_of_sources};

@@ -151,3 +151,23 @@ pub struct Report {
     /// What each sensor measured, in document order.
     pub sensors: Vec<SensorReport>,
 }
+
+/// A point of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The swept parameters and their values.
+    pub params: Vec<(String, f64)>,
+    /// Hash of all that decides the results: the scene as it is at this point, the content of every
+    /// file that it names, the number of samples and this version of sunfleck. Hexadecimal.
+    pub key: String,
+}
+
+impl Point {
+    /// `sza=30,lai=2`: its parameters as people write them.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let params: Vec<_> =
+            self.params.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        params.join(",")
+    }
+}

@@ -14,6 +14,12 @@ pub enum Failure {
     /// The scene is wrong, and there is no text to point into.
     #[error("{}", .0.iter().map(one_line).collect::<Vec<_>>().join("\n"))]
     Problems(Vec<Diagnostic>),
+    /// The scene has no points to run at, or not these.
+    #[error("{0}")]
+    Sweep(String),
+    /// At one point of a sweep, something is wrong.
+    #[error("at {point}: {source}")]
+    Point { point: String, source: Box<Self> },
     #[error(transparent)]
     Build(#[from] BuildError),
     #[error("{}: could not be read again: {source}", path.display())]

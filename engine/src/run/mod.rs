@@ -3,6 +3,7 @@
 mod failure;
 mod provenance;
 mod sensors;
+mod sweep;
 
 use std::path::Path;
 use std::time::Instant;
@@ -13,10 +14,13 @@ use crate::accel::Boundary;
 use crate::document::{self, Diagnostic, Reading, Scene};
 use crate::extract::{Rules, Setting, Stage, extract};
 use crate::products::{BandSources, Context, Report, SensorReport};
-use crate::spawn::{Spawned, missing_files, spawn};
+use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
 
 pub use failure::Failure;
+pub use sweep::Sweep;
+
+use sweep::Kept;
 
 /// What the caller decides beyond the scene.
 #[derive(Clone, Debug)]
@@ -118,7 +122,7 @@ pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
         let spawned = spawn(&reading.scene, folder_of(path))
             .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
         clock.lap("load");
-        let stage = extract(&spawned.world, &setting(&reading.scene))?;
+        let stage = extract(&spawned.world, &setting(&reading.scene), None)?;
         clock.lap("build");
         let seconds = |lap: usize| clock.laps[lap].1;
         Ok(Ready { stage, load_seconds: seconds(0), build_seconds: seconds(1) })
@@ -135,19 +139,41 @@ pub fn run(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Report, Failure> {
+    run_kept(scene, folder, options, progress, &mut None)
+}
+
+/// The same; meshes, instances and terrain are taken from `kept`, if that is of a scene with the same
+/// ones, and are left there for the next run.
+fn run_kept(
+    scene: &Scene,
+    folder: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+    kept: &mut Option<Kept>,
+) -> Result<Report, Failure> {
     let start = Instant::now();
     let mut clock = Clock::start();
-    let problems = document::check(scene);
+    let mut problems = document::check(scene);
+    if let Some(name) = scene.include.keys().next() {
+        let what = "files are included by reading a scene, and this one was built";
+        let help = "write it with `to_ron` and read it with `read_file`";
+        problems.push(Diagnostic::error(format!("include.{name}"), what).help(help));
+    }
     if problems.iter().any(Diagnostic::is_error) {
         return Err(Failure::Problems(problems));
     }
     progress.stage("loading");
-    let Spawned { world, files, skipped, warnings } =
-        spawn(scene, folder).map_err(Failure::Problems)?;
-    let hash = provenance::hash(scene, &files)?;
+    let last = kept.take().filter(|kept| kept.serves(scene));
+    let (spawned, built) = match last {
+        Some(Kept { spawned, geometry, .. }) => {
+            (respawn(spawned, scene, folder).map_err(Failure::Problems)?, Some(geometry))
+        }
+        None => (spawn(scene, folder).map_err(Failure::Problems)?, None),
+    };
+    let hash = provenance::hash(scene, &spawned.files)?;
     clock.lap("spawn");
     progress.stage("building");
-    let stage = extract(&world, &setting(scene))?;
+    let stage = extract(&spawned.world, &setting(scene), built)?;
     clock.lap("build");
     let context = Context {
         bands: scene.bands.iter().map(|band| band.name.clone()).collect(),
@@ -157,9 +183,9 @@ pub fn run(
         sources: scene.bands.iter().map(sources).collect(),
     };
     progress.stage("tracing");
-    let reports = measure(&world, &stage, &context, options, progress);
+    let reports = measure(&spawned.world, &stage, &context, options, progress);
     clock.lap("trace");
-    Ok(Report {
+    let report = Report {
         scene: scene.title.clone(),
         hash,
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -169,10 +195,12 @@ pub fn run(
         bands: context.bands,
         wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
         stages: clock.laps,
-        skipped,
-        warnings: warnings.iter().map(failure::one_line).collect(),
+        skipped: spawned.skipped.clone(),
+        warnings: spawned.warnings.iter().map(failure::one_line).collect(),
         sensors: reports,
-    })
+    };
+    *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
+    Ok(report)
 }
 
 /// What the radiance in a band consists of.

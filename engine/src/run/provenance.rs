@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::Failure;
 use crate::document::Scene;
@@ -7,16 +7,16 @@ use crate::document::Scene;
 /// Equal hashes, versions and seeds give equal results.
 pub(super) fn hash(scene: &Scene, files: &[PathBuf]) -> Result<String, Failure> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(scene.to_ron().as_bytes());
+    hasher.update(scene.resolved().to_ron().as_bytes());
     for path in files {
-        let content = blake3::Hasher::new()
-            .update_reader(
-                std::fs::File::open(path)
-                    .map_err(|source| Failure::Read { path: path.clone(), source })?,
-            )
-            .map_err(|source| Failure::Read { path: path.clone(), source })?
-            .finalize();
-        hasher.update(content.as_bytes());
+        hasher.update(content(path)?.as_bytes());
     }
     Ok(hasher.finalize().to_hex().to_string())
+}
+
+/// Hash of what a file holds.
+pub(super) fn content(path: &Path) -> Result<blake3::Hash, Failure> {
+    let error = |source| Failure::Read { path: path.to_owned(), source };
+    let file = std::fs::File::open(path).map_err(error)?;
+    Ok(blake3::Hasher::new().update_reader(file).map_err(error)?.finalize())
 }

@@ -27,7 +27,7 @@ pub fn missing_files(scene: &Scene, folder: &Path) -> Vec<Diagnostic> {
 }
 
 /// Files that a scene names, each with its path in the document.
-fn named_files(scene: &Scene) -> Vec<(String, &str)> {
+pub(crate) fn named_files(scene: &Scene) -> Vec<(String, &str)> {
     let mut files = Vec::new();
     for (index, instances) in scene.instances.iter().enumerate() {
         if let Instances::Table { file, .. } = instances {

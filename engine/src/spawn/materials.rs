@@ -1,9 +1,8 @@
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use hecs::World;
 
 use super::Spawner;
-use super::meshes::Prototype;
 use super::spectra::Quantity;
 use crate::components::{EnergyGain, MaterialId, Name, SceneId, SurfaceOptics};
 use crate::document::{Diagnostic, Material, Spectrum, Terrain, unknown_name};
@@ -24,14 +23,12 @@ impl Spawner<'_> {
         id
     }
 
-    /// Spawns the materials that the terrain and the parts of used meshes wear. Others are looked at
+    /// Spawns the materials that the terrain and the parts of used meshes (`used`) wear. Others are looked at
     /// as far as that takes no file: what is wrong with them should not wait until they are used.
-    pub(super) fn materials(&mut self, meshes: &BTreeMap<u32, Prototype>, world: &mut World) {
+    pub(super) fn materials(&mut self, mut used: BTreeSet<MaterialId>, world: &mut World) {
         let scene = self.scene;
         let Terrain::Plane { material, .. } = &scene.terrain;
-        let mut used: BTreeSet<MaterialId> =
-            self.known_material(material, "terrain.material").into_iter().collect();
-        used.extend(meshes.values().flat_map(|mesh| mesh.materials.0.iter().copied()));
+        used.extend(self.known_material(material, "terrain.material"));
         for (index, (name, material)) in scene.materials.iter().enumerate() {
             let path = format!("materials.{name}");
             if used.contains(&MaterialId(index as u32)) {

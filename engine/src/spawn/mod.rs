@@ -14,12 +14,13 @@ mod thermal;
 
 use std::path::{Path, PathBuf};
 
-use hecs::World;
+use hecs::{Entity, Or, World};
 
-use crate::components::SceneId;
+use crate::components::{Mesh, PartMaterials, Placement, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, Scene};
 
 pub use files::missing_files;
+pub(crate) use files::named_files;
 
 /// A world, and how it came about.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
@@ -32,6 +33,16 @@ pub struct Spawned {
     pub skipped: Vec<String>,
     /// What the author should know.
     pub warnings: Vec<Diagnostic>,
+    /// The same of meshes, instances and terrain alone.
+    of_geometry: Notes,
+}
+
+/// What spawning notes on the way.
+#[derive(Clone, Default)]
+struct Notes {
+    files: Vec<PathBuf>,
+    skipped: Vec<String>,
+    problems: Vec<Diagnostic>,
 }
 
 /// What the steps of spawning share.
@@ -63,24 +74,64 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     if let Some(ground) = &ground {
         spawner.check_standing(&placements, &meshes, ground);
     }
-    spawner.materials(&meshes, &mut world);
+    let of_geometry = spawner.notes();
     for (id, mesh) in meshes {
         world.spawn((SceneId(id), mesh.name, mesh.mesh, mesh.materials));
     }
     world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
-    spawner.light(&mut world);
-    spawner.emission(&mut world);
-    spawner.sensors(&mut world);
-    let Spawner { mut files, skipped, problems, .. } = spawner;
-    let mut seen = std::collections::BTreeSet::new();
-    files.retain(|file| seen.insert(file.clone()));
-    if problems.iter().any(Diagnostic::is_error) {
-        return Err(problems);
+    spawner.finish(world, of_geometry)
+}
+
+/// The world of another scene that has the same meshes, instances and terrain; only the rest is
+/// made anew.
+///
+/// # Errors
+/// All that is wrong with the scene.
+pub fn respawn(spawned: Spawned, scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
+    let missing = missing_files(scene, folder);
+    if !missing.is_empty() {
+        return Err(missing);
     }
-    Ok(Spawned { world, files, skipped, warnings: problems })
+    let Spawned { mut world, of_geometry, .. } = spawned;
+    let others: Vec<Entity> = world
+        .query::<Entity>()
+        .without::<Or<&Mesh, Or<&Placement, &TerrainPatch>>>()
+        .iter()
+        .collect();
+    for entity in others {
+        // It was found there just now.
+        drop(world.despawn(entity));
+    }
+    let Notes { files, skipped, problems } = of_geometry.clone();
+    Spawner { scene, folder, files, skipped, problems }.finish(world, of_geometry)
 }
 
 impl Spawner<'_> {
+    fn notes(&self) -> Notes {
+        let (files, skipped) = (self.files.clone(), self.skipped.clone());
+        Notes { files, skipped, problems: self.problems.clone() }
+    }
+
+    /// Spawns all that is no geometry.
+    fn finish(mut self, mut world: World, of_geometry: Notes) -> Result<Spawned, Vec<Diagnostic>> {
+        let worn = world
+            .query::<&PartMaterials>()
+            .iter()
+            .flat_map(|materials| materials.0.iter().copied())
+            .collect();
+        self.materials(worn, &mut world);
+        self.light(&mut world);
+        self.emission(&mut world);
+        self.sensors(&mut world);
+        let Spawner { mut files, skipped, problems, .. } = self;
+        let mut seen = std::collections::BTreeSet::new();
+        files.retain(|file| seen.insert(file.clone()));
+        if problems.iter().any(Diagnostic::is_error) {
+            return Err(problems);
+        }
+        Ok(Spawned { world, files, skipped, warnings: problems, of_geometry })
+    }
+
     /// The path of a file that the scene names, and a note that it was read.
     fn file(&mut self, name: &str) -> PathBuf {
         let path = self.folder.join(name);

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
-use super::Map;
+use super::{Map, Scene};
 
 record! {
     /// A file whose definitions are part of the scene, by names that start with the include's own:
@@ -27,6 +27,16 @@ choice! {
         Grid(Map<Vec<f64>> => r#"{ "sza": [0.0, 30.0, 60.0] }"#),
         /// The first values of all parameters, then the second ones, and so on.
         Zip(Map<Vec<f64>> => r#"{ "sza": [30.0, 60.0], "vza": [0.0, 45.0] }"#),
+    }
+}
+
+impl Scene {
+    /// The scene without what has been settled: parameters, variants and sweep. It gives the same
+    /// results, and it is what `sunfleck expand` prints.
+    #[must_use]
+    pub fn resolved(&self) -> Self {
+        let (params, variants) = (Map::new(), Map::new());
+        Self { params, variants, sweep: None, ..self.clone() }
     }
 }
 

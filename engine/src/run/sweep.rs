@@ -1,0 +1,163 @@
+//! A scene at many values of its parameters: what does not change is built once.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::provenance::content;
+use super::{Failure, Options, Progress, folder_of, in_pool, read, run_kept};
+use crate::accel;
+use crate::document::{Map, Material, Scene, Sensor, Sky, Spectrum, ThermalSky};
+use crate::products::{Point, Report};
+use crate::spawn::{Spawned, named_files};
+
+/// A scene file that has been read at every point of its sweep, and what its runs share.
+///
+/// Random streams have the seed and the sensor's path as keys, so each point is traced with the same
+/// numbers: differences between points have far less noise than the points themselves.
+#[expect(missing_debug_implementations, reason = "a World has no Debug")]
+pub struct Sweep {
+    file: PathBuf,
+    options: Options,
+    points: Vec<Point>,
+    kept: Option<Kept>,
+    builds: usize,
+}
+
+impl Sweep {
+    /// Reads a scene file at every point.
+    ///
+    /// # Errors
+    /// What is wrong with it at the first point where anything is.
+    pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
+        let scene = read(file, options)?.scene;
+        let Some(sweep) = &scene.sweep else {
+            let example = "sweep: Grid({ \"sza\": [0.0, 30.0, 60.0] })";
+            let text =
+                format!("{} has no `sweep`: write, for example, `{example}`", file.display());
+            return Err(Failure::Sweep(text));
+        };
+        let sweep = sweep.fixed(&options.document.set);
+        let mut contents = HashMap::new();
+        let mut points = Vec::with_capacity(sweep.len());
+        for index in 0..sweep.len() {
+            let params = sweep.point(index);
+            let mut point = Point { params, key: String::new() };
+            let key = key(file, &at(options, &point), &mut contents);
+            point.key = key.map_err(|source| wrong_at(&point, source))?;
+            points.push(point);
+        }
+        let (file, options) = (file.to_owned(), options.clone());
+        Ok(Self { file, options, points, kept: None, builds: 0 })
+    }
+
+    /// All points, the last parameter fastest.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// How often meshes, instances and terrain have been built so far.
+    #[must_use]
+    pub fn builds(&self) -> usize {
+        self.builds
+    }
+
+    /// Runs the scene at one of its points.
+    ///
+    /// # Errors
+    /// All that is wrong with the scene there.
+    pub fn run(&mut self, point: &Point, progress: &dyn Progress) -> Result<Report, Failure> {
+        let options = at(&self.options, point);
+        let (file, mut kept) = (&self.file, self.kept.take());
+        let report = in_pool(&options, || {
+            let reading = read(file, &options)?;
+            if !kept.as_ref().is_some_and(|kept| kept.serves(&reading.scene)) {
+                self.builds += 1;
+            }
+            run_kept(&reading.scene, folder_of(file), &options, progress, &mut kept)
+                .map_err(|failure| failure.with_source(&reading.source))
+        });
+        self.kept = kept;
+        report.map_err(|source| wrong_at(point, source))
+    }
+}
+
+fn at(options: &Options, point: &Point) -> Options {
+    let mut options = options.clone();
+    options.document.point.clone_from(&point.params);
+    options
+}
+
+fn wrong_at(point: &Point, source: Failure) -> Failure {
+    Failure::Point { point: point.name(), source: Box::new(source) }
+}
+
+/// Content hashes of files by path, so that each file is read once.
+type Contents = HashMap<PathBuf, blake3::Hash>;
+
+fn key(file: &Path, options: &Options, contents: &mut Contents) -> Result<String, Failure> {
+    let reading = read(file, options)?;
+    let swept = |path: &str| {
+        let name = path.strip_prefix("params.")?;
+        options.document.point.iter().any(|(swept, _)| swept == name).then_some(())
+    };
+    // Nothing but a warning can be left, and a point that changes nothing is no point.
+    let unused: Vec<_> =
+        reading.diagnostics.iter().filter(|one| swept(&one.path).is_some()).cloned().collect();
+    if !unused.is_empty() {
+        return Err(Failure::Scene(reading.source.render(&unused)));
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+    hasher.update(&options.quality.to_bits().to_le_bytes());
+    hasher.update(reading.scene.resolved().to_ron().as_bytes());
+    for (_, named) in named_files(&reading.scene) {
+        let path = folder_of(file).join(named);
+        let hash = match contents.get(&path) {
+            Some(hash) => *hash,
+            // What is not there is told by the run, with its place.
+            None => match content(&path) {
+                Ok(hash) => *contents.entry(path).or_insert(hash),
+                Err(_not_there) => continue,
+            },
+        };
+        hasher.update(hash.as_bytes());
+    }
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
+/// Geometry that was built, and the scene that it is of.
+pub(super) struct Kept {
+    pub(super) form: Scene,
+    pub(super) spawned: Spawned,
+    pub(super) geometry: Arc<accel::Scene>,
+}
+
+impl Kept {
+    /// Whether a scene has the same meshes, instances and terrain.
+    pub(super) fn serves(&self, scene: &Scene) -> bool {
+        self.form == form(scene)
+    }
+}
+
+/// A scene without light, spectra and sensors: what decides its geometry, and the order of its
+/// materials. Any other key counts as geometry until it is taken out here.
+pub(super) fn form(scene: &Scene) -> Scene {
+    let material = |_: &Material| Material::Lambertian {
+        reflectance: Spectrum::Constant(0.0),
+        back_reflectance: None,
+        temperature: None,
+    };
+    Scene {
+        title: String::new(),
+        bands: Vec::new(),
+        spectra: Map::new(),
+        materials: scene.materials.iter().map(|(n, m)| (n.clone(), material(m))).collect(),
+        sun: None,
+        sky: Sky::None,
+        thermal_sky: ThermalSky::None,
+        sensors: Map::<Sensor>::new(),
+        ..scene.resolved()
+    }
+}
