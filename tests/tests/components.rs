@@ -159,3 +159,56 @@ fn gaps_are_measured_in_the_dark() {
         document::read_text("a.ron", &parts, &document::Options::default()).expect("text");
     assert!(reading.render().contains("there is no sun"), "{}", reading.render());
 }
+
+/// *Scene*: a sheet over one half of all that a fisheye sees, to the horizon. *Expected*: a gap fraction
+/// of a half in every ring, and the leaf area indices that follow from it: 2 ln 2 cos 57.5° by Beer,
+/// 2 ln 2 Σ w cos θ over the five rings, and Miller's integral of ln 2 cos θ.
+#[test]
+fn a_fisheye_tells_the_leaf_area_index_of_its_gaps() {
+    let sheet = "g sheet\nv 0 -900 0\nv 900 -900 0\nv 900 900 0\nv 0 900 0\nf 1 2 3 4\n";
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(dir.path().join("sheet.obj"), sheet).expect("a file");
+    let camera = |size: u32, look: &str, projection: &str| {
+        format!(
+            "Fisheye(size_px: ({size}, {size}), position_m: (0.0, 0.0, 1.0), look: {look}, \
+             projection: {projection}, samples_per_px: 32, measure: [GapFraction])"
+        )
+    };
+    let report = measure(
+        &format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: {{ "soil": Lambertian(reflectance: Constant(0.3)) }},
+    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("soil")) }},
+    terrain: Plane(size_m: (1800.0, 1800.0), corner_m: (-900.0, -900.0), material: "soil"),
+    instances: [List(of: "sheet", at_m: [(0.0, 0.0, 0.9), (0.0, 0.0, 1.1)])],
+    sensors: {{ "up": {}, "wide": {}, "down": {}, "tilted": {} }},
+)"#,
+            camera(64, "Up", "Equisolid"),
+            camera(48, "Up", "Orthographic"),
+            camera(64, "Down", "Equidistant"),
+            camera(8, "Towards(zenith_deg: 60.0, azimuth_deg: 0.0)", "Equidistant"),
+        ),
+        dir.path(),
+        &Options::default(),
+    );
+    let half = 2_f64.ln();
+    let rings = [7.0, 23.0, 38.0, 53.0, 68.0_f64].map(|ring| ring.to_radians().cos());
+    let weights = [0.034, 0.104, 0.160, 0.218, 0.484];
+    let five: f64 =
+        rings.iter().zip(weights).map(|(cosine, weight)| 2.0 * half * cosine * weight).sum();
+    let gaps: Vec<_> =
+        (0..15).map(|ring| ((5.0 * f64::from(ring) + 2.5).to_radians(), 0.5, 0.0)).collect();
+    let (miller, _) = sunfleck::products::lai_miller(&gaps);
+    for sensor in ["up", "wide", "down"] {
+        let beer = 2.0 * half * 57.5_f64.to_radians().cos();
+        for (name, truth) in [("lai_beer", beer), ("lai_miller", miller), ("lai_2000", five)] {
+            let lai = Estimate::of(product(&report, sensor, name), 0);
+            assert!(lai.z(truth).abs() < 4.0, "{sensor}, {name}: {lai:?} for {truth}");
+            assert!(lai.error > 0.0 && lai.error < 0.03 * truth, "{sensor}, {name}: {lai:?}");
+        }
+    }
+    let tilted = report.sensors.iter().find(|sensor| sensor.name == "tilted").expect("a sensor");
+    assert_eq!(tilted.products.len(), 1, "rings of a tilted camera are not those of the vertical");
+}

@@ -35,6 +35,14 @@ impl Sums {
         }
     }
 
+    /// Adds a value to one band of a cell.
+    ///
+    /// # Panics
+    /// If there is no such cell or band.
+    pub fn add_at(&mut self, cell: usize, band: usize, value: f64) {
+        self.values[cell * self.bands + band] += value;
+    }
+
     /// Adds sums of one cell, shape `[bands]`.
     ///
     /// # Panics

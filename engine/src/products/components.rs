@@ -3,7 +3,7 @@
 use super::context::labels;
 use super::directions::axes;
 use super::images::georeference;
-use super::leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller};
+use super::leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller, lai_of_rings};
 use super::{Axis, Context, Image, Product, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
@@ -13,7 +13,8 @@ use crate::transport::{COMPONENT_COLUMNS, GAP_COLUMN, ImageOutcome, ViewsOutcome
 const COMPONENTS: [&str; 4] = ["sunlit_ground", "sunlit_canopy", "shaded_ground", "shaded_canopy"];
 
 /// Components as an image: their shares, and the number (1 to 4) of that with the largest share,
-/// NaN where none is seen; or the share of gaps. Nothing for other measures.
+/// NaN where none is seen; or the share of gaps, and of a fisheye that looks straight up or down the
+/// leaf area indices that they imply. Nothing for other measures.
 #[must_use]
 pub fn components_of_image(
     measure: ImageMeasure,
@@ -62,7 +63,7 @@ pub fn components_of_image(
         ImageMeasure::GapFraction => {
             let column = GAP_COLUMN..GAP_COLUMN + 1;
             let of = |values: &[f32]| pick(values, column.clone());
-            vec![Product {
+            let gaps = Product {
                 image: Some(image(&["gap"], of(&outcome.pixels), of(&outcome.errors))),
                 ..product(
                     "gap_fraction",
@@ -70,7 +71,11 @@ pub fn components_of_image(
                     &outcome.mean[column.clone()],
                     &outcome.mean_error[column.clone()],
                 )
-            }]
+            };
+            let lai = lai_of_rings(outcome.zones.values()).into_iter().map(|(name, lai, error)| {
+                product(name, vec![vec![axis(&["lai"])]], &[lai], &[error])
+            });
+            std::iter::once(gaps).chain(lai).collect()
         }
         ImageMeasure::Radiance
         | ImageMeasure::Brf

@@ -17,7 +17,7 @@ pub use components::{components_of_directions, components_of_image};
 pub use context::{BandSources, Context};
 pub use directions::of_directions;
 pub use images::of_image;
-pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller};
+pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller, lai_of_rings};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{

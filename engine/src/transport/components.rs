@@ -8,19 +8,26 @@ use super::{Camera, ImageOutcome, ViewsOutcome, Walk, Watch};
 use crate::accel::Ray;
 use crate::components::{Stop, View};
 use crate::extract::Stage;
+use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
 
 /// Columns of what is counted: the four components in the order of their numbers (1 sunlit ground,
 /// 2 sunlit canopy, 3 shaded ground, 4 shaded canopy) and gaps.
 pub const COMPONENT_COLUMNS: usize = 5;
 
-/// Column of gaps: all ground, and the sky where a camera sees it.
+/// Column of gaps: ground that is looked down on, and the sky where a camera sees it.
 pub const GAP_COLUMN: usize = 4;
+
+/// Rings of 1° about the vertical.
+pub const GAP_RINGS: usize = 90;
 
 /// Shares of what each pixel sees first, as columns in place of bands.
 ///
 /// A point is sunlit if the sun is visible from the side of its surface that is seen: a leaf seen
 /// from below is shaded although the sun shines on its upper side. Without a sun all is shaded.
+///
+/// Of a fisheye that looks straight up or down, `zones` hold gaps and samples by rings of 1° about the
+/// vertical, shape `[randomisations, 90, 2]`.
 #[must_use]
 pub fn measure_image_components(
     stage: &Stage,
@@ -29,7 +36,12 @@ pub fn measure_image_components(
     key: Key,
     watch: Watch<'_>,
 ) -> ImageOutcome {
-    walk_pixels(stage, (camera, samples), key, watch, COMPONENT_COLUMNS, FirstHit::default)
+    let upright = match camera {
+        Camera::Fisheye(camera) => camera.upright(),
+        _ => None,
+    };
+    let walk = || FirstHit { upright, ..FirstHit::default() };
+    walk_pixels(stage, (camera, samples), key, watch, COMPONENT_COLUMNS, walk)
 }
 
 /// Shares of what each view sees first, shape `[views, COMPONENT_COLUMNS]`, see
@@ -62,12 +74,17 @@ pub fn measure_directions_components(
 struct FirstHit {
     /// The columns, and behind them a 1 for what was met.
     columns: [f32; COMPONENT_COLUMNS + 1],
+    /// 1 to count gaps by zenith angle above, -1 to count them by nadir angle below.
+    upright: Option<f64>,
+    /// Cosine of that angle.
+    cosine: f64,
     rays: u64,
 }
 
 impl Walk for FirstHit {
     fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
         self.rays += 1;
+        self.cosine = ray.direction.z * self.upright.unwrap_or(0.0);
         let Some(hit) = stage.geometry.closest(&ray) else { return false };
         let is_sunlit = stage.light.sun.as_ref().is_some_and(|sun| {
             let sun = sun.towards(sampler);
@@ -81,7 +98,7 @@ impl Walk for FirstHit {
         let is_ground = stage.is_ground(&hit);
         self.columns = [0.0; COMPONENT_COLUMNS + 1];
         self.columns[2 * usize::from(!is_sunlit) + usize::from(!is_ground)] = 1.0;
-        self.columns[GAP_COLUMN] = f32::from(is_ground);
+        self.columns[GAP_COLUMN] = f32::from(is_ground && ray.direction.z < 0.0);
         self.columns[COMPONENT_COLUMNS] = 1.0;
         true
     }
@@ -95,6 +112,18 @@ impl Walk for FirstHit {
 
     fn values(&self) -> &[f32] {
         &self.columns
+    }
+
+    fn zones(&self) -> usize {
+        if self.upright.is_some() { 2 * GAP_RINGS } else { 0 }
+    }
+
+    fn add_to_zones(&self, sums: &mut Sums, cell: usize) {
+        if self.cosine > 0.0 {
+            let ring = (self.cosine.min(1.0).acos().to_degrees() as usize).min(GAP_RINGS - 1);
+            sums.add_at(cell, 2 * ring, self.columns[GAP_COLUMN].into());
+            sums.add_at(cell, 2 * ring + 1, 1.0);
+        }
     }
 
     fn rays(&self) -> u64 {

@@ -22,6 +22,8 @@ pub struct ImageOutcome {
     pub mean: Vec<f64>,
     /// Its standard error.
     pub mean_error: Vec<f64>,
+    /// What a walk sums over the whole image alone, shape `[randomisations, zones]`.
+    pub zones: Sums,
     /// Paths traced.
     pub samples: u64,
     /// Rays traced.
@@ -67,6 +69,7 @@ struct Tile {
     errors: Vec<f32>,
     coverage: Vec<f32>,
     sums: Sums,
+    zones: Sums,
     hits: Vec<f64>,
     rays: u64,
 }
@@ -120,6 +123,7 @@ pub(super) fn walk_pixels<W: Walk>(
         coverage: vec![0.0; all],
         mean: Vec::new(),
         mean_error: Vec::new(),
+        zones: Sums::new(randomisations as usize, walk().zones()),
         samples: all as u64 * u64::from(randomisations * each),
         rays: 0,
     };
@@ -148,6 +152,7 @@ pub(super) fn walk_pixels<W: Walk>(
                 }
             }
             sums.merge(&result.sums);
+            outcome.zones.merge(&result.zones);
             for (total, part) in hits.iter_mut().zip(&result.hits) {
                 *total += part;
             }
@@ -204,6 +209,7 @@ pub fn measure_image_forward(
         coverage: vec![1.0; pixels],
         mean: of_total(&means),
         mean_error: of_total(&errors),
+        zones: Sums::new(0, 0),
         samples: outcome.packets,
         rays: outcome.rays,
     }
@@ -235,6 +241,7 @@ fn trace_tile(
         errors: Vec::new(),
         coverage: Vec::new(),
         sums: Sums::new(randomisations as usize, bands),
+        zones: Sums::new(randomisations as usize, walk.zones()),
         hits: vec![0.0; randomisations as usize],
         rays: 0,
     };
@@ -257,6 +264,7 @@ fn trace_tile(
                     if is_seen {
                         hits[randomisation as usize] += 1.0;
                         walk.add_to(&mut sums, randomisation as usize);
+                        walk.add_to_zones(&mut tile.zones, randomisation as usize);
                     }
                 }
             }

@@ -22,7 +22,8 @@ mod walk;
 pub use backward::{Path, Traced};
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
 pub use components::{
-    COMPONENT_COLUMNS, GAP_COLUMN, measure_directions_components, measure_image_components,
+    COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS, measure_directions_components,
+    measure_image_components,
 };
 pub use counters::{
     AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter, FluxLevel,

@@ -23,6 +23,14 @@ pub(super) trait Walk {
         sums.add(cell, self.values(), 1.0);
     }
 
+    /// Columns of what is summed over the whole image alone.
+    fn zones(&self) -> usize {
+        0
+    }
+
+    /// Adds what the last ray found to sums over the whole image, shape `[cells, zones]`.
+    fn add_to_zones(&self, _: &mut Sums, _: usize) {}
+
     /// Rays traced so far.
     fn rays(&self) -> u64;
 }

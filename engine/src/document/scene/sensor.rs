@@ -177,8 +177,8 @@ choice! {
         /// of an image the dominant one too. Sunlit is where the sun is visible from the side that
         /// is seen; ground is the terrain.
         FourComponents,
-        /// Share of the ground in what is seen, or of the sky in a camera that looks up; of directions
-        /// the leaf area index that it implies too.
+        /// Share of the ground in what is seen, or of the sky in a camera that looks up; of directions,
+        /// and of a fisheye that looks straight up or down, the leaf area index that it implies too.
         GapFraction,
     }
 }

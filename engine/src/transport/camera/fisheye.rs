@@ -35,6 +35,13 @@ impl Fisheye {
         }
     }
 
+    /// 1 if it looks straight up, -1 if it looks straight down.
+    #[must_use]
+    pub fn upright(&self) -> Option<f64> {
+        let up = self.pose.ahead.z;
+        (up.abs() > 1.0 - 1e-9).then(|| up.signum())
+    }
+
     /// The ray through film coordinates, from `(0, 0)` top left to `(1, 1)` bottom right; none
     /// beside the disc.
     #[must_use]
