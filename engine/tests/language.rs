@@ -4,6 +4,8 @@
 mod advice;
 #[path = "language/broken.rs"]
 mod broken;
+#[path = "language/formatting.rs"]
+mod formatting;
 #[path = "language/hostile.rs"]
 mod hostile;
 #[path = "language/include.rs"]

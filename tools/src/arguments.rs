@@ -27,8 +27,21 @@ pub(crate) enum Command {
     /// Measure how fast this machine is on a scene
     #[command(subcommand)]
     Bench(Bench),
-    /// Print a scene as it is after includes, variant and parameters
+    /// Print a scene as it is after includes, variant and parameters, each value with its origin
     Expand(Scene),
+    /// Lay scene files out evenly; values and comments stay as they are
+    Fmt(Fmt),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Fmt {
+    /// Scene files
+    #[arg(value_name = "SCENE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Change nothing, and fail if a file would change
+    #[arg(long)]
+    pub(crate) check: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use anyhow::{Context as _, bail};
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Bench, Command, Run, Scene};
+use crate::arguments::{Bench, Command, Fmt, Run, Scene};
 use crate::bench;
 use crate::progress::Bars;
 
@@ -20,6 +20,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Sweep(arguments) => sweep(arguments),
         Command::Check(scene) => check(scene),
         Command::Expand(scene) => expand(scene),
+        Command::Fmt(arguments) => fmt(arguments),
         Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
     }
 }
@@ -120,7 +121,26 @@ fn expand(scene: &Scene) -> anyhow::Result<()> {
     if !reading.is_sound() {
         bail!(reading.render());
     }
-    print(&reading.scene.resolved().to_ron())
+    print(&reading.expanded())
+}
+
+fn fmt(arguments: &Fmt) -> anyhow::Result<()> {
+    let mut changed = String::new();
+    for file in &arguments.files {
+        let (text, formatted) = document::format_file(file)?;
+        if text == formatted {
+            continue;
+        }
+        writeln!(changed, "{}", file.display())?;
+        if !arguments.check {
+            output::replace(file, &formatted)?;
+        }
+    }
+    print(&changed)?;
+    if arguments.check && !changed.is_empty() {
+        bail!("not in normal form: run `sunfleck fmt` on these files");
+    }
+    Ok(())
 }
 
 pub(crate) fn document_options(scene: &Scene) -> document::Options {

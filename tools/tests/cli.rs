@@ -291,3 +291,23 @@ fn a_sweep_that_is_wrong_somewhere_runs_nowhere() {
     assert_eq!(code, 1);
     assert!(stderr.contains("no formula uses the parameter `sza`"), "{stderr}");
 }
+
+#[test]
+fn fmt_changes_what_is_not_in_normal_form_and_check_says_so() {
+    let folder = folder_with("Scene(format:1, // one\n)");
+    let (code, stdout, stderr) = outcome(folder.path(), &["fmt", "--check", "soil.ron"]);
+    assert_eq!((code, stdout.as_str()), (1, "soil.ron\n"));
+    assert_eq!(stderr, "error: not in normal form: run `sunfleck fmt` on these files\n");
+    let (code, stdout, stderr) = outcome(folder.path(), &["fmt", "soil.ron"]);
+    assert_eq!((code, stdout.as_str(), stderr.as_str()), (0, "soil.ron\n", ""));
+    let text = fs::read_to_string(folder.path().join("soil.ron")).unwrap();
+    assert_eq!(text, "Scene(\n    format: 1, // one\n)\n");
+    let (code, stdout, stderr) = outcome(folder.path(), &["fmt", "--check", "soil.ron"]);
+    assert_eq!((code, stdout.as_str(), stderr.as_str()), (0, "", ""));
+    assert_eq!(names(folder.path()), ["soil.ron"]);
+    fs::write(folder.path().join("soil.ron"), "Scene(format: 1").unwrap();
+    let (code, _, stderr) = outcome(folder.path(), &["fmt", "soil.ron"]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("is closed"), "{stderr}");
+    assert_eq!(fs::read_to_string(folder.path().join("soil.ron")).unwrap(), "Scene(format: 1");
+}

@@ -16,109 +16,227 @@ pub(super) trait Encode {
 #[derive(Debug)]
 pub(super) enum Text {
     Leaf(String),
-    Group { open: String, items: Vec<(String, Self)>, close: String },
+    Group(Group),
 }
+
+/// Items between brackets.
+#[derive(Debug, Default)]
+pub(super) struct Group {
+    pub(super) open: String,
+    pub(super) items: Vec<Item>,
+    pub(super) close: String,
+    /// Comments behind the last item, a line each; empty for a blank line.
+    pub(super) tail: Vec<String>,
+    /// Whether it has one item a line even where it has room on one.
+    pub(super) is_broken: bool,
+}
+
+/// An item of a group.
+#[derive(Debug)]
+pub(super) struct Item {
+    /// Its key, as a step of a path in the document; none in lists.
+    pub(super) name: Option<String>,
+    /// What is written before the value.
+    pub(super) key: String,
+    pub(super) text: Text,
+    /// Comments above it, a line each; empty for a blank line.
+    pub(super) above: Vec<String>,
+    /// Comment behind it.
+    pub(super) behind: String,
+}
+
+impl Item {
+    pub(super) fn new(name: Option<&str>, key: String, text: Text) -> Self {
+        let name = name.map(str::to_owned);
+        Self { name, key, text, above: Vec::new(), behind: String::new() }
+    }
+
+    fn has_comments(&self) -> bool {
+        !self.above.is_empty() || !self.behind.is_empty()
+    }
+}
+
+/// What to write behind the line of a path in the document.
+pub(super) type Remark<'a> = &'a dyn Fn(&str) -> Option<String>;
 
 impl Text {
     /// `Name(key: value)`; a name alone where nothing else is to be said.
-    pub(super) fn record(name: &str, items: Vec<(String, Self)>) -> Self {
+    pub(super) fn record(name: &str, items: Vec<Item>) -> Self {
         if items.is_empty() && !name.is_empty() {
             return Self::Leaf(name.to_owned());
         }
-        Self::Group { open: format!("{name}("), items, close: ")".to_owned() }
+        Self::group(format!("{name}("), items, ")")
+    }
+
+    pub(super) fn group(open: String, items: Vec<Item>, close: &str) -> Self {
+        Self::Group(Group { open, items, close: close.to_owned(), ..Group::default() })
+    }
+
+    /// `key: value`.
+    pub(super) fn item(name: &str, value: Self) -> Item {
+        Item::new(Some(name), format!("{name}: "), value)
     }
 
     /// `Name(value)`.
     pub(super) fn newtype(name: &str, value: Self) -> Self {
         match value {
             Self::Leaf(leaf) => Self::Leaf(format!("{name}({leaf})")),
-            Self::Group { open, items, close } => {
-                Self::Group { open: format!("{name}({open}"), items, close: format!("{close})") }
+            Self::Group(group) => {
+                let (open, close) = (format!("{name}({}", group.open), format!("{})", group.close));
+                Self::Group(Group { open, close, ..group })
             }
         }
     }
 
     /// As a file: the outermost group always one item a line.
     pub(super) fn into_file(self) -> String {
-        let mut out = String::new();
-        self.write_broken(0, &mut out);
-        out.push('\n');
-        out
+        self.into_file_with(&|_| None)
     }
 
-    fn write(&self, used: usize, indent: usize, out: &mut String) {
-        // One more for the comma that follows.
-        if self.width(WIDTH.saturating_sub(used + 1)).is_some() {
-            self.write_flat(out);
-        } else {
-            self.write_broken(indent, out);
-        }
+    /// The same with remarks behind lines.
+    pub(super) fn into_file_with(self, remark: Remark<'_>) -> String {
+        let mut writer = Writer { out: String::new(), path: String::new(), remark };
+        writer.broken(&self, 0);
+        writer.out.push('\n');
+        writer.out
     }
 
-    /// Characters on one line, if at most `limit`.
+    /// Characters on one line, if at most `limit`, and if it may stand on one.
     fn width(&self, limit: usize) -> Option<usize> {
         let within = |width: usize| (width <= limit).then_some(width);
         match self {
             Self::Leaf(leaf) => within(leaf.chars().count()),
-            Self::Group { open, items, close } => {
+            Self::Group(group) => {
+                let Group { open, items, close, tail, is_broken } = group;
+                if *is_broken || !tail.is_empty() {
+                    return None;
+                }
                 let mut width = open.chars().count() + close.chars().count();
                 if open.ends_with('{') && !items.is_empty() {
                     width += 2;
                 }
-                for (index, (key, item)) in items.iter().enumerate() {
-                    width += key.chars().count() + if index > 0 { 2 } else { 0 };
-                    width += item.width(limit.checked_sub(width)?)?;
+                for (index, item) in items.iter().enumerate() {
+                    if item.has_comments() {
+                        return None;
+                    }
+                    width += item.key.chars().count() + if index > 0 { 2 } else { 0 };
+                    width += item.text.width(limit.checked_sub(width)?)?;
                 }
                 within(width)
             }
         }
     }
+}
 
-    fn write_flat(&self, out: &mut String) {
-        match self {
-            Self::Leaf(leaf) => out.push_str(leaf),
-            Self::Group { open, items, close } => {
+struct Writer<'a> {
+    out: String,
+    /// Path in the document of what is being written.
+    path: String,
+    remark: Remark<'a>,
+}
+
+impl Writer<'_> {
+    fn text(&mut self, text: &Text, used: usize, indent: usize) {
+        // One more for the comma that follows.
+        if text.width(WIDTH.saturating_sub(used + 1)).is_some() {
+            self.flat(text);
+        } else {
+            self.broken(text, indent);
+        }
+    }
+
+    fn flat(&mut self, text: &Text) {
+        match text {
+            Text::Leaf(leaf) => self.out.push_str(leaf),
+            Text::Group(Group { open, items, close, .. }) => {
                 let pad = if open.ends_with('{') && !items.is_empty() { " " } else { "" };
-                out.push_str(open);
-                out.push_str(pad);
-                for (index, (key, item)) in items.iter().enumerate() {
+                self.out.push_str(open);
+                self.out.push_str(pad);
+                for (index, item) in items.iter().enumerate() {
                     if index > 0 {
-                        out.push_str(", ");
+                        self.out.push_str(", ");
                     }
-                    out.push_str(key);
-                    item.write_flat(out);
+                    self.out.push_str(&item.key);
+                    self.flat(&item.text);
                 }
-                out.push_str(pad);
-                out.push_str(close);
+                self.out.push_str(pad);
+                self.out.push_str(close);
             }
         }
     }
 
-    fn write_broken(&self, indent: usize, out: &mut String) {
-        let Self::Group { open, items, close } = self else { return self.write_flat(out) };
+    fn broken(&mut self, text: &Text, indent: usize) {
+        let Text::Group(Group { open, items, close, tail, .. }) = text else {
+            return self.flat(text);
+        };
         let inner = indent + 4;
         // Long lists of numbers fill their lines.
-        let small = |(key, item): &(String, Self)| key.is_empty() && item.width(40).is_some();
+        let small = |item: &Item| {
+            item.key.is_empty() && !item.has_comments() && item.text.width(40).is_some()
+        };
         let fill = items.len() > 8 && items.iter().all(small);
-        out.push_str(open);
+        self.out.push_str(open);
+        if !self.path.is_empty() {
+            self.remark();
+        }
         let mut column = WIDTH;
-        for (key, item) in items {
-            let width = item.width(40).unwrap_or(WIDTH) + 2;
+        for (index, item) in items.iter().enumerate() {
+            let width = item.text.width(40).unwrap_or(WIDTH) + 2;
             if fill && column + width <= WIDTH {
-                out.push(' ');
+                self.out.push(' ');
                 column += width;
             } else {
-                out.push('\n');
-                out.push_str(&" ".repeat(inner));
+                self.comments(&item.above, inner);
+                self.line(inner);
                 column = inner + width;
             }
-            out.push_str(key);
-            item.write(inner + key.chars().count(), inner, out);
-            out.push(',');
+            let length = self.path.len();
+            self.step(item.name.as_deref(), index);
+            self.out.push_str(&item.key);
+            self.text(&item.text, inner + item.key.chars().count(), inner);
+            self.out.push(',');
+            if !item.behind.is_empty() {
+                self.out.extend([" ", &item.behind]);
+            }
+            let is_flat = item.text.width(WIDTH.saturating_sub(inner + item.key.len() + 1));
+            if !fill && (is_flat.is_some() || matches!(item.text, Text::Leaf(_))) {
+                self.remark();
+            }
+            self.path.truncate(length);
         }
-        out.push('\n');
-        out.push_str(&" ".repeat(indent));
-        out.push_str(close);
+        self.comments(tail, inner);
+        self.line(indent);
+        self.out.push_str(close);
+    }
+
+    fn step(&mut self, name: Option<&str>, index: usize) {
+        match name {
+            Some(name) if self.path.is_empty() => self.path.push_str(name),
+            Some(name) => self.path.extend([".", name]),
+            None => self.path.extend(["[", &index.to_string(), "]"]),
+        }
+    }
+
+    fn remark(&mut self) {
+        if let Some(remark) = (self.remark)(&self.path) {
+            self.out.extend(["  // ", &remark]);
+        }
+    }
+
+    fn comments(&mut self, comments: &[String], indent: usize) {
+        for comment in comments {
+            if comment.is_empty() {
+                self.out.push('\n');
+            } else {
+                self.line(indent);
+                self.out.push_str(comment);
+            }
+        }
+    }
+
+    fn line(&mut self, indent: usize) {
+        self.out.push('\n');
+        self.out.push_str(&" ".repeat(indent));
     }
 }
 
@@ -189,16 +307,17 @@ impl<T: Encode> Encode for Option<T> {
 
 impl<T: Encode> Encode for Vec<T> {
     fn encode(&self) -> Text {
-        let items = self.iter().map(|item| (String::new(), item.encode())).collect();
-        Text::Group { open: "[".to_owned(), items, close: "]".to_owned() }
+        let items = self.iter().map(|item| Item::new(None, String::new(), item.encode())).collect();
+        Text::group("[".to_owned(), items, "]")
     }
 }
 
 impl<T: Encode> Encode for IndexMap<String, T> {
     fn encode(&self) -> Text {
-        let entry = |(key, value): (&String, &T)| (quoted(key, true) + ": ", value.encode());
-        let items = self.iter().map(entry).collect();
-        Text::Group { open: "{".to_owned(), items, close: "}".to_owned() }
+        let entry = |(key, value): (&String, &T)| {
+            Item::new(Some(key), quoted(key, true) + ": ", value.encode())
+        };
+        Text::group("{".to_owned(), self.iter().map(entry).collect(), "}")
     }
 }
 
@@ -206,7 +325,7 @@ macro_rules! encode_tuple {
     ($($type:ident $index:tt),*) => {
         impl<$($type: Encode),*> Encode for ($($type,)*) {
             fn encode(&self) -> Text {
-                Text::record("", vec![$((String::new(), self.$index.encode())),*])
+                Text::record("", vec![$(Item::new(None, String::new(), self.$index.encode())),*])
             }
         }
     };

@@ -6,6 +6,8 @@ mod check;
 mod decode;
 mod diagnostic;
 mod encode;
+mod expand;
+mod format;
 mod formula;
 mod include;
 mod params;
@@ -17,6 +19,7 @@ mod syntax;
 
 pub use check::check;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
+pub use format::{format, format_file};
 pub use read::{Options, ReadError, Reading, read_file, read_text};
 pub use scene::*;
 pub use source::Source;

@@ -8,11 +8,12 @@ use std::path::Path;
 use super::check::check_readable;
 use super::decode::{Decode, Findings, Reader};
 use super::diagnostic::{Diagnostic, Place};
+use super::encode::{Encode as _, Group, Text};
 use super::include::{Included, include};
 use super::params::{settle_params, survey};
 use super::scene::Scene;
 use super::source::Source;
-use super::syntax::parse;
+use super::syntax::{Node, parse};
 
 /// A scene may hold so many bytes, included files among them; large stands belong into tables.
 pub(super) const FILE_SIZE: u64 = 256 << 20;
@@ -37,6 +38,7 @@ pub struct Reading {
     pub source: Source,
     /// All that is wrong, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+    pub(super) options: Options,
 }
 
 impl Reading {
@@ -120,6 +122,17 @@ pub(super) fn text_of_file(path: &Path, only_files: bool) -> Result<String, Read
     Ok(text)
 }
 
+/// The tree of a text.
+pub(super) fn parse_text(source: &Source) -> Result<Node, ReadError> {
+    parse(source.text()).map_err(|error| {
+        let place = source.place_of(error.span);
+        let diagnostic = Diagnostic::error("", error.message).at(place);
+        let diagnostic = Diagnostic { help: error.help, ..diagnostic };
+        let rendered = source.describe(&diagnostic).trim_end().to_owned();
+        ReadError::Syntax { diagnostic: Box::new(diagnostic), rendered }
+    })
+}
+
 /// Texts that cannot be a scene.
 fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
     let file = file.to_owned();
@@ -144,14 +157,7 @@ fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
 pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, ReadError> {
     refuse_odd(name, text)?;
     let mut source = Source::new(name, text);
-    let mut tree = parse(text).map_err(|error| {
-        let place = source.place_of(error.span);
-        let diagnostic = Diagnostic::error("", error.message).at(place);
-        let diagnostic = Diagnostic { help: error.help, ..diagnostic };
-        let rendered = source.describe(&diagnostic).trim_end().to_owned();
-        ReadError::Syntax { diagnostic: Box::new(diagnostic), rendered }
-    })?;
-
+    let mut tree = parse_text(&source)?;
     let Included { diagnostics, lost } = include(&mut tree, &mut source);
     let mut reader = Reader::new(&source);
     reader.start_with(diagnostics, &lost);
@@ -186,7 +192,7 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
     if dropped > 0 {
         diagnostics.push(Diagnostic::error("", format!("and {dropped} more errors")));
     }
-    Ok(Reading { scene, source, diagnostics })
+    Ok(Reading { scene, source, diagnostics, options: options.clone() })
 }
 
 fn unused_param(name: &str) -> Diagnostic {
@@ -198,10 +204,13 @@ impl Scene {
     /// The scene as a file: what is read back from it is equal.
     #[must_use]
     pub fn to_ron(&self) -> String {
-        use super::encode::{Encode as _, Text};
+        self.to_text().into_file()
+    }
+
+    pub(super) fn to_text(&self) -> Text {
         match self.encode() {
-            Text::Group { items, .. } => Text::record("Scene", items).into_file(),
-            leaf @ Text::Leaf(_) => leaf.into_file(),
+            Text::Group(Group { items, .. }) => Text::record("Scene", items),
+            leaf @ Text::Leaf(_) => leaf,
         }
     }
 }

@@ -165,12 +165,12 @@ macro_rules! placeholder_of_key {
 
 macro_rules! encode_key {
     ($items:ident, $field:ident: $type:ty) => {
-        $items.push((concat!(stringify!($field), ": ").to_owned(), $field.encode()))
+        $items.push(Text::item(stringify!($field), $field.encode()))
     };
     ($items:ident, $field:ident: $type:ty = $default:expr) => {
         let default: $type = $default;
         if differs($field, &default) {
-            $items.push((concat!(stringify!($field), ": ").to_owned(), $field.encode()));
+            $items.push(Text::item(stringify!($field), $field.encode()));
         }
     };
 }

@@ -74,6 +74,16 @@ impl Source {
         &self.text
     }
 
+    /// The node at a path of the document, or at its nearest ancestor that exists.
+    pub(super) fn node(&self, path: &str) -> Option<&Node> {
+        let mut node = self.tree.as_ref()?;
+        let mut rest = path;
+        while let Some((child, after)) = step(node.inner(), rest) {
+            (node, rest) = (child, after);
+        }
+        Some(node)
+    }
+
     /// Bytes where a path of the document stands, or its nearest ancestor that exists.
     #[must_use]
     pub fn locate(&self, path: &str) -> Option<Span> {

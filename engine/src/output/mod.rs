@@ -78,6 +78,19 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
     staging.commit()
 }
 
+/// Gives a file another text; it has the old one or the new one, never a part.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn replace(file: &Path, text: &str) -> Result<(), OutputError> {
+    // What a link leads to, not the link.
+    let file = &file.canonicalize().unwrap_or_else(|_not_there| file.to_owned());
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let mut staging = staging::Staging::open(file.parent().unwrap_or(Path::new("")))?;
+    staging.file(&name, |file| io::Write::write_all(file, text.as_bytes()))?;
+    staging.commit().map(drop)
+}
+
 /// Tries whether [`write()`] could write into `folder`, and leaves everything as it was.
 ///
 /// # Errors

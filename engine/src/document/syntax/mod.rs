@@ -3,11 +3,13 @@
 //! Ours, because `ron` with `serde` stops at the first error, keeps no places, and takes repeated
 //! keys and `NaN` in silence.
 
+mod comments;
 mod lexer;
 mod parser;
 #[cfg(test)]
 mod tests;
 
+pub(super) use comments::{Comment, comments};
 pub(super) use parser::parse;
 
 /// Bytes of the text, from `start` up to but without `end`.
