@@ -308,3 +308,35 @@ fn a_material_that_is_seen_to_emit_needs_a_temperature() {
     .expect_err("no temperature");
     assert!(failure.to_string().contains("temperature: Uniform(300.0)"), "{failure}");
 }
+
+/// *Scene*: a plane at 4 µm by day, in a band of both kinds of light and one of sunlight, its reflection
+/// split by order. *Expected*: each pixel's radiance is its own emission and reflection, whatever else is
+/// measured with it, and its factor is the reflectance.
+#[test]
+fn orders_beside_emission_leave_the_radiance_of_pixels_as_it_is() {
+    let report = measure(
+        r#"Scene(
+    format: 1,
+    bands: [
+        (name: "mir", center_nm: 4000.0, source: Both),
+        (name: "red", center_nm: 660.0),
+    ],
+    materials: { "soil": Lambertian(reflectance: Bands([0.3, 0.1]), temperature: Uniform(300.0)) },
+    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
+    sun: (zenith_deg: 60.0, irradiance: Bands([0.01, 1.0])),
+    boundary: Periodic,
+    sensors: {
+        "image": Orthographic(size_px: (3, 2), extent_m: (3.0, 2.0), samples_per_px: 64, measure: [Radiance, Orders]),
+    },
+)"#,
+        Path::new("."),
+        &Options::default(),
+    );
+    let truth = [0.7 * planck(4_000.0, 300.0) + 0.3 * 0.01 * 0.5 / PI, 0.1 * 0.5 / PI];
+    let image = product(&report, "image", "radiance").image.as_ref().expect("pixels");
+    assert_eq!(image.values.len(), 12);
+    for (index, value) in image.values.iter().enumerate() {
+        let ratio = f64::from(*value) / truth[index % 2];
+        assert!((ratio - 1.0).abs() < 1e-5, "{index}: {value} for {truth:?}");
+    }
+}
