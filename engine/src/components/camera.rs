@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use super::View;
+use super::{View, VirtualPlane};
 
 /// How points of an image become rays.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,8 @@ pub struct Orthographic {
     pub footprint: Footprint,
     /// Where the sensor is.
     pub view: View,
+    /// Only light that leaves through it is seen.
+    pub plane: Option<VirtualPlane>,
 }
 
 /// What a parallel projection shows.

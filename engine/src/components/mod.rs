@@ -32,7 +32,7 @@ pub use optics::{EnergyGain, SurfaceOptics};
 pub use placement::Placement;
 pub use sensor::{
     Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, PhotonMeasure, Photons,
-    Sensor, Stop, System, View,
+    Sensor, Stop, System, View, VirtualPlane,
 };
 pub use terrain::TerrainPatch;
 pub use thermal::{BlackBody, Emission};

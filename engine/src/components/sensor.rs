@@ -1,4 +1,4 @@
-use glam::{DVec3, UVec2};
+use glam::{DVec2, DVec3, UVec2};
 
 use super::{Optics, Picture};
 
@@ -112,6 +112,8 @@ pub struct Directions {
     pub until: Vec<Stop>,
     /// What to report.
     pub measure: Vec<ImageMeasure>,
+    /// Only light that leaves through it counts.
+    pub plane: Option<VirtualPlane>,
     /// Which transport system estimates it.
     pub system: System,
 }
@@ -179,6 +181,19 @@ pub struct Photons {
     pub per_area: f64,
     /// What to report.
     pub measure: Vec<PhotonMeasure>,
+    /// Only what leaves through it, or lies below it, counts.
+    pub plane: Option<VirtualPlane>,
+}
+
+/// A horizontal rectangle through which light is counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VirtualPlane {
+    /// Its middle, m, local frame.
+    pub center: DVec2,
+    /// Extent to the east and to the north, m.
+    pub size: DVec2,
+    /// Height, m; that of the highest point of the scene if absent.
+    pub height: Option<f64>,
 }
 
 /// A cone of directions.

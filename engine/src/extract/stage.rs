@@ -84,19 +84,6 @@ impl Stage {
         hit.instance == 0
     }
 
-    /// Whether a ray that goes up from `point` leaves through the scene's rectangle at the top.
-    #[must_use]
-    pub fn leaves_through_top(&self, point: DVec3, direction: DVec3) -> bool {
-        if direction.z <= 0.0 {
-            return false;
-        }
-        self.periodic || {
-            let up = (self.top() - point.z).max(0.0) / direction.z;
-            let at = (point + direction * up).truncate() - self.corner;
-            at.cmpge(DVec2::ZERO).all() && at.cmple(self.size).all()
-        }
-    }
-
     /// Height of the ground at a horizontal position, m; that of the plane beside the terrain.
     #[must_use]
     pub fn ground_at(&self, at: DVec2) -> f64 {
@@ -109,12 +96,5 @@ impl Stage {
             ray = hit.leave(DVec3::NEG_Z);
         }
         self.ground
-    }
-
-    /// Position within the scene's rectangle in units of its extent, in [0, 1) where periodic.
-    #[must_use]
-    pub fn within(&self, point: DVec3) -> DVec2 {
-        let at = (point.truncate() - self.corner) / self.size;
-        if self.periodic { at - at.floor() } else { at }
     }
 }

@@ -76,12 +76,14 @@ struct Run<'a> {
     rays: u64,
     samples: u64,
     ended_by: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energy_imbalance: Option<f64>,
 }
 
 impl<'a> Run<'a> {
     fn of(sensor: &'a SensorReport) -> Self {
-        let SensorReport { seconds, rays, samples, ref ended_by, .. } = *sensor;
-        Self { seconds, rays, samples, ended_by }
+        let SensorReport { seconds, rays, samples, ref ended_by, energy_imbalance, .. } = *sensor;
+        Self { seconds, rays, samples, ended_by, energy_imbalance }
     }
 }
 

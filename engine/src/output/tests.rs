@@ -66,6 +66,7 @@ fn sensor(name: &str, product: Product) -> SensorReport {
         rays: 1 << 40,
         samples: 64,
         ended_by: "samples 64".to_owned(),
+        energy_imbalance: None,
     }
 }
 

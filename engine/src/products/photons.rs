@@ -5,8 +5,8 @@ use crate::components::View;
 use crate::extract::Stage;
 use crate::film::Spread;
 use crate::transport::{
-    ConeCounter, EnergyCounter, FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter,
-    ViewCounter,
+    AlbedoCounter, ConeCounter, EnergyCounter, FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere,
+    LayerCounter, ViewCounter,
 };
 
 /// Values and errors of a spread, each multiplied by a factor that depends on the cell.
@@ -17,20 +17,25 @@ fn scaled(spread: &Spread, bands: usize, factor: impl Fn(usize) -> f64) -> (Vec<
     (by_cell(spread.mean()), by_cell(&spread.standard_error()))
 }
 
-/// Albedo: reflected over incident flux.
+/// Albedo: power that leaves through the reference plane over the power that falls on it.
 #[must_use]
-pub fn albedo(spread: &Spread, context: &Context) -> Product {
-    let errors = spread.standard_error();
-    context.product(("albedo", "1"), Vec::new(), (spread.mean(), &errors), reflectance::fraction)
+pub fn albedo(spread: &Spread, counter: &AlbedoCounter, context: &Context) -> Product {
+    let (values, errors) = scaled(spread, context.bands.len(), |_| counter.plane.gain);
+    context.product(("albedo", "1"), Vec::new(), (&values, &errors), reflectance::fraction)
 }
 
 /// BRF of each cell of the hemisphere, its mean over the cell with the weight cos θ:
-/// `π P / (E A ∫cos θ dω)` (LESS manual eq. 5 with the exact integral in place of ΔΩ cos θ).
+/// `π P / (E A ∫cos θ dω)` (LESS manual eq. 5 with the exact integral in place of ΔΩ cos θ); `gain` is
+/// that of the plane that light leaves through.
 #[must_use]
-pub fn brf_cells(spread: &Spread, hemisphere: &Hemisphere, context: &Context) -> Product {
+pub fn brf_cells(
+    spread: &Spread,
+    (hemisphere, gain): (&Hemisphere, f64),
+    context: &Context,
+) -> Product {
     let cells: Vec<_> = hemisphere.cells().collect();
     let (values, errors) =
-        scaled(spread, context.bands.len(), |cell| 1.0 / cells[cell].projected_solid_angle);
+        scaled(spread, context.bands.len(), |cell| gain / cells[cell].projected_solid_angle);
     let degrees = |f: fn(&crate::transport::Cell) -> f64| {
         cells.iter().map(move |cell| f(cell).to_degrees()).collect::<Vec<_>>()
     };
@@ -69,8 +74,9 @@ pub fn brf_views(
 #[must_use]
 pub fn brf_cones(spread: &Spread, counter: &ConeCounter, context: &Context) -> Product {
     let cones = &counter.cones;
+    let gain = counter.plane.gain;
     let (values, errors) = scaled(spread, context.bands.len(), |cell| {
-        1.0 / ConeCounter::projected_solid_angle(&cones[cell])
+        gain / ConeCounter::projected_solid_angle(&cones[cell])
     });
     let views: Vec<View> = cones.iter().map(|cone| cone.axis).collect();
     let mut axes = axes(&views);
@@ -84,6 +90,9 @@ pub fn brf_cones(spread: &Spread, counter: &ConeCounter, context: &Context) -> P
 /// `fapar_material` in all, `fapar_vegetation` that all but the ground absorbs; and `ftran` that
 /// arrives at the ground: total, uncollided, collided by the canopy alone, and after bounces between
 /// ground and canopy.
+///
+/// With a virtual plane of the area `A`, `P / (E A)`: what is absorbed in the column below the plane,
+/// or arrives at the ground there, over what falls on the plane.
 #[must_use]
 pub fn fapar(
     spread: &Spread,
@@ -91,7 +100,8 @@ pub fn fapar(
     stage: &Stage,
     context: &Context,
 ) -> Vec<Product> {
-    let errors = spread.standard_error();
+    let gain = counter.plane.gain;
+    let (values, errors) = scaled(spread, context.bands.len(), |_| gain);
     let borders = &counter.borders;
     let layers = vec![
         numbers("bottom_m", borders[..counter.layers()].iter().copied()),
@@ -102,7 +112,7 @@ pub fn fapar(
     let terms = GROUND_TERMS.map(str::to_owned);
     let product = |name: &str, dimensions, cells: std::ops::Range<usize>| {
         let range = cells.start * context.bands.len()..cells.end * context.bands.len();
-        let values = (&spread.mean()[range.clone()], &errors[range]);
+        let values = (&values[range.clone()], &errors[range]);
         context.product((name, "1"), dimensions, values, reflectance::fraction)
     };
     let (totals, vegetation) = (counter.totals(), counter.vegetation());
@@ -137,15 +147,13 @@ pub fn energy(spread: &Spread, stage: &Stage, context: &Context) -> Product {
 
 /// Down- and upwelling flux density through each level: one image each.
 #[must_use]
-pub fn fluxes(
-    spread: &Spread,
-    counter: &FluxCounter,
-    stage: &Stage,
-    context: &Context,
-) -> Vec<Product> {
+pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<Product> {
     let bands = context.bands.len();
-    let errors = spread.standard_error();
+    let gain = counter.plane.gain;
+    let (values, errors) = scaled(spread, bands, |_| gain);
     let pixels = counter.pixels();
+    let plane = &counter.plane;
+    let pixel = plane.size / counter.size.as_dvec2();
     let mut products = Vec::new();
     for (index, level) in counter.levels.iter().enumerate() {
         let level = match level {
@@ -157,7 +165,7 @@ pub fn fluxes(
             let first = counter.first_cell(index, is_up);
             let raster = first * bands..(first + pixels) * bands;
             let total = (first + pixels) * bands..(first + pixels + 1) * bands;
-            // Each pixel holds a share of the power on the whole rectangle.
+            // Each pixel holds a share of the power on the whole plane.
             let per_pixel = |values: &[f64]| -> Vec<f32> {
                 reflectance::flux_density(&values[raster.clone()], &context.irradiance)
                     .iter()
@@ -168,18 +176,18 @@ pub fn fluxes(
                 width: counter.size.x as usize,
                 height: counter.size.y as usize,
                 bands: context.bands.clone(),
-                values: per_pixel(spread.mean()),
+                values: per_pixel(&values),
                 standard_error: per_pixel(&errors),
                 coverage: vec![1.0; pixels],
                 rendering: super::Rendering::Quicklook,
                 georeference: Some(super::Georeference {
-                    west: context.origin.0 + stage.corner.x,
-                    north: context.origin.1 + stage.corner.y + stage.size.y,
-                    pixel_width: stage.size.x / f64::from(counter.size.x),
-                    pixel_height: stage.size.y / f64::from(counter.size.y),
+                    west: context.origin.0 + plane.corner.x,
+                    north: context.origin.1 + plane.corner.y + plane.size.y,
+                    pixel_width: pixel.x,
+                    pixel_height: pixel.y,
                 }),
             };
-            let mean = (&spread.mean()[total.clone()], &errors[total]);
+            let mean = (&values[total.clone()], &errors[total]);
             let name = (format!("{direction}_{level}"), "W m-2 nm-1");
             let product = context.product(name, Vec::new(), mean, reflectance::flux_density);
             products.push(Product { image: Some(image), ..product });
@@ -208,7 +216,7 @@ mod tests {
             origin: (0.0, 0.0),
             sources: Vec::new(),
         };
-        let product = brf_cells(&spread, &hemisphere, &context);
+        let product = brf_cells(&spread, (&hemisphere, 1.0), &context);
         assert!(product.values.iter().all(|brf| (brf - 0.4).abs() < 1e-12));
         let albedo = hemisphere
             .cells()

@@ -121,6 +121,9 @@ pub struct SensorReport {
     pub samples: u64,
     /// What ended the measurement, for a person: `relative error 0.0048 <= 0.005`.
     pub ended_by: String,
+    /// Of photon packets, the largest share of the incident energy that is neither reflected, lost,
+    /// absorbed nor taken by roulette: the rounding of f64.
+    pub energy_imbalance: Option<f64>,
 }
 
 /// All that a run measured, and how it came about.

@@ -196,11 +196,31 @@ fn run_kept(
         wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
         stages: clock.laps,
         skipped: spawned.skipped.clone(),
-        warnings: spawned.warnings.iter().map(failure::one_line).collect(),
+        warnings: spawned
+            .warnings
+            .iter()
+            .map(failure::one_line)
+            .chain(unbalanced(&reports))
+            .collect(),
         sensors: reports,
     };
     *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
     Ok(report)
+}
+
+/// Shares of the incident energy that may get lost in the rounding of f64.
+const BALANCE: f64 = 1e-9;
+
+/// A warning for each sensor whose photon packets gained or lost energy that nothing accounts for.
+fn unbalanced(reports: &[SensorReport]) -> impl Iterator<Item = String> {
+    let off = |report: &&SensorReport| report.energy_imbalance.is_some_and(|off| off > BALANCE);
+    reports.iter().filter(off).map(|report| {
+        let off = report.energy_imbalance.unwrap_or(f64::NAN);
+        format!(
+            "sensors.{}: {off:.1e} of the energy is not accounted for: this is a bug of sunfleck",
+            report.name
+        )
+    })
 }
 
 /// What the radiance in a band consists of.

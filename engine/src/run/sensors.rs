@@ -11,8 +11,8 @@ use crate::film::Spread;
 use crate::products::{self, BandSources, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
-    FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, PhotonOutcome, Projection, Source,
+    AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, FluxCounter, FluxLevel, Hemisphere,
+    LayerCounter, Part, PartCounter, PhotonOutcome, Projection, ReferencePlane, Source,
     ViewCounter, Watch, measure_directions, measure_directions_components, measure_image,
     measure_image_components, measure_image_forward, trace_photons,
 };
@@ -32,12 +32,18 @@ struct Measured {
     rays: u64,
     samples: u64,
     ended_by: String,
+    imbalance: Option<f64>,
 }
 
 impl Measured {
     fn count(&mut self, rays: u64, samples: u64) {
         self.rays += rays;
         self.samples += samples;
+    }
+
+    fn balance(&mut self, imbalance: Option<f64>) {
+        let most = |off: f64| off.max(self.imbalance.unwrap_or(0.0));
+        self.imbalance = imbalance.map(most).or(self.imbalance);
     }
 }
 
@@ -64,6 +70,7 @@ pub(super) fn measure(
         rays: measured.rays,
         samples: measured.samples,
         ended_by: measured.ended_by,
+        energy_imbalance: measured.imbalance,
     }
 }
 
@@ -94,6 +101,7 @@ fn image(
     let emitted = needs_emission(&sensor.measure, context)
         .then(|| measure(Source::Emitted, false, key.path("emission")));
     for outcome in reflected.iter().chain(&emitted) {
+        measured.balance(outcome.imbalance);
         measured.count(outcome.rays, outcome.samples);
     }
     let setting = (stage, context);
@@ -129,19 +137,21 @@ fn directions(
         })
         .collect();
     let views = sensor.views.as_slice();
+    let plane = &ReferencePlane::of(sensor.plane.as_ref(), stage);
     let mut measured = Measured::default();
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
     let measure = |source, orders, key| {
         let start = Instant::now();
         let elapsed = || start.elapsed().as_secs_f64();
-        let setting = (views, sensor.system, source, orders);
-        measure_directions(stage, setting, &until, key, &elapsed, watch)
+        let system = (sensor.system, source, orders);
+        measure_directions(stage, (views, plane), system, &until, key, &elapsed, watch)
     };
     let reflected =
         needs_reflection(&sensor.measure, context).then(|| measure(Source::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
         .then(|| measure(Source::Emitted, false, key.path("emission")));
     for outcome in reflected.iter().chain(&emitted) {
+        measured.balance(outcome.imbalance);
         let error = outcome.spread.median_relative_error();
         if measured.ended_by.is_empty() {
             measured.ended_by = match outcome.ended_by {
@@ -160,7 +170,8 @@ fn directions(
         let key = key.path("components");
         let start = Instant::now();
         let elapsed = || start.elapsed().as_secs_f64();
-        let outcome = measure_directions_components(stage, views, &until, key, &elapsed, watch);
+        let views_of = (views, plane);
+        let outcome = measure_directions_components(stage, views_of, &until, key, &elapsed, watch);
         for &measure in &sensor.measure {
             let products = products::components_of_directions(measure, views, &outcome);
             measured.products.extend(products);
@@ -209,26 +220,27 @@ fn photons(
     (key, quality): (Key, f64),
     watch: Watch<'_>,
 ) -> Measured {
+    let plane = ReferencePlane::of(sensor.plane.as_ref(), stage);
     let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
         .measure
         .iter()
-        .filter_map(|measure| Some((measure, Kind::of(measure, stage)?)))
+        .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
         .collect();
     let parts: &[Part] =
         if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] };
     let packets = (sensor.per_area * stage.area() * quality).ceil() as u64;
     let trace = |source, asked: Vec<(usize, Option<Part>)>, key| {
         (!asked.is_empty()).then(|| {
-            let mut counters: Vec<Box<dyn Counter + '_>> =
-                vec![Box::new(EnergyCounter { surfaces: stage.surfaces.len() })];
-            counters.extend(asked.iter().map(|&(index, part)| {
+            let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter + '_> {
                 let counter = kinds[index].1.counter();
                 match part {
                     None => counter,
                     Some(part) => Box::new(PartCounter { counter, part }),
                 }
-            }));
-            let outcome = trace_photons(stage, source, &counters, packets, key, watch);
+            });
+            let counters: Vec<_> = counters.collect();
+            let plane = (source, plane.clone());
+            let outcome = trace_photons(stage, plane, &counters, packets, key, watch);
             Counted { asked, outcome }
         })
     };
@@ -278,16 +290,17 @@ fn photons(
         [(&reflected, context, "energy"), (&emitted, &unit, "emitted_energy")]
     {
         let Some(Counted { outcome, .. }) = counted else { continue };
-        let energy = products::energy(&outcome.spreads[0], stage, context);
+        let energy = products::energy(&outcome.energy, stage, context);
         let unit = if name == "energy" { energy.unit.clone() } else { "W m-2 nm-1".to_owned() };
         measured.products.push(Product { name: name.to_owned(), unit, ..energy });
         measured.count(outcome.rays, outcome.packets);
+        measured.balance(Some(outcome.imbalance));
     }
     measured.ended_by = format!("{} packets", measured.samples);
     measured
 }
 
-/// What was counted: the energy, and then what was asked for, kinds by number.
+/// What was asked for, kinds by number, and counted.
 struct Counted {
     asked: Vec<(usize, Option<Part>)>,
     outcome: PhotonOutcome,
@@ -296,7 +309,7 @@ struct Counted {
 impl Counted {
     fn spread(&self, index: usize, part: Option<Part>) -> Option<&Spread> {
         let at = self.asked.iter().position(|asked| *asked == (index, part))?;
-        self.outcome.spreads.get(1 + at)
+        self.outcome.spreads.get(at)
     }
 }
 
@@ -311,26 +324,29 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(measure: &PhotonMeasure, stage: &Stage) -> Option<Self> {
+    fn of(measure: &PhotonMeasure, plane: &ReferencePlane, stage: &Stage) -> Option<Self> {
+        let plane = plane.clone();
         Some(match measure {
             PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature => return None,
             PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {
-                Self::Cones(ConeCounter::new(cones.clone()))
+                Self::Cones(ConeCounter::new(cones.clone(), plane))
             }
-            PhotonMeasure::Albedo | PhotonMeasure::Exitance => Self::Albedo(AlbedoCounter),
+            PhotonMeasure::Albedo | PhotonMeasure::Exitance => {
+                Self::Albedo(AlbedoCounter { plane })
+            }
             PhotonMeasure::BrfCells(cells) | PhotonMeasure::RadianceCells(cells) => {
-                Self::Cells(CellCounter(Hemisphere::new(*cells as usize)))
+                Self::Cells(CellCounter { hemisphere: Hemisphere::new(*cells as usize), plane })
             }
             PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
                 let projections =
-                    views.iter().map(|&view| Projection::of_scene(view, stage)).collect();
+                    views.iter().map(|&view| Projection::of_plane(view, &plane, stage)).collect();
                 Self::Views(ViewCounter::new(projections), views.clone())
             }
-            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers)),
+            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers, plane)),
             PhotonMeasure::Fluxes { pixel, heights } => {
                 let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
                 levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
-                Self::Fluxes(FluxCounter::of(stage, *pixel, levels))
+                Self::Fluxes(FluxCounter::new(plane, *pixel, levels))
             }
         })
     }
@@ -346,20 +362,22 @@ impl Kind {
     /// What its spread tells.
     fn products(&self, spread: &Spread, stage: &Stage, context: &Context) -> Vec<Product> {
         match self {
-            Self::Albedo(_) => vec![products::albedo(spread, context)],
-            Self::Cells(cells) => vec![products::brf_cells(spread, &cells.0, context)],
+            Self::Albedo(albedo) => vec![products::albedo(spread, albedo, context)],
+            Self::Cells(cells) => {
+                vec![products::brf_cells(spread, (&cells.hemisphere, cells.plane.gain), context)]
+            }
             Self::Cones(cones) => vec![products::brf_cones(spread, cones, context)],
             Self::Views(counter, views) => {
                 vec![products::brf_views(spread, counter, views, stage, context)]
             }
             Self::Layers(layers) => products::fapar(spread, layers, stage, context),
-            Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, stage, context),
+            Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, context),
         }
     }
 
     fn counter(&self) -> Box<dyn Counter + '_> {
         match self {
-            Self::Albedo(counter) => Box::new(*counter),
+            Self::Albedo(counter) => Box::new(counter.clone()),
             Self::Cells(counter) => Box::new(counter.clone()),
             Self::Views(counter, _) => Box::new(counter.clone()),
             Self::Layers(counter) => Box::new(counter.clone()),

@@ -61,7 +61,15 @@ impl Spawner<'_> {
 
     fn camera(&self, sensor: &Sensor) -> Option<Optics> {
         Some(match sensor {
-            Sensor::Orthographic { extent_m, cover, center_m, zenith_deg, azimuth_deg, .. } => {
+            Sensor::Orthographic {
+                extent_m,
+                cover,
+                center_m,
+                zenith_deg,
+                azimuth_deg,
+                virtual_plane,
+                ..
+            } => {
                 let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
                 let middle = DVec2::from(*corner_m) + 0.5 * DVec2::from(*size_m);
                 // `document::check` asks for exactly one of the two.
@@ -73,7 +81,8 @@ impl Spawner<'_> {
                     (Some(Cover::WholeScene), _) | (None, None) => Footprint::WholeScene,
                 };
                 let view = view(*zenith_deg, *azimuth_deg);
-                Optics::Orthographic(Orthographic { footprint, view })
+                let plane = self.plane(virtual_plane.as_ref());
+                Optics::Orthographic(Orthographic { footprint, view, plane })
             }
             Sensor::Perspective {
                 position_m,

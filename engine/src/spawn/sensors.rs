@@ -1,13 +1,14 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use glam::DVec2;
 use hecs::World;
 
 use super::Spawner;
 use crate::components::{
     Cone, Directions, ImageMeasure, Layers, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
-    System, View,
+    System, View, VirtualPlane,
 };
-use crate::document::{self, Diagnostic, Sun, Until, Views};
+use crate::document::{self, Diagnostic, Sun, Terrain, Until, Views};
 
 impl Spawner<'_> {
     /// Spawns the sensors.
@@ -26,7 +27,7 @@ impl Spawner<'_> {
             document::Sensor::Orthographic { .. }
             | document::Sensor::Perspective { .. }
             | document::Sensor::Fisheye { .. } => Sensor::Image(self.image(sensor)?),
-            document::Sensor::Directions { views, until, measure, system } => {
+            document::Sensor::Directions { views, until, measure, virtual_plane, system } => {
                 Sensor::Directions(Directions {
                     views: self.views(views, &format!("{path}.views"))?,
                     until: vec![match *until {
@@ -35,10 +36,11 @@ impl Spawner<'_> {
                         Until::Samples(limit) => Stop::Samples(limit),
                     }],
                     measure: image_measures(measure),
+                    plane: self.plane(virtual_plane.as_ref()),
                     system: system_of(system),
                 })
             }
-            document::Sensor::Photons { per_m2, measure } => {
+            document::Sensor::Photons { per_m2, measure, virtual_plane } => {
                 let mut measures = Vec::new();
                 for (index, measure) in measure.iter().enumerate() {
                     let at = format!("{path}.measure[{index}]");
@@ -76,8 +78,21 @@ impl Spawner<'_> {
                         }
                     });
                 }
-                Sensor::Photons(Photons { per_area: *per_m2, measure: measures })
+                let plane = self.plane(virtual_plane.as_ref());
+                Sensor::Photons(Photons { per_area: *per_m2, measure: measures, plane })
             }
+        })
+    }
+
+    /// A virtual plane; what its author left out is the terrain's.
+    pub(super) fn plane(&self, plane: Option<&document::VirtualPlane>) -> Option<VirtualPlane> {
+        let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
+        let size = DVec2::from(*size_m);
+        let middle = DVec2::from(*corner_m) + 0.5 * size;
+        plane.map(|plane| VirtualPlane {
+            center: plane.center_m.map_or(middle, DVec2::from),
+            size: plane.size_m.map_or(size, DVec2::from),
+            height: plane.height_m,
         })
     }
 

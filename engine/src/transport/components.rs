@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::directions::{Means, Rounds, projections, walk_views};
 use super::image::walk_pixels;
-use super::{Camera, ImageOutcome, ViewsOutcome, Walk, Watch};
+use super::{Camera, ImageOutcome, ReferencePlane, ViewsOutcome, Walk, Watch};
 use crate::accel::Ray;
 use crate::components::{Stop, View};
 use crate::extract::Stage;
@@ -52,13 +52,13 @@ pub fn measure_image_components(
 #[must_use]
 pub fn measure_directions_components(
     stage: &Stage,
-    views: &[View],
+    (views, plane): (&[View], &ReferencePlane),
     until: &[Stop],
     key: Key,
     elapsed: &dyn Fn() -> f64,
     watch: Watch<'_>,
 ) -> ViewsOutcome {
-    let projections = projections(stage, views);
+    let projections = projections(stage, views, plane);
     Rounds::measure(
         (views.len(), COMPONENT_COLUMNS + 1),
         until,

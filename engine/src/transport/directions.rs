@@ -1,11 +1,11 @@
+use std::cell::Cell;
 use std::ops::Range;
 
-use super::forward::trace_packets;
+use super::forward::{Ledger, trace_packets};
 use super::{
-    Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, Source, ThermalPath, ViewCounter,
-    Walk, Watch, blocks, spectra,
+    Counter, EnergyCounter, Part, PartCounter, Path, Projection, RANDOMISATIONS, ReferencePlane,
+    Source, ThermalPath, ViewCounter, Walk, Watch, blocks, spectra,
 };
-use crate::accel::Ray;
 use crate::components::{Stop, System, View};
 use crate::extract::Stage;
 use crate::film::{Spread, Sums, ratio};
@@ -26,6 +26,8 @@ pub struct DirectionsOutcome {
     pub rays: u64,
     /// What ended it.
     pub ended_by: Stop,
+    /// Of photon packets, the largest share of the incident energy that is not accounted for.
+    pub imbalance: Option<f64>,
 }
 
 /// Means over what each view met of the scene, shape `[views, columns]`.
@@ -91,13 +93,15 @@ const FIRST_ROUND: u64 = 16;
 #[must_use]
 pub fn measure_directions(
     stage: &Stage,
-    (views, system, source, orders): (&[View], System, Source, bool),
+    (views, plane): (&[View], &ReferencePlane),
+    (system, source, orders): (System, Source, bool),
     until: &[Stop],
     key: Key,
     elapsed: &dyn Fn() -> f64,
     watch: Watch<'_>,
 ) -> DirectionsOutcome {
-    let projections = projections(stage, views);
+    let projections = projections(stage, views, plane);
+    let imbalance = Cell::new(None);
     let rounds = Rounds::measure(
         (views.len(), stage.bands * spectra(orders)),
         until,
@@ -111,7 +115,11 @@ pub fn measure_directions(
                 walk_views(stage, &projections, range, key, rows, || ThermalPath::new(stage))
             }
             (System::Forward, _) => {
-                trace_photons_to(stage, &projections, range, (key, source, orders), rows)
+                let to = (projections.as_slice(), plane);
+                let ledger = trace_photons_to(stage, to, range, (key, source, orders), rows);
+                let before = imbalance.get().unwrap_or(0.0);
+                imbalance.set(Some(ledger.imbalance.max(before)));
+                ledger.rays
             }
         },
         |rows, each| spread(rows, each, 0..stage.bands).median_relative_error(),
@@ -126,12 +134,17 @@ pub fn measure_directions(
         samples: rounds.samples(),
         rays: rounds.rays,
         ended_by: rounds.ended_by,
+        imbalance: imbalance.get(),
     }
 }
 
-/// The scene seen from each view.
-pub(super) fn projections(stage: &Stage, views: &[View]) -> Vec<Projection> {
-    views.iter().map(|&view| Projection::of_scene(view, stage)).collect()
+/// The reference plane seen from each view.
+pub(super) fn projections(
+    stage: &Stage,
+    views: &[View],
+    plane: &ReferencePlane,
+) -> Vec<Projection> {
+    views.iter().map(|&view| Projection::of_plane(view, plane, stage)).collect()
 }
 
 /// Rounds of samples until a measurement is good enough.
@@ -255,16 +268,17 @@ pub(super) fn walk_views<W: Walk>(
             let stream = key.index(randomisation as u64);
             let mut walk = walk();
             let mut sums = Sums::new(1, columns);
+            let mut rays = 0;
             for index in range.clone() {
                 let mut sampler = Sampler::new(stream, index);
                 let [u, v, ..] = sampler.next_event();
-                let origin = projection.point(glam::DVec2::new(u, v));
-                let ray = Ray { origin, direction: -projection.towards, from: None };
-                if walk.trace(stage, ray, &mut sampler) {
+                let ray = projection.ray(glam::DVec2::new(u, v));
+                if projection.admits(&ray, stage, &mut rays) && walk.trace(stage, ray, &mut sampler)
+                {
                     walk.add_to(&mut sums, 0);
                 }
             }
-            (sums, walk.rays())
+            (sums, rays + walk.rays())
         },
         |block, (sums, traced)| {
             rows[block / views].add_cell(block % views, sums.values());
@@ -277,11 +291,12 @@ pub(super) fn walk_views<W: Walk>(
 /// Traces packets `range` of each randomisation and counts their virtual photons.
 fn trace_photons_to(
     stage: &Stage,
-    projections: &[Projection],
+    (projections, plane): (&[Projection], &ReferencePlane),
     range: Range<u64>,
     (key, source, orders): (Key, Source, bool),
     rows: &mut [Sums],
-) -> u64 {
+) -> Ledger {
+    let energy = EnergyCounter { surfaces: stage.surfaces.len(), plane: plane.clone() };
     let counter = ViewCounter::new(projections.to_vec());
     let cells = counter.first_cells().to_vec();
     let mut counters: Vec<Box<dyn Counter + '_>> = vec![Box::new(counter.clone())];
@@ -290,7 +305,8 @@ fn trace_photons_to(
             Box::new(PartCounter { counter: Box::new(counter.clone()), part })
         }));
     }
-    trace_packets(stage, source, &counters, range, key, &|_| {}, |randomisation, sums| {
+    let counters = (&energy, counters.as_slice());
+    trace_packets(stage, source, counters, range, key, &|_| {}, |randomisation, _, sums| {
         for (view, (projection, cell)) in projections.iter().zip(&cells).enumerate() {
             let per_count = projection.radiance_of_count(stage);
             let bands = cell * stage.bands..(cell + 1) * stage.bands;

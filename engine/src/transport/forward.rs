@@ -3,7 +3,9 @@ use std::ops::Range;
 use super::counters::Event;
 use super::emission::Emission;
 use super::glow::Glow;
-use super::{Counter, RANDOMISATIONS, Source, Watch, blocks, roulette};
+use super::{
+    Counter, EnergyCounter, RANDOMISATIONS, ReferencePlane, Source, Watch, blocks, roulette,
+};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::{Spread, Sums};
@@ -15,10 +17,24 @@ use crate::sampling::{Key, Sampler};
 pub struct PhotonOutcome {
     /// One for each counter.
     pub spreads: Vec<Spread>,
+    /// That of [`EnergyCounter`], which always counts.
+    pub energy: Spread,
+    /// See [`Ledger::imbalance`].
+    pub imbalance: f64,
     /// Packets traced.
     pub packets: u64,
     /// Rays traced.
     pub rays: u64,
+}
+
+/// What any number of packets took and did with their energy.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ledger {
+    /// Rays traced.
+    pub rays: u64,
+    /// Largest share of the incident energy that is not accounted for, over all randomisations and
+    /// bands: rounding, or a bug.
+    pub imbalance: f64,
 }
 
 /// Packets of a block. Small enough to share the work out evenly, large enough that folding the
@@ -29,47 +45,63 @@ const BLOCK: u64 = 2048;
 const BATCH: usize = 16;
 
 /// Traces at least `packets` photon packets of sun and sky, or lines along which surfaces and the
-/// sky emit some, and shows every event to every counter.
+/// sky emit some, and shows every event to every counter; what leaves through the plane counts as
+/// reflected.
 ///
 /// Source: LESS manual, section 2.1: packets start in proportion to the power of each source, lose
 /// `1 - ρ - τ` at each surface, and go on from a direction sampled from its BSDF.
 #[must_use]
 pub fn trace_photons(
     stage: &Stage,
-    source: Source,
+    (source, plane): (Source, ReferencePlane),
     counters: &[Box<dyn Counter + '_>],
     packets: u64,
     key: Key,
     watch: Watch<'_>,
 ) -> PhotonOutcome {
     let each = packets.div_ceil(RANDOMISATIONS.into()).max(1);
-    let mut spreads: Vec<Spread> =
-        counters.iter().map(|counter| Spread::new(counter.cells() * stage.bands)).collect();
-    let rays = trace_packets(stage, source, counters, 0..each, key, watch, |_, sums| {
-        for (spread, sums) in spreads.iter_mut().zip(sums) {
-            let per_packet: Vec<f64> = sums.values().iter().map(|sum| sum / each as f64).collect();
-            spread.push(&per_packet);
-        }
-    });
-    PhotonOutcome { spreads, packets: each * u64::from(RANDOMISATIONS), rays }
+    let energy = EnergyCounter { surfaces: stage.surfaces.len(), plane };
+    let empty = |cells: usize| Spread::new(cells * stage.bands);
+    let mut of_energy = empty(energy.cells());
+    let mut spreads: Vec<Spread> = counters.iter().map(|counter| empty(counter.cells())).collect();
+    let Ledger { rays, imbalance } = trace_packets(
+        stage,
+        source,
+        (&energy, counters),
+        0..each,
+        key,
+        watch,
+        |_, energy, sums| {
+            let spreads = std::iter::once(&mut of_energy).chain(&mut spreads);
+            for (spread, sums) in spreads.zip(std::iter::once(energy).chain(sums)) {
+                let per_packet: Vec<f64> =
+                    sums.values().iter().map(|sum| sum / each as f64).collect();
+                spread.push(&per_packet);
+            }
+        },
+    );
+    let packets = each * u64::from(RANDOMISATIONS);
+    PhotonOutcome { spreads, energy: of_energy, imbalance, packets, rays }
 }
 
-/// Traces packets `indices` of every randomisation and hands each one's sums over, in order; returns
-/// the number of rays.
+/// Traces packets `indices` of every randomisation and hands each one's sums over, in order: its
+/// number, that of the energy, and those of the other counters.
 pub(super) fn trace_packets(
     stage: &Stage,
     source: Source,
-    counters: &[Box<dyn Counter + '_>],
+    (energy, counters): (&EnergyCounter, &[Box<dyn Counter + '_>]),
     indices: Range<u64>,
     key: Key,
     watch: Watch<'_>,
-    mut finish: impl FnMut(usize, Vec<Sums>),
-) -> u64 {
+    mut finish: impl FnMut(usize, &Sums, &[Sums]),
+) -> Ledger {
+    let mut all: Vec<&dyn Counter> = vec![energy];
+    all.extend(counters.iter().map(|counter| &**counter as &dyn Counter));
     let emission = Emission::of(stage);
     let glow = (source == Source::Emitted).then(|| Glow::of(stage, &emission)).flatten();
     let per_randomisation = (indices.end - indices.start).div_ceil(BLOCK) as usize;
     let count = per_randomisation * RANDOMISATIONS as usize;
-    let mut rays = 0;
+    let mut ledger = Ledger::default();
     let mut current: Vec<Sums> = Vec::new();
     blocks::in_order(
         count,
@@ -78,7 +110,7 @@ pub(super) fn trace_packets(
             let randomisation = (block / per_randomisation) as u64;
             let start = indices.start + (block % per_randomisation) as u64 * BLOCK;
             let full = glow.as_ref().map_or(1.0, Glow::full_weight);
-            let mut packet = Packet::new(stage, counters, full);
+            let mut packet = Packet::new(stage, &all, full);
             for index in start..(start + BLOCK).min(indices.end) {
                 let mut sampler = Sampler::new(key.index(randomisation), index);
                 if let Some(glow) = &glow {
@@ -90,8 +122,8 @@ pub(super) fn trace_packets(
             }
             (packet.sums, packet.rays)
         },
-        |block, (sums, traced)| {
-            rays += traced;
+        |block, (sums, rays)| {
+            ledger.rays += rays;
             if current.is_empty() {
                 current = sums;
             } else {
@@ -100,19 +132,21 @@ pub(super) fn trace_packets(
                 }
             }
             if (block + 1) % per_randomisation == 0 {
-                finish(block / per_randomisation, std::mem::take(&mut current));
+                let sums = std::mem::take(&mut current);
+                ledger.imbalance = ledger.imbalance.max(EnergyCounter::imbalance(&sums[0]));
+                finish(block / per_randomisation, &sums[0], &sums[1..]);
             }
             watch((block + 1) as f64 / count as f64);
         },
     );
-    rays
+    ledger
 }
 
 /// A photon packet and what the counters saw of it and of those before it; one value is reused for
 /// many, so that a packet allocates nothing.
 pub(super) struct Packet<'a> {
     pub(super) stage: &'a Stage,
-    counters: &'a [Box<dyn Counter + 'a>],
+    counters: &'a [&'a dyn Counter],
     sums: Vec<Sums>,
     /// Its weight when it starts, and then what is left of it; shape `[lanes]`.
     pub(super) weight: Vec<f32>,
@@ -123,7 +157,7 @@ pub(super) struct Packet<'a> {
 }
 
 impl<'a> Packet<'a> {
-    fn new(stage: &'a Stage, counters: &'a [Box<dyn Counter + '_>], full: f32) -> Self {
+    fn new(stage: &'a Stage, counters: &'a [&'a dyn Counter], full: f32) -> Self {
         let dark = vec![0.0; stage.lanes()];
         let sums = counters.iter().map(|counter| Sums::new(counter.cells(), stage.bands)).collect();
         Self { stage, counters, sums, weight: dark.clone(), before: dark, full, rays: 0 }
@@ -194,9 +228,6 @@ impl<'a> Packet<'a> {
 }
 
 /// Shows an event to every counter; returns the number of rays that this took.
-fn show(
-    (stage, counters, sums): (&Stage, &[Box<dyn Counter + '_>], &mut [Sums]),
-    event: &Event<'_>,
-) -> u64 {
+fn show((stage, counters, sums): (&Stage, &[&dyn Counter], &mut [Sums]), event: &Event<'_>) -> u64 {
     counters.iter().zip(sums).map(|(counter, sums)| counter.count(stage, event, sums)).sum()
 }

@@ -1,8 +1,8 @@
 use glam::{DVec2, UVec2};
 
 use super::{
-    Camera, Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, Source, ThermalPath,
-    Traced, ViewCounter, Walk, Watch, blocks, spectra, trace_photons,
+    Camera, Counter, Part, PartCounter, Path, Projection, RANDOMISATIONS, ReferencePlane, Source,
+    ThermalPath, Traced, ViewCounter, Walk, Watch, blocks, spectra, trace_photons,
 };
 use crate::extract::Stage;
 use crate::film::{Spread, Sums, ratio};
@@ -28,6 +28,8 @@ pub struct ImageOutcome {
     pub samples: u64,
     /// Rays traced.
     pub rays: u64,
+    /// Of photon packets, the largest share of the incident energy that is not accounted for.
+    pub imbalance: Option<f64>,
 }
 
 /// Side of the square of pixels that one block traces.
@@ -126,6 +128,7 @@ pub(super) fn walk_pixels<W: Walk>(
         zones: Sums::new(randomisations as usize, walk().zones()),
         samples: all as u64 * u64::from(randomisations * each),
         rays: 0,
+        imbalance: None,
     };
     let mut sums = Sums::new(randomisations as usize, bands);
     let mut hits = vec![0.0; randomisations as usize];
@@ -166,7 +169,7 @@ pub(super) fn walk_pixels<W: Walk>(
 
 /// Sends `samples` photon packets a pixel into the scene and sees where their light goes.
 ///
-/// Nothing tells here which pixels lie beside the scene: they are black.
+/// Nothing tells here which pixels lie beside the scene or its virtual plane: they are black.
 #[must_use]
 pub fn measure_image_forward(
     stage: &Stage,
@@ -184,7 +187,8 @@ pub fn measure_image_forward(
         }));
     }
     let packets = pixels as u64 * u64::from(samples);
-    let outcome = trace_photons(stage, source, &counters, packets, key, watch);
+    let plane = ReferencePlane::of(None, stage);
+    let outcome = trace_photons(stage, (source, plane), &counters, packets, key, watch);
     let per_count = projection.radiance_of_count(stage);
     let means: Vec<&[f64]> = outcome.spreads.iter().map(Spread::mean).collect();
     let errors: Vec<Vec<f64>> = outcome.spreads.iter().map(Spread::standard_error).collect();
@@ -212,6 +216,7 @@ pub fn measure_image_forward(
         zones: Sums::new(0, 0),
         samples: outcome.packets,
         rays: outcome.rays,
+        imbalance: Some(outcome.imbalance),
     }
 }
 
@@ -259,6 +264,9 @@ fn trace_tile(
                     let [u, v, ..] = sampler.next_event();
                     let on_film = (at.as_dvec2() + DVec2::new(u, v)) * scale;
                     let Some(ray) = camera.ray(on_film) else { continue };
+                    if !camera.admits(&ray, stage, &mut tile.rays) {
+                        continue;
+                    }
                     let is_seen = walk.trace(stage, ray, &mut sampler)
                         || camera.sees_sky() && walk.see_sky(stage, ray.direction);
                     if is_seen {
@@ -279,7 +287,7 @@ fn trace_tile(
             }
         }
     }
-    tile.rays = walk.rays();
+    tile.rays += walk.rays();
     tile
 }
 

@@ -15,6 +15,7 @@ mod glow;
 mod hemisphere;
 mod image;
 mod parts;
+mod plane;
 mod roulette;
 mod thermal;
 mod walk;
@@ -34,6 +35,7 @@ pub use forward::{PhotonOutcome, trace_photons};
 pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
 pub use parts::{Part, PartCounter, spectra};
+pub use plane::ReferencePlane;
 use thermal::ThermalPath;
 use walk::Walk;
 

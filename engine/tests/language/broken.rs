@@ -65,6 +65,7 @@ broken! {
     unknown_names
     unknown_variants
     variants_written_wrongly
+    virtual_planes
     windows_path
     wrong_kinds
 }

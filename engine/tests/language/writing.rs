@@ -6,7 +6,8 @@ use sunfleck::document::{
     Axis, Band, BandSource, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame,
     ImageMeasure, Instances, Layers, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options,
     Origin, PhotonMeasure, Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition,
-    Sweep, System, Temperature, Terrain, ThermalSky, Transport, Trunk, Until, Views, read_text,
+    Sweep, System, Temperature, Terrain, ThermalSky, Transport, Trunk, Until, Views, VirtualPlane,
+    read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -228,6 +229,17 @@ fn projection() -> BoxedStrategy<FisheyeProjection> {
     .boxed()
 }
 
+fn virtual_plane() -> impl Strategy<Value = Option<VirtualPlane>> {
+    let pair = || option((number(), number()));
+    option(
+        (pair(), pair(), option(number())).prop_map(|(center_m, size_m, height_m)| VirtualPlane {
+            center_m,
+            size_m,
+            height_m,
+        }),
+    )
+}
+
 fn image_sensor() -> BoxedStrategy<Sensor> {
     let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
     let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
@@ -244,7 +256,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             pair(),
             samples(),
             list(image()),
-            (picture(), system())
+            (picture(), virtual_plane(), system())
         )
             .prop_map(
                 |(size_px, (extent_m, cover), center_m, angles, samples, measure, last)| {
@@ -259,7 +271,8 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         samples_per_m2: samples.1,
                         measure,
                         picture: last.0,
-                        system: last.1,
+                        virtual_plane: last.1,
+                        system: last.2,
                     }
                 }
             ),
@@ -351,10 +364,18 @@ fn sensor() -> BoxedStrategy<Sensor> {
     ];
     prop_oneof![
         image_sensor(),
-        (views(), until, list(image()), system()).prop_map(|(views, until, measure, system)| {
-            Sensor::Directions { views, until, measure, system }
+        (views(), until, list(image()), virtual_plane(), system()).prop_map(
+            |(views, until, measure, virtual_plane, system)| Sensor::Directions {
+                views,
+                until,
+                measure,
+                virtual_plane,
+                system
+            }
+        ),
+        (number(), list(photon), virtual_plane()).prop_map(|(per_m2, measure, virtual_plane)| {
+            Sensor::Photons { per_m2, measure, virtual_plane }
         }),
-        (number(), list(photon)).prop_map(|(per_m2, measure)| Sensor::Photons { per_m2, measure }),
     ]
     .boxed()
 }

@@ -5,6 +5,7 @@ use super::super::scene::{
     Cover, FisheyeProjection, Look, Picture, Scene, Sensor, System, Terrain,
 };
 use super::Report;
+use super::plane::check_plane;
 use super::sensor::VALUES;
 
 type Point = (f64, f64, f64);
@@ -26,11 +27,13 @@ pub(super) fn check_orthographic(
         samples_per_m2,
         measure: _,
         picture,
+        virtual_plane,
         system: _,
     } = sensor
     else {
         return;
     };
+    check_plane(path, virtual_plane.as_ref(), scene, report);
     let at = |key: &str| format!("{path}.{key}");
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);

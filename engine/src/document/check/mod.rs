@@ -4,6 +4,7 @@ mod camera;
 mod ground;
 mod light;
 mod mesh;
+mod plane;
 mod program;
 mod sensor;
 mod spectrum;

@@ -7,6 +7,7 @@ use super::super::scene::{
 };
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
+use super::plane::check_plane;
 use super::thermal::{check_emission, check_photon_emission};
 
 /// An image or a map may hold so many values, bands included: 16 GiB as f64.
@@ -40,12 +41,14 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
                 check_fisheye(&path, sensor, scene, report);
                 check_measures(&format!("{path}.measure"), measure, "Radiance", report);
             }
-            Sensor::Directions { views, until, measure, system: _ } => {
+            Sensor::Directions { views, until, measure, virtual_plane, system: _ } => {
+                check_plane(&path, virtual_plane.as_ref(), scene, report);
                 check_views(&format!("{path}.views"), views, scene, report);
                 check_until(&format!("{path}.until"), until, report);
                 check_measures(&format!("{path}.measure"), measure, "Brf", report);
             }
-            Sensor::Photons { per_m2, measure } => {
+            Sensor::Photons { per_m2, measure, virtual_plane } => {
+                check_plane(&path, virtual_plane.as_ref(), scene, report);
                 report.above_zero(&format!("{path}.per_m2"), *per_m2);
                 let path = format!("{path}.measure");
                 check_measures(&path, measure, "Albedo", report);

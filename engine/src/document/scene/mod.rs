@@ -24,6 +24,7 @@ pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, T
 pub use program::{Include, Sweep};
 pub use sensor::{
     ImageMeasure, Layers, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
+    VirtualPlane,
 };
 pub use spectrum::{Material, Spectrum};
 pub use thermal::{BandSource, Temperature, ThermalSky};

@@ -32,6 +32,8 @@ choice! {
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
             /// How its PNG is coloured.
             picture: Picture = Picture::Quicklook,
+            /// Only light that leaves through it is seen.
+            virtual_plane: Option<VirtualPlane> = None,
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
@@ -99,6 +101,8 @@ choice! {
             until: Until = Until::RelError(0.005),
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
+            /// Only light that leaves through it counts; it is what is seen.
+            virtual_plane: Option<VirtualPlane> = None,
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
@@ -109,6 +113,9 @@ choice! {
             per_m2: f64 = 1000.0,
             /// What to count them for.
             measure: Vec<PhotonMeasure> = vec![PhotonMeasure::Albedo],
+            /// Only light that leaves through it counts as reflected, and only what lies below it
+            /// absorbs; all is normalised to its area.
+            virtual_plane: Option<VirtualPlane> = None,
         },
     }
 }
@@ -124,6 +131,18 @@ impl Sensor {
             | Self::Directions { measure, .. } => Some(measure),
             Self::Photons { .. } => None,
         }
+    }
+}
+
+record! {
+    /// A horizontal rectangle through which light leaves the scene.
+    pub struct VirtualPlane ("a virtual plane") {
+        /// Its middle, m; that of the terrain if absent.
+        center_m: Option<(f64, f64)> = None,
+        /// Extent to the east and to the north, m; that of the terrain if absent.
+        size_m: Option<(f64, f64)> = None,
+        /// Height, m; that of the highest point of the scene if absent.
+        height_m: Option<f64> = None,
     }
 }
 

@@ -61,6 +61,14 @@ impl Camera {
         }
     }
 
+    /// Whether light that arrives against this ray counts; adds to the number of rays that this took.
+    pub fn admits(&self, ray: &Ray, stage: &Stage, rays: &mut u64) -> bool {
+        match self {
+            Self::Orthographic(camera) => camera.admits(ray, stage, rays),
+            Self::Perspective(_) | Self::Fisheye(_) => true,
+        }
+    }
+
     /// Whether a ray that leaves the scene upwards sees the sky; otherwise it has no data.
     #[must_use]
     pub const fn sees_sky(&self) -> bool {

@@ -3,6 +3,7 @@ use glam::{DMat2, DMat3, DVec2, DVec3, UVec2};
 use crate::accel::Ray;
 use crate::components::{Footprint, Orthographic, View};
 use crate::extract::Stage;
+use crate::transport::ReferencePlane;
 
 /// A parallel projection: a parallelogram in space through which light in one direction is seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,8 @@ pub struct Projection {
     film_from_world: DMat3,
     /// Whether it shows every point of a periodic scene exactly once.
     covers_tile: bool,
+    /// What light must leave through to be seen, beyond crossing the parallelogram.
+    plane: Option<ReferencePlane>,
 }
 
 impl Projection {
@@ -33,7 +36,8 @@ impl Projection {
         let right = right * extent.x;
         let down = down * extent.y;
         let corner = beyond(middle, towards, stage) - 0.5 * (right + down);
-        Self::new(towards, corner, right, down, size, false)
+        let plane = sensor.plane.as_ref().map(|plane| ReferencePlane::of(Some(plane), stage));
+        Self { plane, ..Self::new(towards, corner, right, down, size, false) }
     }
 
     /// The middle half of the scene's rectangle, each way, seen straight down.
@@ -45,16 +49,17 @@ impl Projection {
         Self::new(DVec3::Z, corner, right, down, UVec2::ONE, false)
     }
 
-    /// The scene's whole rectangle at its top, seen in one direction.
+    /// A reference plane seen in one direction.
     #[must_use]
-    pub fn of_scene(view: View, stage: &Stage) -> Self {
-        let top = stage.top();
-        let north_west = DVec3::new(stage.corner.x, stage.corner.y + stage.size.y, top);
-        let right = DVec3::X * stage.size.x;
-        let down = -DVec3::Y * stage.size.y;
+    pub fn of_plane(view: View, plane: &ReferencePlane, stage: &Stage) -> Self {
+        let north_west = DVec3::new(plane.corner.x, plane.corner.y + plane.size.y, plane.height);
+        let right = DVec3::X * plane.size.x;
+        let down = -DVec3::Y * plane.size.y;
         let towards = view.direction();
         let corner = beyond(north_west, towards, stage);
-        Self::new(towards, corner, right, down, UVec2::ONE, stage.periodic)
+        let gate = plane.is_low().then(|| plane.clone());
+        let whole = plane.covers_tile();
+        Self { plane: gate, ..Self::new(towards, corner, right, down, UVec2::ONE, whole) }
     }
 
     fn new(
@@ -66,7 +71,7 @@ impl Projection {
         covers_tile: bool,
     ) -> Self {
         let film_from_world = DMat3::from_cols(right, down, towards).inverse();
-        Self { towards, size, corner, right, down, film_from_world, covers_tile }
+        Self { towards, size, corner, right, down, film_from_world, covers_tile, plane: None }
     }
 
     /// Point of the parallelogram, from `(0, 0)` top left to `(1, 1)` bottom right.
@@ -79,6 +84,17 @@ impl Projection {
     #[must_use]
     pub fn ray(&self, at: DVec2) -> Ray {
         Ray { origin: self.point(at), direction: -self.towards, from: None }
+    }
+
+    /// Whether light that arrives against this ray can have left through the plane; adds to the
+    /// number of rays that this took.
+    pub fn admits(&self, ray: &Ray, stage: &Stage, rays: &mut u64) -> bool {
+        let Some(plane) = &self.plane else { return true };
+        plane.is_crossed_by(ray)
+            && plane.clearance(ray).is_none_or(|above| {
+                *rays += 1;
+                !stage.geometry.occluded_within(ray, above)
+            })
     }
 
     /// Number of pixels.
@@ -104,6 +120,9 @@ impl Projection {
     /// Calls `f` with each pixel (row by row from the top left) that shows `point` or, where the
     /// scene is periodic, one of its copies.
     pub fn for_each_pixel(&self, point: DVec3, stage: &Stage, mut f: impl FnMut(usize)) {
+        if self.plane.as_ref().is_some_and(|plane| !plane.is_left_by(point, self.towards)) {
+            return;
+        }
         if self.covers_tile {
             return f(0);
         }

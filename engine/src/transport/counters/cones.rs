@@ -4,13 +4,15 @@ use super::{Counter, Event};
 use crate::components::Cone;
 use crate::extract::Stage;
 use crate::film::Sums;
+use crate::transport::ReferencePlane;
 
-/// Power that leaves through the scene's rectangle at the top within cones of directions, one cell
-/// each.
+/// Power that leaves through the reference plane within cones of directions, one cell each.
 #[derive(Clone, Debug)]
 pub struct ConeCounter {
     /// The cones.
     pub cones: Vec<Cone>,
+    /// Where light leaves.
+    pub plane: ReferencePlane,
     /// Unit vector along each axis, and the cosine of the half angle.
     axes: Vec<(glam::DVec3, f64)>,
 }
@@ -18,10 +20,10 @@ pub struct ConeCounter {
 impl ConeCounter {
     /// Of these cones.
     #[must_use]
-    pub fn new(cones: Vec<Cone>) -> Self {
+    pub fn new(cones: Vec<Cone>, plane: ReferencePlane) -> Self {
         let axes =
             cones.iter().map(|cone| (cone.axis.direction(), cone.half_angle.cos())).collect();
-        Self { cones, axes }
+        Self { cones, plane, axes }
     }
 
     /// `∫ cos θ dω` over a cone, sr: exact where it lies above the horizon.
@@ -36,9 +38,9 @@ impl Counter for ConeCounter {
         self.axes.len()
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
         if let Event::Escape { ray, order: 1.., weight, .. } = event
-            && stage.leaves_through_top(ray.origin, ray.direction)
+            && self.plane.is_left_by(ray.origin, ray.direction)
         {
             for (cell, (axis, cos)) in self.axes.iter().enumerate() {
                 if axis.dot(ray.direction) >= *cos {

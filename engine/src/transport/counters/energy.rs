@@ -1,29 +1,44 @@
 use super::{Counter, Event};
 use crate::extract::Stage;
 use crate::film::Sums;
+use crate::transport::ReferencePlane;
 
-/// The energy of all packets: what came, what left through the top and elsewhere, what random
-/// choices removed less what they added, and what each surface absorbed.
+/// The energy of all packets: what came, what left through the reference plane and elsewhere, what
+/// random choices removed less what they added, and what each surface absorbed.
 ///
 /// `incident = reflected + lost + roulette + Σ absorbed`, to the rounding of f64: each packet's
 /// terms telescope.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct EnergyCounter {
     /// Number of surfaces.
     pub surfaces: usize,
+    /// Where light counts as reflected.
+    pub plane: ReferencePlane,
 }
 
 impl EnergyCounter {
     /// Power of all packets when they start, from outside or from a surface.
     pub const INCIDENT: usize = 0;
-    /// Power that is scattered out through the scene's rectangle at the top.
+    /// Power that is scattered out through the reference plane.
     pub const REFLECTED: usize = 1;
-    /// Power that leaves an isolated scene elsewhere, or misses it.
+    /// Power that leaves elsewhere, or misses the scene.
     pub const LOST: usize = 2;
     /// What the choice of lobes, roulette and the limit of orders removed less what they added.
     pub const ROULETTE: usize = 3;
     /// First cell of what surfaces absorb, in their order.
     pub const ABSORBED: usize = 4;
+
+    /// Largest share over all bands of what came that the other terms do not account for.
+    #[must_use]
+    pub fn imbalance(sums: &Sums) -> f64 {
+        let (incident, others) = sums.values().split_at(sums.bands());
+        let shares = incident.iter().enumerate().map(|(band, &incident)| {
+            let accounted: f64 = others.iter().skip(band).step_by(sums.bands()).sum();
+            let share = (incident - accounted).abs() / incident.max(f64::MIN_POSITIVE);
+            if share.is_nan() { f64::INFINITY } else { share }
+        });
+        shares.fold(0.0, f64::max)
+    }
 }
 
 impl Counter for EnergyCounter {
@@ -46,7 +61,7 @@ impl Counter for EnergyCounter {
             Event::Roulette { expected, kept } => sums
                 .add_with(Self::ROULETTE, |lane| f64::from(expected[lane]) - f64::from(kept[lane])),
             Event::Escape { ray, order, weight, .. } => {
-                let reflected = *order > 0 && stage.leaves_through_top(ray.origin, ray.direction);
+                let reflected = *order > 0 && self.plane.is_left_by(ray.origin, ray.direction);
                 let cell = if reflected { Self::REFLECTED } else { Self::LOST };
                 sums.add(cell, weight, 1.0);
             }

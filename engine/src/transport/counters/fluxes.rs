@@ -1,15 +1,16 @@
-use glam::{DVec2, DVec3, UVec2};
+use glam::{DVec3, UVec2};
 
 use super::{Counter, Event};
 use crate::extract::Stage;
 use crate::film::Sums;
+use crate::transport::ReferencePlane;
 
 /// A surface on which flux is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FluxLevel {
     /// The ground itself.
     Terrain,
-    /// The reference plane at the top of the scene.
+    /// The top of the scene.
     Top,
     /// A horizontal plane at this height, m.
     Height(f64),
@@ -23,20 +24,16 @@ pub struct FluxCounter {
     pub levels: Vec<FluxLevel>,
     /// Columns and rows.
     pub size: UVec2,
+    /// The rectangle that the rasters cover.
+    pub plane: ReferencePlane,
 }
 
 impl FluxCounter {
-    /// Pixels of about this side, m, so that a whole number of them covers the scene's rectangle.
+    /// Pixels of about this side, m, so that a whole number of them covers the rectangle.
     #[must_use]
-    pub fn of(stage: &Stage, pixel: f64, levels: Vec<FluxLevel>) -> Self {
-        let size = (stage.size / pixel).round().as_uvec2().max(UVec2::ONE);
-        Self { levels, size }
-    }
-
-    /// Area of a pixel, m².
-    #[must_use]
-    pub fn pixel_area(&self, stage: &Stage) -> f64 {
-        stage.area() / f64::from(self.size.x) / f64::from(self.size.y)
+    pub fn new(plane: ReferencePlane, pixel: f64, levels: Vec<FluxLevel>) -> Self {
+        let size = (plane.size / pixel).round().as_uvec2().max(UVec2::ONE);
+        Self { levels, size, plane }
     }
 
     /// Pixels of a raster.
@@ -51,22 +48,13 @@ impl FluxCounter {
         (2 * level + is_up as usize) * (self.pixels() + 1)
     }
 
-    /// Cells that a crossing of a level counts in, if the point lies within the scene's rectangle.
-    fn cells_at(
-        &self,
-        stage: &Stage,
-        point: DVec3,
-        level: usize,
-        is_up: bool,
-    ) -> Option<[usize; 2]> {
-        let at = stage.within(point);
-        let inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all();
-        inside.then(|| {
-            let at = (at * self.size.as_dvec2()).as_uvec2().min(self.size - 1);
-            let pixel = (self.size.y - 1 - at.y) * self.size.x + at.x;
-            let first = self.first_cell(level, is_up);
-            [first + pixel as usize, first + self.pixels()]
-        })
+    /// Cells that a crossing of a level counts in, if the point lies within the rectangle.
+    fn cells_at(&self, point: DVec3, level: usize, is_up: bool) -> Option<[usize; 2]> {
+        let at = self.plane.within(point.truncate())?;
+        let at = (at * self.size.as_dvec2()).as_uvec2().min(self.size - 1);
+        let pixel = (self.size.y - 1 - at.y) * self.size.x + at.x;
+        let first = self.first_cell(level, is_up);
+        Some([first + pixel as usize, first + self.pixels()])
     }
 }
 
@@ -78,7 +66,7 @@ impl Counter for FluxCounter {
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
         for (index, &level) in self.levels.iter().enumerate() {
             let mut add = |point, is_up, share: &dyn Fn(usize) -> f64| {
-                for cell in self.cells_at(stage, point, index, is_up).into_iter().flatten() {
+                for cell in self.cells_at(point, index, is_up).into_iter().flatten() {
                     sums.add_with(cell, share);
                 }
             };

@@ -2,8 +2,10 @@ use super::{Counter, Event};
 use crate::components::Layers;
 use crate::extract::Stage;
 use crate::film::Sums;
+use crate::transport::ReferencePlane;
 
-/// Absorbed power by horizontal layer and surface, and what reaches the ground.
+/// Absorbed power by horizontal layer and surface, and what reaches the ground, in the column below
+/// the reference plane.
 ///
 /// Cells: `[layers, surfaces]` with the lowest layer first; then the total of each surface; then
 /// that of all but the ground; then the power that arrives at the ground, as [`GROUND_TERMS`].
@@ -15,6 +17,8 @@ pub struct LayerCounter {
     even: Option<f64>,
     /// Number of surfaces.
     pub surfaces: usize,
+    /// What it counts lies below this.
+    pub plane: ReferencePlane,
 }
 
 /// Transmission to the ground: all; without any scattering; after scattering by the canopy alone;
@@ -25,7 +29,7 @@ impl LayerCounter {
     /// Layers of one thickness from the ground to the top of the scene, whatever lies below the
     /// ground counting in the lowest; or between given heights, m, and nothing beyond them.
     #[must_use]
-    pub fn of(stage: &Stage, layers: &Layers) -> Self {
+    pub fn of(stage: &Stage, layers: &Layers, plane: ReferencePlane) -> Self {
         let surfaces = stage.surfaces.len();
         match layers {
             Layers::Thickness(thickness) => {
@@ -33,9 +37,11 @@ impl LayerCounter {
                 let count = (height / thickness).ceil().max(1.0) as usize;
                 let border = |layer: usize| stage.ground + layer as f64 * thickness;
                 let borders = (0..=count).map(border).collect();
-                Self { borders, even: Some(*thickness), surfaces }
+                Self { borders, even: Some(*thickness), surfaces, plane }
             }
-            Layers::Borders(borders) => Self { borders: borders.clone(), even: None, surfaces },
+            Layers::Borders(borders) => {
+                Self { borders: borders.clone(), even: None, surfaces, plane }
+            }
         }
     }
 
@@ -74,6 +80,9 @@ impl Counter for LayerCounter {
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
         let Event::Arrival { hit, wo, order, met_ground, weight, .. } = event else { return 0 };
+        if !self.plane.is_above(hit.point) {
+            return 0;
+        }
         let surface = hit.surface as usize;
         let is_ground = stage.is_ground(hit);
         let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);

@@ -1,0 +1,116 @@
+use glam::{DVec2, DVec3};
+
+use crate::accel::Ray;
+use crate::components::VirtualPlane;
+use crate::extract::Stage;
+
+/// The horizontal rectangle through which a measurement counts light, and whose area it is
+/// normalised to: the scene's own at its highest point, or a virtual plane.
+///
+/// Light leaves through it if its last flight crosses it upwards. In a periodic scene every copy of
+/// the rectangle counts; one of the scene's own extent is crossed by all that goes up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferencePlane {
+    /// South-west corner, m.
+    pub corner: DVec2,
+    /// Extent to the east and to the north, m.
+    pub size: DVec2,
+    /// Height, m.
+    pub height: f64,
+    /// The power that falls on the scene's rectangle over what falls on this one: what turns shares
+    /// of the first into shares of the second.
+    pub gain: f64,
+    /// Extent of the tile, where the scene is periodic.
+    tile: Option<DVec2>,
+    /// Whether it is the scene's whole rectangle.
+    is_whole: bool,
+    /// Highest point that lies below it, m: infinite where it lies above everything.
+    ceiling: f64,
+}
+
+impl ReferencePlane {
+    /// A virtual plane or, without one, the scene's own.
+    #[must_use]
+    pub fn of(plane: Option<&VirtualPlane>, stage: &Stage) -> Self {
+        let scene = Self {
+            corner: stage.corner,
+            size: stage.size,
+            height: stage.top(),
+            gain: 1.0,
+            tile: stage.periodic.then_some(stage.size),
+            is_whole: true,
+            ceiling: f64::INFINITY,
+        };
+        let Some(plane) = plane else { return scene };
+        let height = plane.height.unwrap_or(scene.height);
+        let (low, high) = stage.geometry.bounds();
+        // Surfaces at the plane's own height lie below it, however their points are rounded.
+        let rounding = low.abs().max(high.abs()).max_element() * (-36_f64).exp2();
+        let ceiling = if height < scene.height { height + rounding } else { f64::INFINITY };
+        let corner = plane.center - 0.5 * plane.size;
+        let is_same = |a: DVec2, b: DVec2| (a - b).abs().cmple(1e-9 * stage.size).all();
+        if is_same(corner, scene.corner) && is_same(plane.size, scene.size) {
+            return Self { height, ceiling, ..scene };
+        }
+        let gain = stage.area() / (plane.size.x * plane.size.y);
+        Self { corner, size: plane.size, height, gain, is_whole: false, ceiling, ..scene }
+    }
+
+    /// Whether it shows every point of a periodic scene exactly once, from whichever side.
+    #[must_use]
+    pub const fn covers_tile(&self) -> bool {
+        self.is_whole && self.tile.is_some()
+    }
+
+    /// Whether something of the scene may lie above it.
+    #[must_use]
+    pub const fn is_low(&self) -> bool {
+        self.ceiling < f64::INFINITY
+    }
+
+    /// Whether a flight from `point` without further obstacle leaves through it.
+    #[must_use]
+    pub fn is_left_by(&self, point: DVec3, direction: DVec3) -> bool {
+        if direction.z <= 0.0 || point.z > self.ceiling {
+            return false;
+        }
+        self.covers_tile() || {
+            let up = (self.height - point.z).max(0.0) / direction.z;
+            self.within((point + direction * up).truncate()).is_some()
+        }
+    }
+
+    /// Whether a ray against the light crosses it.
+    #[must_use]
+    pub fn is_crossed_by(&self, ray: &Ray) -> bool {
+        let along = (self.height - ray.origin.z) / ray.direction.z;
+        self.covers_tile() || self.within((ray.origin + ray.direction * along).truncate()).is_some()
+    }
+
+    /// Of a ray that comes down from above everything, the length above a plane that something may
+    /// lie above, m: what is met there has not left through the plane.
+    #[must_use]
+    pub fn clearance(&self, ray: &Ray) -> Option<f64> {
+        self.is_low().then(|| (self.ceiling - ray.origin.z) / ray.direction.z)
+    }
+
+    /// Whether a point lies in the column below the plane. That of the scene's own extent holds what
+    /// stands out over its edges too.
+    #[must_use]
+    pub fn is_above(&self, point: DVec3) -> bool {
+        point.z <= self.ceiling && (self.is_whole || self.within(point.truncate()).is_some())
+    }
+
+    /// Position within the rectangle, or one of its copies, in units of its extent: each in [0, 1).
+    #[must_use]
+    pub fn within(&self, point: DVec2) -> Option<DVec2> {
+        let mut at = point - self.corner;
+        if let Some(tile) = self.tile {
+            at -= (at / tile).floor() * tile;
+            // The rest of a division may round up to the divisor.
+            at = DVec2::select(at.cmpge(tile), DVec2::ZERO, at);
+        }
+        let at = at / self.size;
+        (at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all()).then_some(at)
+    }
+}

@@ -1,0 +1,87 @@
+//! Every run of photon packets accounts for all of its energy, and says so.
+
+use std::path::Path;
+
+use sunfleck::run::Options;
+use sunfleck_tests::{measure, product};
+
+/// *Scene*: trees under sun, sky and both, periodic and isolated, with the roulette of the manual, a
+/// cruel one and a limit of orders; photons with and without a virtual plane, directions and images
+/// traced forward. *Expected*: incident = reflected + lost + absorbed + roulette to 1e-9 of the
+/// incident in every band, and the same number in the report; nothing of the kind where no packets
+/// are traced.
+#[test]
+fn incident_energy_is_reflected_lost_absorbed_or_taken_by_roulette() {
+    let sun = "sun: (zenith_deg: 60.0, azimuth_deg: 30.0, disc_deg: 0.5),";
+    let lights = [
+        sun.to_owned(),
+        format!("{sun} sky: Fraction([0.5, 0.2]),"),
+        "sky: Isotropic(irradiance: Bands([1.0, 0.3])),".to_owned(),
+    ];
+    let rules = [
+        "roulette: (after_order: 5, kill: 0.05)",
+        "roulette: (after_order: 1, kill: 0.6)",
+        "max_order: 2",
+    ];
+    for boundary in ["Periodic", "Isolated"] {
+        for light in &lights {
+            for rules in rules {
+                let report = measure(
+                    &format!(
+                        r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Bands([0.1, 0.9])),
+        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
+    }},
+    meshes: {{ "tree": Crown(
+        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+        leaf: Square(side_m: 0.1), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (5.0, 4.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 3.9, 0.0)])],
+    {light}
+    boundary: {boundary},
+    transport: ({rules}),
+    sensors: {{
+        "all": Photons(per_m2: 300.0),
+        "plane": Photons(per_m2: 300.0, virtual_plane: (center_m: (2.0, 2.0), size_m: (1.0, 2.0), height_m: 2.0)),
+        "forth": Directions(views: List([(20.0, 0.0)]), until: Samples(3000), system: Forward),
+        "film": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 500, system: Forward),
+        "back": Directions(views: List([(20.0, 0.0)]), until: Samples(64)),
+    }},
+)"#
+                    ),
+                    Path::new("."),
+                    &Options::default(),
+                );
+                assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+                let case = format!("{boundary}, {light}, {rules}");
+                for sensor in &report.sensors {
+                    match sensor.energy_imbalance {
+                        None => assert_eq!(sensor.name, "back"),
+                        Some(off) => assert!(off < 1e-9, "{case}, {}: {off:e}", sensor.name),
+                    }
+                }
+                for sensor in ["all", "plane"] {
+                    let energy = product(&report, sensor, "energy");
+                    for band in 0..2 {
+                        let terms: Vec<f64> =
+                            energy.values[band..].iter().step_by(2).copied().collect();
+                        let others: f64 = terms[1..].iter().sum();
+                        assert!((terms[0] / others - 1.0).abs() < 1e-9, "{case}: {terms:?}");
+                        assert!(terms[1] > 0.0 && terms[4] > 0.0 && terms[5] > 0.0, "{terms:?}");
+                    }
+                }
+                // What is reflected is what leaves through the plane.
+                let albedo = product(&report, "plane", "albedo");
+                let energy = product(&report, "plane", "energy");
+                for band in 0..2 {
+                    let reflected = energy.values[2 + band] * 20.0 / 2.0;
+                    assert!((albedo.values[band] / reflected - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
