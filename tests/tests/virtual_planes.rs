@@ -34,7 +34,7 @@ fn trees(boundary: &str, plane: &str, quality: f64) -> Report {
         "forth": Directions({plane} views: {VIEWS}, until: Samples(60000), system: Forward),
         "image": Orthographic({plane} size_px: (6, 5), extent_m: (8.0, 4.0), center_m: (4.0, 4.1), zenith_deg: 40.0, azimuth_deg: 280.0, samples_per_px: 512),
         "film": Orthographic({plane} size_px: (6, 5), extent_m: (8.0, 4.0), center_m: (4.0, 4.1), zenith_deg: 40.0, azimuth_deg: 280.0, samples_per_px: 2048, system: Forward),
-        "photons": Photons({plane} per_m2: 8000.0, measure: [
+        "photons": Photons({plane} per_m2: 40000.0, measure: [
             Albedo, BrfCells(40), BrfViews({VIEWS}),
             BrfCones([(0.0, 0.0, 8.0), (40.0, 100.0, 8.0), (65.0, 200.0, 8.0)]),
             Fapar(layer_m: 0.7), Fluxes(pixel_m: 0.5, heights_m: [1.5]),
