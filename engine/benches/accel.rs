@@ -128,9 +128,10 @@ fn trace_row(scene: &Scene, corner: DVec2, row: u32, pixels: u32, samples: u32) 
             let onward = (goes_on && throughput >= 1e-6).then(|| {
                 let through = random.next() * (rho + tau) >= rho;
                 let (u, turn) = (random.next(), 2.0 * PI * random.next());
+                let (sin, cos) = (turn as f32).sin_cos();
                 let up = if through { -(1.0 - u).sqrt() } else { (1.0 - u).sqrt() };
                 let (x, y) = basis(normal);
-                let direction = u.sqrt() * (turn.cos() * x + turn.sin() * y) + up * normal;
+                let direction = u.sqrt() * (f64::from(cos) * x + f64::from(sin) * y) + up * normal;
                 hit.leave(direction / direction.length())
             });
             rays += u64::from(shadow.is_some()) + u64::from(onward.is_some());

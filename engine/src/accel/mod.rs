@@ -12,6 +12,7 @@ mod exact;
 mod instance;
 mod mesh;
 mod planar;
+mod ray;
 mod scene;
 mod simd;
 mod tile;

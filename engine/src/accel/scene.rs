@@ -227,17 +227,13 @@ impl Scene {
     /// The block and its lanes that a ray cannot hit in this instance.
     #[inline(always)]
     pub(super) fn skipped(&self, query: &Query<'_>, record: u32) -> (u32, u32) {
-        match query.from {
-            Some(from) if self.is_departure(query, record, &from) => (from.block.0, 1 << from.lane),
-            _ => (Ref::NONE.0, 0),
-        }
-    }
-
-    #[inline(always)]
-    fn is_departure(&self, query: &Query<'_>, record: u32, from: &Departure) -> bool {
+        let Some(from) = query.from else { return (Ref::NONE.0, 0) };
         let (instance, offset) = self.images.original(record);
-        let tile = [query.tile[0].wrapping_add(offset[0]), query.tile[1].wrapping_add(offset[1])];
-        instance == from.instance && tile == from.tile
+        let x = query.tile[0].wrapping_add(offset[0]) == from.tile[0];
+        let y = query.tile[1].wrapping_add(offset[1]) == from.tile[1];
+        // No branch: whether a ray is in the instance that it leaves cannot be foreseen.
+        let lanes = u32::from((instance == from.instance) & x & y) << from.lane;
+        (from.block.0, lanes)
     }
 
     fn resolve(&self, query: &Query<'_>, found: &Found) -> Hit {
@@ -245,9 +241,10 @@ impl Scene {
         let record = &self.records[found.record as usize];
         let object_from_world = DMat3::from_cols_array(&record.object_from_world.map(f64::from));
         let mut primitive = self.primitive(found);
-        // How much rounding may tilt the plane, relative to rounding.
-        let (front, tilt) = if found.block.is_other() {
-            (mesh.discs[found.block.index()].lane(found.lane.into()).1, 1.0)
+        // The normal, and the square of what its rounding is relative to.
+        let (front, square) = if found.block.is_other() {
+            let front = mesh.discs[found.block.index()].lane(found.lane.into()).1;
+            (front, front.length_squared())
         } else {
             let corners = mesh.planar[found.block.index()].lane(found.lane.into());
             let (ab, ac) = (corners[1] - corners[0], corners[2] - corners[0]);
@@ -261,20 +258,20 @@ impl Scene {
                     primitive = mesh.second(found.block, found.lane);
                 }
             }
-            (front, ab.length() * ac.length() / front.length())
+            (front, ab.length_squared() * ac.length_squared())
         };
         let up = object_from_world.transpose() * front;
-        let length = up.length();
+        let pace = 1.0 / up.length();
         let point = query.origin + found.distance * query.direction;
-        let spread = object_from_world.to_cols_array().map(|v| v * v).iter().sum::<f64>().sqrt();
-        let lever = (query.origin - record.translation).length() + found.distance;
+        let spread = object_from_world.to_cols_array().map(|v| v * v).iter().sum::<f64>();
+        let lever = (query.origin - record.translation).abs().element_sum() + found.distance;
         let place = query.origin.abs().max_element()
             + record.translation.abs().max_element()
             + found.distance;
         // Each of some 16 roundings in `exact` is relative to the lever in object space; seen along
-        // the normal, it grows by how much the map squeezes that direction.
-        let error =
-            f64::EPSILON * (16.0 * spread * front.length() / length * tilt * lever + 4.0 * place);
+        // the normal, it grows by how much edges that are nearly parallel tilt the plane and by how
+        // much the map squeezes that direction.
+        let error = f64::EPSILON * (16.0 * (spread * square).sqrt() * pace * lever + 4.0 * place);
         let (point, shift) = tile::wrap(&self.domain, point);
         let (instance, offset) = self.images.original(found.record);
         let tile = [offset[0].wrapping_sub(shift[0]), offset[1].wrapping_sub(shift[1])];
@@ -282,7 +279,7 @@ impl Scene {
         Hit {
             distance: found.distance,
             point,
-            normal: up / length,
+            normal: up * pace,
             surface: mesh.surface(primitive),
             instance,
             primitive,

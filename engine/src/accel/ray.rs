@@ -1,0 +1,254 @@
+//! A ray in the space of one tree, and its tests against eight boxes or primitives at a time.
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    exact,
+    mesh::{DiscBlock, MeshTree, PARALLELOGRAM, PlanarBlock},
+    simd::{Isa, Lanes},
+    trace::Query,
+    tree::Node,
+};
+
+/// A ray in the space of one tree.
+#[derive(Clone, Copy)]
+pub(super) struct BoxRay<I: Isa> {
+    pub inverse: [I::F; 3],
+    pub shift: [I::F; 3],
+    /// 1 where the ray runs down an axis.
+    pub side: [usize; 3],
+    /// The same as bits.
+    pub octant: usize,
+}
+
+impl<I: Isa> BoxRay<I> {
+    #[inline(always)]
+    pub(super) fn new(isa: I, origin: [f32; 3], direction: [f32; 3]) -> Self {
+        // A component this small moves the ray by less than the padding of any box.
+        let [x, y, z] = direction.map(f32::abs);
+        let least = x.max(y).max(z) * 1e-18;
+        let inverse = direction.map(|d| 1.0 / if d.abs() < least { least.copysign(d) } else { d });
+        let side = direction.map(|d| usize::from(d.is_sign_negative()));
+        Self {
+            inverse: inverse.map(|i| isa.splat(i)),
+            shift: [0, 1, 2].map(|axis| isa.splat(-origin[axis] * inverse[axis])),
+            octant: side[0] | side[1] << 1 | side[2] << 2,
+            side,
+        }
+    }
+
+    /// Where the ray enters and leaves the boxes of children, between 0 and `limit`; it meets those
+    /// that it enters first.
+    #[inline(always)]
+    pub(super) fn children(&self, isa: I, node: &Node, limit: I::F) -> (I::F, I::F) {
+        let plane = |axis: usize, side: usize| {
+            let bounds = isa.load(&node.bounds[axis][side & 1]);
+            isa.mul_add(bounds, self.inverse[axis], self.shift[axis])
+        };
+        let [sx, sy, sz] = self.side;
+        let enter =
+            isa.max(isa.max(plane(0, sx), plane(1, sy)), isa.max(plane(2, sz), isa.splat(0.0)));
+        let leave =
+            isa.min(isa.min(plane(0, sx ^ 1), plane(1, sy ^ 1)), isa.min(plane(2, sz ^ 1), limit));
+        (enter, leave)
+    }
+}
+
+/// A ray in the space of one mesh.
+pub(super) struct MeshRay {
+    /// Exact up to `f64` rounding; distances along it are those of the world.
+    pub origin: DVec3,
+    pub direction: DVec3,
+    /// Distance at which the `f32` ray starts.
+    pub start: f64,
+    pub start_near: [f32; 3],
+    pub direction_near: [f32; 3],
+    /// Bounds of rounding: of side determinants per edge length, and of distances per squared one.
+    pub side_error: f32,
+    pub distance_error: f32,
+    /// Beyond the whole mesh, from `start`.
+    pub beyond: f32,
+    /// Size of the coordinates that rounding is relative to.
+    pub size: f32,
+    pub length: f32,
+}
+
+impl MeshRay {
+    #[inline(always)]
+    pub(super) fn new(
+        query: &Query<'_>,
+        record: u32,
+        mesh: &MeshTree,
+        mut start: f64,
+    ) -> Option<Self> {
+        let record = &query.scene.records()[record as usize];
+        let object_from_world = DMat3::from_cols_array(&record.object_from_world.map(f64::from));
+        let origin = object_from_world * (query.origin - record.translation);
+        let direction = object_from_world * query.direction;
+        let mut point = origin + start * direction;
+        let reach = f64::from(mesh.reach);
+        if point.abs().max_element() > 4.0 * reach {
+            // The box of a strongly squeezed instance is far from the mesh: go to the mesh's own.
+            start = mesh.clip(origin, direction)?;
+            point = origin + start * direction;
+        }
+        // Rounding the ray moves it by 2⁻²⁴ of its coordinates; the products of the tests below
+        // then add less than 128 roundings of that size, relative to edges and distances.
+        let size = (reach + point.abs().max_element()) as f32;
+        let direction_near = direction.as_vec3();
+        // √3 times the largest component bounds the length, and spares a square root.
+        let largest = direction_near.abs().max_element();
+        let length = 1.75 * largest;
+        Some(Self {
+            origin,
+            direction,
+            start,
+            start_near: point.as_vec3().to_array(),
+            direction_near: direction_near.to_array(),
+            side_error: size * length * ROUNDING,
+            distance_error: size * ROUNDING,
+            beyond: 4.0 * size / largest,
+            size,
+            length,
+        })
+    }
+}
+
+/// 128 roundings of `f32`.
+const ROUNDING: f32 = 128.0 / (1 << 24) as f32;
+
+/// The distance of a lane that is perhaps or surely hit, if it is.
+#[inline(always)]
+pub(super) fn planar_distance(
+    query: &Query<'_>,
+    record: u32,
+    ray: &MeshRay,
+    block: &PlanarBlock,
+    lane: usize,
+    is_sure: bool,
+) -> Option<f64> {
+    let corners = block.lane(lane);
+    let distance = exact::plane_distance(&corners, ray.origin, ray.direction)?;
+    let parallelogram = block.id.0[lane & 7] & PARALLELOGRAM != 0;
+    let hit = is_sure || {
+        let blur = blur(query, record, distance);
+        exact::contains(&corners, parallelogram, ray.origin, ray.direction, blur)
+    };
+    hit.then_some(distance)
+}
+
+/// How far, in object space, rounding in `f64` may move the point at a distance along a ray.
+#[cold]
+fn blur(query: &Query<'_>, record: u32, distance: f64) -> f64 {
+    let record = &query.scene.records()[record as usize];
+    let stretch: f64 = record.object_from_world.iter().map(|&v| f64::from(v.abs())).sum();
+    let place = query.origin.abs().max_element() + record.translation.abs().max_element();
+    8.0 * f64::EPSILON * stretch * (place + distance.abs())
+}
+
+pub(super) struct WideRay<I: Isa> {
+    pub origin: [I::F; 3],
+    pub direction: [I::F; 3],
+    pub side_error: I::F,
+    pub distance_error: I::F,
+}
+
+impl<I: Isa> WideRay<I> {
+    #[inline(always)]
+    pub(super) fn new(isa: I, ray: &MeshRay) -> Self {
+        Self {
+            origin: ray.start_near.map(|v| isa.splat(v)),
+            direction: ray.direction_near.map(|v| isa.splat(v)),
+            side_error: isa.splat(ray.side_error),
+            distance_error: isa.splat(ray.distance_error),
+        }
+    }
+
+    /// Lanes that are perhaps hit between 0 and `limit`, and those that surely are.
+    ///
+    /// Source: Möller and Trumbore (1997), Fast, minimum storage ray/triangle intersection, with
+    /// the division left out.
+    #[inline(always)]
+    pub(super) fn planar(&self, isa: I, block: &PlanarBlock, limit: f32, keep: u32) -> (u32, u32) {
+        let [a, b, c] =
+            block.corners.each_ref().map(|corner| corner.each_ref().map(|v| isa.load(v)));
+        let sub = |a: [I::F; 3], b: [I::F; 3]| {
+            [isa.sub(a[0], b[0]), isa.sub(a[1], b[1]), isa.sub(a[2], b[2])]
+        };
+        let cross = |a: [I::F; 3], b: [I::F; 3]| {
+            [
+                isa.mul_sub(a[1], b[2], isa.mul(a[2], b[1])),
+                isa.mul_sub(a[2], b[0], isa.mul(a[0], b[2])),
+                isa.mul_sub(a[0], b[1], isa.mul(a[1], b[0])),
+            ]
+        };
+        let dot = |a: [I::F; 3], b: [I::F; 3]| {
+            isa.mul_add(a[0], b[0], isa.mul_add(a[1], b[1], isa.mul(a[2], b[2])))
+        };
+        let (ab, ac, from_a) = (sub(b, a), sub(c, a), sub(self.origin, a));
+        let p = cross(self.direction, ac);
+        let q = cross(from_a, ab);
+        let det = dot(ab, p);
+        let u = isa.turn(dot(from_a, p), det);
+        let v = isa.turn(dot(self.direction, q), det);
+        let t = isa.turn(dot(ac, q), det);
+        let det = isa.abs(det);
+        let used = isa.pick(isa.add(u, v), isa.max(u, v), isa.load_bits(&block.id));
+        let inside = isa.min(isa.min(u, v), isa.sub(det, used));
+        let edge = isa.load(&block.edge);
+        let side_error = isa.mul(self.side_error, edge);
+        let distance_error = isa.mul(isa.mul(self.distance_error, edge), edge);
+        let far = isa.mul(isa.splat(limit), det);
+        let zero = isa.splat(0.0);
+        let perhaps = isa.le(isa.sub(zero, side_error), inside)
+            & isa.le(isa.sub(zero, distance_error), t)
+            & isa.le(isa.sub(t, distance_error), far)
+            & keep;
+        if perhaps == 0 {
+            return (0, 0);
+        }
+        let sure = isa.le(side_error, inside)
+            & isa.le(distance_error, t)
+            & isa.le(isa.add(t, distance_error), far);
+        // An unused lane's error is negative: never perhaps, though it may look sure.
+        (perhaps, perhaps & sure)
+    }
+
+    /// As [`Self::planar`], for discs.
+    #[inline(always)]
+    pub(super) fn discs(
+        &self,
+        isa: I,
+        block: &DiscBlock,
+        ray: &MeshRay,
+        limit: f32,
+        keep: u32,
+    ) -> (u32, u32) {
+        let load = |v: &[Lanes; 3]| v.each_ref().map(|v| isa.load(v));
+        let (center, normal) = (load(&block.center), load(&block.normal));
+        let dot = |a: [I::F; 3], b: [I::F; 3]| {
+            isa.mul_add(a[0], b[0], isa.mul_add(a[1], b[1], isa.mul(a[2], b[2])))
+        };
+        let to = [0, 1, 2].map(|i| isa.sub(center[i], self.origin[i]));
+        let slope = dot(normal, self.direction);
+        let t = isa.div(dot(normal, to), slope);
+        let off = [0, 1, 2].map(|i| isa.sub(isa.mul(self.direction[i], t), to[i]));
+        let off = dot(off, off);
+        // The distance is off by rounding over the slope, and the point by that along the ray.
+        let steep = isa.div(isa.splat(ray.distance_error), isa.abs(slope));
+        let error = isa.mul_add(isa.splat(ray.length), steep, isa.splat(ray.size * ROUNDING));
+        let radius = isa.load(&block.radius);
+        let zero = isa.splat(0.0);
+        let (outer, inner) = (isa.add(radius, error), isa.max(isa.sub(radius, error), zero));
+        let (low, high) = (isa.sub(t, steep), isa.add(t, steep));
+        let limit = isa.splat(limit);
+        let used = isa.le(zero, radius);
+        let perhaps = isa.not_gt(off, isa.mul(outer, outer))
+            & isa.not_gt(zero, high)
+            & isa.not_gt(low, limit)
+            & used
+            & keep;
+        let sure = isa.le(off, isa.mul(inner, inner)) & isa.le(zero, low) & isa.le(high, limit);
+        (perhaps, perhaps & sure)
+    }
+}
