@@ -11,6 +11,7 @@ pub mod extract;
 pub mod film;
 pub mod geometry;
 pub mod output;
+pub mod placement;
 pub mod products;
 pub mod run;
 pub mod sampling;

@@ -77,10 +77,15 @@ impl Text {
         Item::new(Some(name), format!("{name}: "), value)
     }
 
-    /// `Name(value)`.
+    /// `Name(value)`; of a tuple `Name(value, value)`.
     pub(super) fn newtype(name: &str, value: Self) -> Self {
         match value {
             Self::Leaf(leaf) => Self::Leaf(format!("{name}({leaf})")),
+            Self::Group(group)
+                if group.open == "(" && group.items.iter().all(|item| item.key.is_empty()) =>
+            {
+                Self::Group(Group { open: format!("{name}("), ..group })
+            }
             Self::Group(group) => {
                 let (open, close) = (format!("{name}({}", group.open), format!("{})", group.close));
                 Self::Group(Group { open, close, ..group })

@@ -2,8 +2,10 @@
 
 mod bounds;
 mod frame;
+mod polygon;
 mod rounding;
 
 pub use bounds::Bounds;
 pub use frame::basis;
+pub use polygon::{Polygon, Rectangle};
 pub use rounding::{round_down, round_up};

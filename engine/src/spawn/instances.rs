@@ -16,7 +16,7 @@ impl Spawner<'_> {
         for (index, instances) in scene.instances.iter().enumerate() {
             let path = format!("instances[{index}]");
             let (of, rows) = match instances {
-                Instances::Table { file, of, columns } => {
+                Instances::Table { file, of, columns, .. } => {
                     let file = self.file(file);
                     match assets::read_instances(&file, columns.as_deref()) {
                         Ok(rows) => (of, rows),
@@ -28,7 +28,10 @@ impl Spawner<'_> {
                         }
                     }
                 }
-                Instances::List { of, at_m, yaw_deg, scale } => (of, listed(at_m, yaw_deg, scale)),
+                Instances::List { of, at_m, yaw_deg, scale, .. } => {
+                    (of, listed(at_m, yaw_deg, scale))
+                }
+                Instances::Scatter { .. } => continue,
             };
             let Some(prototype) = scene.meshes.get_index_of(of) else {
                 let known = scene.meshes.keys().map(String::as_str);

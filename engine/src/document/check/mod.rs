@@ -2,6 +2,7 @@
 
 mod camera;
 mod ground;
+mod instances;
 mod light;
 mod mesh;
 mod plane;
@@ -37,7 +38,7 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
     mesh::check_meshes(scene, &mut report);
     ground::check_frame(scene, &mut report);
     ground::check_terrain(scene, &mut report);
-    ground::check_instances(scene, &mut report);
+    instances::check_instances(scene, &mut report);
     light::check_sun(scene, &mut report);
     light::check_sky(scene, &mut report);
     thermal::check_thermal_sky(scene, &mut report);

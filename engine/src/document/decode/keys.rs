@@ -128,9 +128,6 @@ impl<'a> Fields<'a> {
 /// What the language will know, but this version does not.
 fn later(owner: &str, name: &str) -> Option<(&'static str, &'static str)> {
     match (owner, name) {
-        ("instances", "Scatter") => {
-            Some(("`Scatter(..)`", "write the places with `List(..)` or `Table(..)`"))
-        }
         _ => None,
     }
 }
@@ -166,7 +163,7 @@ impl<'a> Variant<'a> {
         value
     }
 
-    /// `Constant(0.3)`.
+    /// `Constant(0.3)`; of a tuple `Uniform(0.5, 1.5)`.
     pub(in super::super) fn newtype<T: Decode>(
         &self,
         example: Option<&'static str>,
@@ -179,13 +176,17 @@ impl<'a> Variant<'a> {
         if let [item] = items {
             return reader.by_example(example, |reader| T::decode(item, reader));
         }
+        if let Some(body) = self.body.filter(|_| T::IS_TUPLE && !items.is_empty()) {
+            return T::decode(body, reader);
+        }
         let example = example.map_or_else(T::example, str::to_owned);
         let found = match self.body.map(|body| &body.value) {
             None => "none".to_owned(),
             Some(Value::Record(_)) => "keys".to_owned(),
             Some(_) => items.len().to_string(),
         };
-        let message = format!("`{}` takes one value, found {found}", self.name);
+        let wanted = if T::IS_TUPLE { T::expected() } else { "one value".into() };
+        let message = format!("`{}` takes {wanted}, found {found}", self.name);
         let help = format!("write, for example, `{}({example})`", self.name);
         reader.error(self.name_span, message, Some(help));
         T::placeholder()

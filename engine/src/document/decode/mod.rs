@@ -22,6 +22,8 @@ const BROKEN: usize = 1000;
 pub(super) trait Decode: Sized {
     /// Keys of a record.
     const KEYS: &'static [&'static str] = &[];
+    /// Whether its values stand in parentheses of their own; those of a variant serve as well.
+    const IS_TUPLE: bool = false;
 
     /// What a person calls such a value: `a number`.
     fn expected() -> Cow<'static, str>;

@@ -223,6 +223,8 @@ impl<T: Decode> Decode for IndexMap<String, T> {
 macro_rules! decode_tuple {
     ($count:literal: $($type:ident $index:tt),*) => {
         impl<$($type: Decode),*> Decode for ($($type,)*) {
+            const IS_TUPLE: bool = true;
+
             fn expected() -> Cow<'static, str> {
                 concat!(stringify!($count), " values in parentheses").into()
             }

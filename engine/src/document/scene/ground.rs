@@ -1,4 +1,4 @@
-//! The ground and what stands on it.
+//! The ground.
 
 use std::borrow::Cow;
 
@@ -32,43 +32,3 @@ choice! {
         Isolated,
     }
 }
-
-choice! {
-    /// Instances of mesh prototypes.
-    pub enum Instances ("instances") {
-        /// Places from a text table.
-        Table {
-            /// Path, relative to the scene file.
-            file: String => r#""stand.csv""#,
-            /// Mesh that stands there.
-            of: String => r#""tree""#,
-            /// Names of the columns where the file has no header: `x_m`, `y_m`, `z_m`, `yaw_deg`
-            /// or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`, `scale`, `scale_vertical`.
-            columns: Option<Vec<String>> = None,
-        },
-        /// Places written here.
-        List {
-            /// Mesh that stands there.
-            of: String => r#""tree""#,
-            /// Positions, m.
-            at_m: Vec<(f64, f64, f64)> => "[(20.0, 30.0, 0.0)]",
-            /// Turn of each (counter-clockwise seen from above), degrees; none if empty.
-            yaw_deg: Vec<f64> = Vec::new(),
-            /// Scale of each; 1 if empty.
-            scale: Vec<f64> = Vec::new(),
-        },
-    }
-}
-
-/// Columns that a table of instances may have.
-pub const INSTANCE_COLUMNS: [&str; 9] = [
-    "x_m",
-    "y_m",
-    "z_m",
-    "yaw_deg",
-    "yaw_rad",
-    "tilt_deg",
-    "tilt_azimuth_deg",
-    "scale",
-    "scale_vertical",
-];

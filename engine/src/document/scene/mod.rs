@@ -2,6 +2,7 @@
 
 mod camera;
 mod ground;
+mod instances;
 mod light;
 mod mesh;
 mod program;
@@ -18,7 +19,8 @@ use super::encode::{Encode, Text, differs};
 use super::syntax::Node;
 
 pub use camera::{Cover, FisheyeProjection, Look, Picture};
-pub use ground::{Boundary, INSTANCE_COLUMNS, Instances, Terrain};
+pub use ground::{Boundary, Terrain};
+pub use instances::{Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, Stems};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
 pub use program::{Include, Sweep};
@@ -58,6 +60,11 @@ record! {
         terrain: Terrain => r#"Plane(size_m: (100.0, 100.0), material: "soil")"#,
         /// What stands on it.
         instances: Vec<Instances> = Vec::new(),
+        /// Which of them are left out: patterns such as `"oak"` (a mesh) or `"plot 7/*"` (all that
+        /// stands by the instances of that name). The others stay where they are.
+        hide: Vec<String> = Vec::new(),
+        /// Which of them are kept, by the same patterns; all if empty.
+        select: Vec<String> = Vec::new(),
         /// The sun; without it only the sky lights the scene.
         sun: Option<Sun> = None,
         /// The sky.

@@ -1,0 +1,278 @@
+//! What stands on the ground.
+
+use super::super::diagnostic::{Diagnostic, suggestion};
+use super::super::scene::{
+    Area, Distribution, INSTANCE_COLUMNS, Instances, Map, Rule, Scene, Stems,
+};
+use super::{Report, count};
+
+pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
+    for (index, instances) in scene.instances.iter().enumerate() {
+        let path = format!("instances[{index}]");
+        check_name(scene, index, instances.name(), &path, report);
+        match instances {
+            Instances::Table { of, columns, .. } => {
+                report.name(&format!("{path}.of"), "mesh", of, &scene.meshes, "meshes");
+                if let Some(columns) = columns {
+                    check_columns(&format!("{path}.columns"), columns, report);
+                }
+            }
+            Instances::List { of, at_m, yaw_deg, scale, .. } => {
+                report.name(&format!("{path}.of"), "mesh", of, &scene.meshes, "meshes");
+                for (index, (x, y, z)) in at_m.iter().enumerate() {
+                    if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+                        let message = format!("expected finite numbers, found ({x}, {y}, {z})");
+                        report.push(Diagnostic::error(format!("{path}.at_m[{index}]"), message));
+                    }
+                }
+                check_count(&path, "yaw_deg", yaw_deg.len(), at_m.len(), report);
+                check_count(&path, "scale", scale.len(), at_m.len(), report);
+                report.finite(&format!("{path}.yaw_deg"), yaw_deg);
+                for (index, &scale) in scale.iter().enumerate() {
+                    if !(scale > 0.0 && scale.is_finite()) {
+                        report.above_zero(&format!("{path}.scale[{index}]"), scale);
+                    }
+                }
+            }
+            Instances::Scatter { .. } => check_scatter(scene, instances, &path, report),
+        }
+    }
+}
+
+/// A name that streams are keyed by, so no two may have the same.
+fn check_name(
+    scene: &Scene,
+    index: usize,
+    name: Option<&str>,
+    path: &str,
+    report: &mut Report<'_>,
+) {
+    let Some(name) = name else { return };
+    let at = format!("{path}.name");
+    if name.is_empty() || name.contains(['/', '*']) {
+        let help = "patterns of `hide` and `select` are made of names, `/` and `*`";
+        report.error(&at, format!("`{name}` cannot be a name of instances"), help);
+    } else if scene.instances[..index].iter().any(|other| other.name() == Some(name)) {
+        report.error(&at, format!("a second `{name}`"), "give each instances a name of their own");
+    }
+}
+
+fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Report<'_>) {
+    let Instances::Scatter {
+        of,
+        rule,
+        stems,
+        inside,
+        outside,
+        yaw_deg,
+        tilt_deg,
+        tilt_azimuth_deg,
+        height_m,
+        scale,
+        scale_vertical,
+        sink_m,
+        ..
+    } = scatter
+    else {
+        return;
+    };
+    check_shares(scene, of, &format!("{path}.of"), report);
+    check_rule(rule, stems, path, report);
+    for (key, areas) in [("inside", inside), ("outside", outside)] {
+        for (index, area) in areas.iter().enumerate() {
+            check_area(area, &format!("{path}.{key}[{index}]"), report);
+        }
+    }
+    check_distribution(yaw_deg, &format!("{path}.yaw_deg"), None, report);
+    check_distribution(tilt_azimuth_deg, &format!("{path}.tilt_azimuth_deg"), None, report);
+    let tilt_path = format!("{path}.tilt_deg");
+    check_distribution(tilt_deg, &tilt_path, Some((0.0, "expected a lean", true)), report);
+    if let Some(most) = largest(tilt_deg).filter(|&most| most >= 90.0) {
+        let message = format!("expected a lean below 90°, found up to {most}");
+        report.error(&tilt_path, message, "add `max: 30.0`, or take a smaller value");
+    }
+    let sizes = [
+        ("height_m", height_m.as_ref()),
+        ("scale", Some(scale)),
+        ("scale_vertical", scale_vertical.as_ref()),
+    ];
+    for (key, size) in sizes {
+        if let Some(size) = size {
+            let positive = Some((0.0, "expected sizes", false));
+            check_distribution(size, &format!("{path}.{key}"), positive, report);
+        }
+    }
+    report.finite(&format!("{path}.sink_m"), &[*sink_m]);
+}
+
+fn check_shares(scene: &Scene, of: &Map<f64>, path: &str, report: &mut Report<'_>) {
+    if of.is_empty() {
+        let help = "write, for example, `of: { \"oak\": 0.7, \"birch\": 0.3 }`";
+        report.error(path, "nothing would stand there", help);
+    } else if of.values().all(|&share| share == 0.0) {
+        report.error(path, "all shares are 0", "give at least one mesh a share above 0");
+    }
+    for (name, &share) in of {
+        report.name(&format!("{path}.{name}"), "mesh", name, &scene.meshes, "meshes");
+        report.at_least(&format!("{path}.{name}"), share, 0.0);
+    }
+}
+
+fn check_rule(rule: &Rule, stems: &Stems, path: &str, report: &mut Report<'_>) {
+    match rule {
+        Rule::Uniform if *stems == Stems::Fill => {
+            let message = "`rule: Uniform` has room for any number of stems";
+            report.error(path, message, "add, for example, `stems: PerHectare(400.0)`");
+        }
+        Rule::Uniform => {}
+        Rule::PoissonDisc { min_distance_m } => {
+            report.above_zero(&format!("{path}.rule.min_distance_m"), *min_distance_m);
+        }
+        Rule::Grid { spacing_m, row_azimuth_deg, jitter_m } => {
+            report.above_zero(&format!("{path}.rule.spacing_m[0]"), spacing_m.0);
+            report.above_zero(&format!("{path}.rule.spacing_m[1]"), spacing_m.1);
+            report.azimuth(&format!("{path}.rule.row_azimuth_deg"), *row_azimuth_deg);
+            report.at_least(&format!("{path}.rule.jitter_m"), *jitter_m, 0.0);
+            if *stems != Stems::Fill {
+                let help = "take the key out, or choose `Uniform` or `PoissonDisc(..)` as the rule";
+                let message = "the spacing of a grid decides how many stems there are";
+                report.error(&format!("{path}.stems"), message, help);
+            }
+        }
+    }
+    if let Stems::PerHectare(density) = stems
+        && !(*density >= 0.0 && density.is_finite())
+    {
+        let message = format!("expected stems per hectare of at least 0, found {density}");
+        report.error(&format!("{path}.stems"), message, "write, for example, `PerHectare(400.0)`");
+    }
+}
+
+fn check_area(area: &Area, path: &str, report: &mut Report<'_>) {
+    let Area::Polygon { outline_m, holes_m } = area else { return };
+    check_ring(outline_m, &format!("{path}.outline_m"), report);
+    for (index, hole) in holes_m.iter().enumerate() {
+        check_ring(hole, &format!("{path}.holes_m[{index}]"), report);
+    }
+}
+
+fn check_ring(ring: &[(f64, f64)], path: &str, report: &mut Report<'_>) {
+    if ring.len() < 3 && report.is_whole(path) {
+        let message = format!("{} enclose no area", count(ring.len(), "corner"));
+        report.error(path, message, "write at least three: `[(10.0, 10.0), (90.0, 10.0), ..]`");
+    }
+    if let Some(index) = ring.iter().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
+        let (x, y) = ring[index];
+        let message = format!("expected finite numbers, found ({x}, {y})");
+        report.push(Diagnostic::error(format!("{path}[{index}]"), message));
+    }
+}
+
+/// Whether values are finite, spread the right way round, and not below `least` (its value, what a
+/// message begins with, whether it may be reached).
+fn check_distribution(
+    distribution: &Distribution,
+    path: &str,
+    least: Option<(f64, &str, bool)>,
+    report: &mut Report<'_>,
+) {
+    let before = report.found.len();
+    match distribution {
+        Distribution::Fixed(value) => report.finite(path, &[*value]),
+        Distribution::Uniform((low, high)) => {
+            report.finite(path, &[*low, *high]);
+            if low > high {
+                let help = format!("write `Uniform({high:?}, {low:?})`");
+                report.error(path, format!("runs from {low} down to {high}"), help);
+            }
+        }
+        Distribution::Normal { mean, sd, min, max } => {
+            report.finite(&format!("{path}.mean"), &[*mean]);
+            report.at_least(&format!("{path}.sd"), *sd, 0.0);
+            check_limits(path, ("mean", *mean), *min, *max, report);
+        }
+        Distribution::LogNormal { median, sd_ln, min, max } => {
+            report.above_zero(&format!("{path}.median"), *median);
+            report.at_least(&format!("{path}.sd_ln"), *sd_ln, 0.0);
+            check_limits(path, ("median", *median), *min, *max, report);
+        }
+    }
+    let Some((least, expected, may_reach)) = least else { return };
+    let lowest = match distribution {
+        Distribution::Fixed(value) | Distribution::Uniform((value, _)) => *value,
+        Distribution::Normal { mean, sd: 0.0, .. } => *mean,
+        Distribution::Normal { min, .. } => min.unwrap_or(f64::NEG_INFINITY),
+        Distribution::LogNormal { .. } => return,
+    };
+    let is_lawful = if may_reach { lowest >= least } else { lowest > least };
+    if !is_lawful && report.found.len() == before {
+        let relation = if may_reach { "of at least" } else { "above" };
+        if lowest.is_finite() {
+            report.push(Diagnostic::error(
+                path,
+                format!("{expected} {relation} {least}, found {lowest}"),
+            ));
+        } else {
+            let message = format!("{expected} {relation} {least}, but a Gaussian has no end");
+            report.error(path, message, "cut it off: add, for example, `min: 0.5`");
+        }
+    }
+}
+
+fn check_limits(
+    path: &str,
+    (name, middle): (&str, f64),
+    min: Option<f64>,
+    max: Option<f64>,
+    report: &mut Report<'_>,
+) {
+    let limits = [("min", min, "above"), ("max", max, "below")];
+    for (key, limit, side) in limits {
+        let Some(limit) = limit else { continue };
+        let is_beyond = if key == "min" { limit > middle } else { limit < middle };
+        if is_beyond || limit.is_nan() {
+            let help = format!("the {name} must lie from `min` to `max`");
+            let message = format!("`{key}` {limit} is {side} the {name} {middle}");
+            report.error(&format!("{path}.{key}"), message, help);
+        }
+    }
+}
+
+/// The largest value that a distribution can give; none if there is no end.
+fn largest(distribution: &Distribution) -> Option<f64> {
+    match distribution {
+        Distribution::Fixed(value) | Distribution::Uniform((_, value)) => Some(*value),
+        Distribution::Normal { mean, sd: 0.0, .. } => Some(*mean),
+        Distribution::Normal { max, .. } | Distribution::LogNormal { max, .. } => {
+            Some(max.unwrap_or(f64::INFINITY))
+        }
+    }
+}
+
+/// One value a place, or none.
+fn check_count(path: &str, key: &str, values: usize, places: usize, report: &mut Report<'_>) {
+    if values != 0 && values != places && report.is_readable(&format!("{path}.at_m")) {
+        let values = count(values, "value");
+        let message = format!("`{key}` has {values}, but `at_m` has {places}");
+        let help = "write one for each place, or leave the key out";
+        report.error(&format!("{path}.{key}"), message, help);
+    }
+}
+
+fn check_columns(path: &str, columns: &[String], report: &mut Report<'_>) {
+    for (index, column) in columns.iter().enumerate() {
+        let at = format!("{path}[{index}]");
+        if !INSTANCE_COLUMNS.contains(&column.as_str()) {
+            let help = suggestion(column, &INSTANCE_COLUMNS, "columns may be");
+            report.error(&at, format!("no column `{column}`"), help);
+        } else if columns[..index].contains(column) {
+            report.error(&at, format!("a second column `{column}`"), "name each column once");
+        }
+    }
+    for needed in ["x_m", "y_m"] {
+        if !columns.iter().any(|column| column == needed) && report.is_whole(path) {
+            let help = "write, for example, `columns: [\"x_m\", \"y_m\", \"yaw_deg\"]`";
+            report.error(path, format!("no column is `{needed}`"), help);
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Numbers of a document's distributions.
+
+use std::f64::consts::TAU;
+
+use crate::document::Distribution;
+use crate::sampling::Key;
+
+/// The value that a stream draws from a distribution that `document::check` finds lawful.
+pub(super) fn draw(distribution: &Distribution, stream: Key) -> f64 {
+    match *distribution {
+        Distribution::Fixed(value) => value,
+        Distribution::Uniform((low, high)) => low + (high - low) * stream.uniform(0),
+        Distribution::Normal { mean, sd, min, max } => {
+            let (min, max) = (min.unwrap_or(f64::NEG_INFINITY), max.unwrap_or(f64::INFINITY));
+            truncated_normal(mean, sd, min, max, stream)
+        }
+        Distribution::LogNormal { median, sd_ln, min, max } => {
+            let min = min.filter(|&min| min > 0.0).map_or(f64::NEG_INFINITY, f64::ln);
+            let max = max.map_or(f64::INFINITY, f64::ln);
+            truncated_normal(median.ln(), sd_ln, min, max, stream).exp()
+        }
+    }
+}
+
+/// A Gaussian number between limits that have its mean between them, by rejection.
+///
+/// Narrow limits are proposed uniformly, others from the Gaussian: both ways at least four
+/// proposals in ten are taken, however the limits lie.
+fn truncated_normal(mean: f64, sd: f64, min: f64, max: f64, stream: Key) -> f64 {
+    if sd <= 0.0 || min >= max {
+        return mean;
+    }
+    let (low, high) = ((min - mean) / sd, (max - mean) / sd);
+    let is_narrow = high - low < 2.5;
+    // A stream never runs dry: 0.6⁴⁰⁹⁶ is no number.
+    for trial in 0..4096 {
+        let (u, v) = (stream.uniform(2 * trial), stream.uniform(2 * trial + 1));
+        let z = if is_narrow {
+            let z = low + (high - low) * u;
+            if v < (-0.5 * z * z).exp() { z } else { continue }
+        } else {
+            (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
+        };
+        if (low..=high).contains(&z) {
+            return (mean + sd * z).clamp(min, max);
+        }
+    }
+    mean
+}

@@ -1,0 +1,36 @@
+use glam::DVec2;
+
+/// Why a rule places nothing.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "each variant's message names its fields")]
+pub enum PlacementError {
+    #[error(
+        "the outline or a hole of the polygon crosses itself or another ring at ({:.3}, {:.3})",
+        .at.x, .at.y
+    )]
+    CrossesItself { polygon: u32, at: DVec2 },
+    #[error("the areas have {corners} corners, more than {most}; simplify them")]
+    TooManyCorners { corners: usize, most: usize },
+    #[error("the areas cross each other more than {most} times; simplify them")]
+    TooManyCrossings { most: usize },
+    #[error("the areas are too intricate; simplify them")]
+    TooIntricate,
+    #[error("no ground is left where a stem may stand")]
+    NoGround,
+    #[error(
+        "{stems:.3e} stems are more than {most} for one `Scatter`; use several, or fewer stems"
+    )]
+    TooManyStems { stems: f64, most: usize },
+    #[error(
+        "only {placed} of {wanted} stems stand {distance} m apart, then no place is left: at random \
+         about {at_random:.0} find a place here, and in the tightest order (rows of equilateral \
+         triangles) {at_most:.0}"
+    )]
+    NoRoom { placed: usize, wanted: usize, distance: f64, at_random: f64, at_most: f64 },
+    #[error(
+        "a stem and its own image across the border of the periodic scene are {side} m apart, \
+         less than {distance} m"
+    )]
+    TooCloseToItself { distance: f64, side: f64 },
+}

@@ -1,0 +1,148 @@
+//! Stems that keep a distance.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::buckets::Buckets;
+use super::{MOST_STEMS, PlacementError, Region};
+use crate::geometry::Rectangle;
+use crate::sampling::Key;
+
+/// Stems a hectare of disc diameter 1 that stand when no more find a place: random sequential
+/// addition covers 0.547 of the plane.
+///
+/// Source: Torquato, Uche and Stillinger (2006), Phys. Rev. E 74, 061308.
+const AT_RANDOM: f64 = 0.547 * 4.0 / std::f64::consts::PI;
+
+/// How often cells are cut into four. What is left free beyond is 2⁻¹⁶ of the distance wide.
+const MOST_CUTS: u32 = 16;
+
+/// Uniform points of a region, one after the other, each kept if it is at least `distance` from all
+/// before it (random sequential addition); until there are `wanted`, or until no place is left.
+///
+/// The darts are thrown only where a place may be left: at first into cells that cover the region,
+/// then, again and again, into the quarters of these that no disc covers as a whole. That changes
+/// nothing in the distribution.
+///
+/// In a tile that repeats, distances count across its borders.
+///
+/// Source: Ebeida, Mitchell, Patney, Davidson and Owens (2012), "A simple algorithm for maximal
+/// Poisson-disk sampling in high dimensions", Computer Graphics Forum 31, 785–794.
+///
+/// # Errors
+/// No room for as many as are wanted; more than a scatter may have.
+pub(super) fn poisson_disc(
+    region: &Region,
+    tile: Option<Rectangle>,
+    distance: f64,
+    wanted: Option<usize>,
+    stream: Key,
+) -> Result<Vec<DVec2>, PlacementError> {
+    let bounds = region.bounds();
+    let at_random = AT_RANDOM * region.area() / (distance * distance);
+    if wanted.is_none() && at_random > MOST_STEMS as f64 {
+        return Err(PlacementError::TooManyStems { stems: at_random, most: MOST_STEMS });
+    }
+    if let Some(tile) = tile {
+        let side = tile.size().min_element();
+        if side < distance && wanted != Some(0) {
+            return Err(PlacementError::TooCloseToItself { distance, side });
+        }
+    }
+    let expected = wanted.map_or(at_random, |wanted| wanted as f64).max(1.0);
+    let mut buckets =
+        Buckets::new(tile.unwrap_or(bounds), tile.is_some(), distance, expected as usize);
+    let mut cells = Cells::new(bounds, distance, expected);
+    cells.active.retain(|&cell| region.may_overlap(cells.grid.rectangle(cell)));
+    let mut draws = 0..;
+    let mut next = || stream.uniform(draws.next().unwrap_or(0));
+    let is_full = |buckets: &Buckets| wanted.is_some_and(|wanted| buckets.points.len() >= wanted);
+    for _ in 0..=MOST_CUTS {
+        for _ in 0..cells.active.len() {
+            if is_full(&buckets) || cells.active.is_empty() {
+                break;
+            }
+            let index = (next() * cells.active.len() as f64) as usize;
+            let rectangle = cells.grid.rectangle(cells.active[index]);
+            let point = rectangle.at(next(), next());
+            if region.contains(point) && !buckets.is_taken(point) {
+                buckets.push(point);
+                if buckets.covers(rectangle) {
+                    cells.active.swap_remove(index);
+                }
+            }
+        }
+        if is_full(&buckets) || cells.active.is_empty() {
+            break;
+        }
+        cells.cut(|rectangle| !buckets.covers(rectangle) && region.may_overlap(rectangle));
+    }
+    match wanted {
+        Some(wanted) if buckets.points.len() < wanted => Err(PlacementError::NoRoom {
+            placed: buckets.points.len(),
+            wanted,
+            distance,
+            at_random,
+            at_most: tightest(region, tile, distance),
+        }),
+        _ => Ok(buckets.points),
+    }
+}
+
+/// A bound of the stems at least `distance` apart: `2 A / (√3 d²)`, A with a border of d/2 where
+/// the plane does not repeat, for discs may reach beyond it by so much.
+fn tightest(region: &Region, tile: Option<Rectangle>, distance: f64) -> f64 {
+    let grown = region.bounds().size() + distance;
+    let area = match tile {
+        Some(tile) => tile.size().x * tile.size().y,
+        None => grown.x * grown.y,
+    };
+    (2.0 / 3_f64.sqrt() * area / (distance * distance)).floor()
+}
+
+/// Cells of a grid, all of one size.
+struct Grid {
+    corner: DVec2,
+    side: DVec2,
+}
+
+impl Grid {
+    fn rectangle(&self, [column, row]: [u32; 2]) -> Rectangle {
+        let at = |column: u32, row: u32| {
+            self.corner + self.side * DVec2::new(f64::from(column), f64::from(row))
+        };
+        Rectangle { min: at(column, row), max: at(column + 1, row + 1) }
+    }
+}
+
+/// The cells where a place may be left.
+struct Cells {
+    grid: Grid,
+    active: Vec<[u32; 2]>,
+}
+
+impl Cells {
+    /// Cells that a stem inside covers, or larger ones where few stems are expected.
+    fn new(bounds: Rectangle, distance: f64, expected: f64) -> Self {
+        let size = bounds.size();
+        let side = (distance / 2_f64.sqrt()).max((size.x * size.y / (4.0 * expected)).sqrt());
+        let count = (size / side).ceil().clamp(DVec2::ONE, DVec2::splat(f64::from(1_u32 << 15)));
+        let (columns, rows) = (count.x as u32, count.y as u32);
+        let active = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+        Self { active: active.collect(), grid: Grid { corner: bounds.min, side: size / count } }
+    }
+
+    /// Cuts each into four and keeps some of these.
+    fn cut(&mut self, is_kept: impl Fn(Rectangle) -> bool + Sync) {
+        self.grid.side *= 0.5;
+        let grid = &self.grid;
+        self.active = self
+            .active
+            .par_iter()
+            .flat_map_iter(|&[column, row]| {
+                [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| [2 * column + x, 2 * row + y])
+            })
+            .filter(|&cell| is_kept(grid.rectangle(cell)))
+            .collect();
+    }
+}

@@ -1,0 +1,84 @@
+//! What stands at each place, and how.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::distribution::draw;
+use crate::components::{Placement, PrototypeId, SceneId};
+use crate::document::Distribution;
+use crate::sampling::Key;
+
+/// What may stand somewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Species<'a> {
+    /// Its name, which its random numbers are keyed by.
+    pub name: &'a str,
+    /// Share of the stems, at least 0; only ratios count.
+    pub share: f64,
+    /// Its mesh.
+    pub prototype: PrototypeId,
+    /// Height of the mesh above its origin, m.
+    pub height: f64,
+}
+
+/// How trees vary.
+#[derive(Clone, Copy, Debug)]
+pub struct Habit<'a> {
+    /// Turn about the vertical, degrees.
+    pub yaw_deg: &'a Distribution,
+    /// Lean, degrees.
+    pub tilt_deg: &'a Distribution,
+    /// Azimuth of the lean, degrees.
+    pub tilt_azimuth_deg: &'a Distribution,
+    /// Height to which the mesh is scaled, m.
+    pub height_m: Option<&'a Distribution>,
+    /// Further scale.
+    pub scale: &'a Distribution,
+    /// Further vertical scale.
+    pub scale_vertical: Option<&'a Distribution>,
+    /// How deep the mesh's origin lies below the ground, m.
+    pub sink_m: f64,
+}
+
+/// Trees at places on the ground whose height is `ground`; none where there is no ground. Their ids
+/// are their numbers among the places.
+///
+/// Species race for each stem: each draws an exponential waiting time of rate `share` from a stream
+/// of its own, and the first to come has the place. So shares hold, and another species leaves all
+/// stems as they are but those that it wins.
+pub fn stand(
+    places: &[DVec2],
+    species: &[Species<'_>],
+    habit: &Habit<'_>,
+    ground: impl Fn(DVec2) -> Option<f64> + Sync,
+    stream: Key,
+) -> Vec<Placement> {
+    let rivals: Vec<(Key, &Species<'_>)> = species
+        .iter()
+        .filter(|species| species.share > 0.0)
+        .map(|species| (stream.path("species").path(species.name), species))
+        .collect();
+    let of = ["yaw", "tilt", "tilt_azimuth", "height", "scale", "scale_vertical"]
+        .map(|purpose| stream.path(purpose));
+    let tree = |number: usize, place: DVec2| {
+        let number = number as u64;
+        let arrival =
+            |&(key, species): &(Key, &Species<'_>)| -key.uniform(number).ln() / species.share;
+        let (_, species) = rivals.iter().min_by(|a, b| arrival(a).total_cmp(&arrival(b)))?;
+        let [yaw, tilt, tilt_azimuth, height, scale, vertical] = of.map(|key| key.index(number));
+        let whole = habit.height_m.map_or(1.0, |of| draw(of, height) / species.height);
+        let scale = draw(habit.scale, scale);
+        let vertical = habit.scale_vertical.map_or(scale, |of| draw(of, vertical));
+        Some(Placement {
+            position: place.extend(ground(place)? - habit.sink_m),
+            yaw: draw(habit.yaw_deg, yaw).to_radians() as f32,
+            tilt: draw(habit.tilt_deg, tilt).to_radians() as f32,
+            tilt_azimuth: draw(habit.tilt_azimuth_deg, tilt_azimuth).to_radians() as f32,
+            scale_horizontal: (whole * scale) as f32,
+            scale_vertical: (whole * vertical) as f32,
+            prototype: species.prototype,
+            id: SceneId(number as u32),
+        })
+    };
+    places.par_iter().enumerate().filter_map(|(number, &place)| tree(number, place)).collect()
+}

@@ -1,0 +1,14 @@
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::Region;
+use crate::sampling::Key;
+
+/// So many uniform points of a region; more of them leave the first where they are.
+pub(super) fn uniform(region: &Region, count: usize, stream: Key) -> Vec<DVec2> {
+    let point = |index: usize| {
+        let stem = stream.index(index as u64);
+        region.sample(stem.uniform(0), stem.uniform(1))
+    };
+    (0..count).into_par_iter().map(point).collect()
+}
