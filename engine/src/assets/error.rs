@@ -92,6 +92,29 @@ pub enum AssetError {
     #[error("{}: holds one wavelength; a spectrum needs two or more", .file.display())]
     ShortSpectrum { file: PathBuf },
 
+    #[error("{}: has {bytes} bytes, more than {most}; split it into several files", .file.display())]
+    TooLarge { file: PathBuf, bytes: u64, most: u64 },
+    #[error("{}: is no GeoJSON: {reason}", .file.display())]
+    NotGeoJson { file: PathBuf, reason: String },
+    #[error("{}: holds a {found}, which has no area; keep its polygons only", .file.display())]
+    NoArea { file: PathBuf, found: &'static str },
+    #[error("{}: holds no polygon", .file.display())]
+    NoPolygon { file: PathBuf },
+    #[error(
+        "{}: ring {ring} of the file has {found} different corners; three or more enclose an area",
+        .file.display()
+    )]
+    ShortRing { file: PathBuf, ring: usize, found: usize },
+    #[error("{}:{line}: this hole has no outline before it; write the outline first", .file.display())]
+    HoleOfNothing { file: PathBuf, line: usize },
+    #[error(
+        "{}: is in degrees (from {x:.5}, {y:.5}), but a scene is in metres; convert it to a projected \
+         system: `ogr2ogr -t_srs EPSG:32633 metres.geojson {}` (UTM zone 33 north, for example), or \
+         `Export > Save Features As` in QGIS",
+        .file.display(), .file.display()
+    )]
+    InDegrees { file: PathBuf, x: f64, y: f64 },
+
     #[error("{}: {problem}", .file.display())]
     Gltf { file: PathBuf, problem: GltfError },
     #[error(transparent)]

@@ -6,8 +6,10 @@
 //! | [`read_discs`] | CSV or RAMI text | [`Mesh`](crate::components::Mesh) |
 //! | [`grow_crown`] | a [`CrownSpec`] | [`Mesh`](crate::components::Mesh) |
 //! | [`read_instances`] | a text table | [`Row`]s |
+//! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
 //! | [`read_spectrum`] | two columns of a table | points (wavelength, value) |
 
+mod areas;
 mod crown;
 mod discs;
 mod error;
@@ -20,6 +22,7 @@ mod spectrum;
 mod table;
 mod text;
 
+pub use areas::{read_geojson, read_polygons};
 pub use crown::{CrownError, CrownSpec, grow_crown};
 pub use discs::read_discs;
 pub use error::AssetError;

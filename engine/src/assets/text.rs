@@ -29,6 +29,12 @@ pub(super) fn open(path: &Path) -> Result<File, AssetError> {
     File::open(path).map_err(unreadable)
 }
 
+/// Bytes of a file.
+pub(super) fn size(path: &Path) -> Result<u64, AssetError> {
+    let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
+    Ok(fs::metadata(path).map_err(unreadable)?.len())
+}
+
 /// The whole content of a regular file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, AssetError> {
     let mut bytes = Vec::new();

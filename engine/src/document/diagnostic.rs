@@ -110,7 +110,7 @@ pub fn unknown_name<'a>(
 }
 
 /// ``did you mean `leaf`? this scene defines: leaf, bark``.
-pub(super) fn suggestion(wrong: &str, known: &[&str], introduction: &str) -> String {
+pub(crate) fn suggestion(wrong: &str, known: &[&str], introduction: &str) -> String {
     const SHOWN: usize = 20;
     let list = known.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
     let more = match known.len() {

@@ -16,7 +16,7 @@ pub enum PlacementError {
     TooManyCrossings { most: usize },
     #[error("the areas are too intricate; simplify them")]
     TooIntricate,
-    #[error("no ground is left where a stem may stand")]
+    #[error("no ground of the terrain is left where a stem may stand")]
     NoGround,
     #[error(
         "{stems:.3e} stems are more than {most} for one `Scatter`; use several, or fewer stems"

@@ -5,14 +5,17 @@
 //! | areas to a [`Region`] of known size | `region`, `crossings` |
 //! | places: each on its own, at a distance, in rows | `uniform`, `poisson_disc`, `rows` |
 //! | what stands there, and how | `stand`, `distribution` |
+//! | what is left out | `pattern` |
 //!
 //! Each number comes from a stream that is keyed by the seed, the instances' name, what it is for,
 //! and the number of the stem. So neither threads nor other instances nor one more species move a stem.
 
 mod buckets;
+pub mod canopy;
 mod crossings;
 mod distribution;
 mod error;
+mod pattern;
 mod poisson_disc;
 mod region;
 mod rows;
@@ -28,6 +31,7 @@ use crate::geometry::Rectangle;
 use crate::sampling::Key;
 
 pub use error::PlacementError;
+pub use pattern::Pattern;
 pub use region::Region;
 pub use stand::{Habit, Species, stand};
 

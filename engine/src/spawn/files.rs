@@ -1,6 +1,8 @@
 use std::path::Path;
 
-use crate::document::{Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, ThermalSky};
+use crate::document::{
+    Area, Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, ThermalSky,
+};
 
 /// Every file that a scene names and that is not there, used or not.
 ///
@@ -30,8 +32,21 @@ pub fn missing_files(scene: &Scene, folder: &Path) -> Vec<Diagnostic> {
 pub(crate) fn named_files(scene: &Scene) -> Vec<(String, &str)> {
     let mut files = Vec::new();
     for (index, instances) in scene.instances.iter().enumerate() {
-        if let Instances::Table { file, .. } = instances {
-            files.push((format!("instances[{index}].file"), file.as_str()));
+        match instances {
+            Instances::Table { file, .. } => {
+                files.push((format!("instances[{index}].file"), file.as_str()));
+            }
+            Instances::List { .. } => {}
+            Instances::Scatter { inside, outside, .. } => {
+                for (key, areas) in [("inside", inside), ("outside", outside)] {
+                    for (number, area) in areas.iter().enumerate() {
+                        if let Area::GeoJson { file, .. } | Area::Table { file, .. } = area {
+                            let path = format!("instances[{index}].{key}[{number}].file");
+                            files.push((path, file.as_str()));
+                        }
+                    }
+                }
+            }
         }
     }
     for (name, mesh) in &scene.meshes {

@@ -1,69 +1,185 @@
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec3;
 
 use super::Spawner;
+use super::meshes::Prototype;
 use crate::assets::{self, Row};
 use crate::components::{Placement, PrototypeId, SceneId};
-use crate::document::{Diagnostic, Instances, unknown_name};
+use crate::document::{Diagnostic, Instances, Scene, suggestion, unknown_name};
+use crate::placement::Pattern;
+use crate::terrain::Ground;
 
 /// Most instances of a scene: ids are `u32`, and the ray engine keeps some for the ground.
 const MOST_INSTANCES: usize = 1 << 30;
 
 impl Spawner<'_> {
-    /// All instances in document order.
-    pub(super) fn instances(&mut self) -> Vec<Placement> {
+    /// All instances that are not hidden, in document order.
+    pub(super) fn instances(
+        &mut self,
+        meshes: &BTreeMap<u32, Prototype>,
+        ground: Option<&Ground>,
+    ) -> Vec<Placement> {
         let scene = self.scene;
         let mut placements = Vec::new();
         for (index, instances) in scene.instances.iter().enumerate() {
             let path = format!("instances[{index}]");
-            let (of, rows) = match instances {
-                Instances::Table { file, of, columns, .. } => {
+            let mut placed = match instances {
+                Instances::Table { file, of, columns, on_terrain, .. } => {
                     let file = self.file(file);
                     match assets::read_instances(&file, columns.as_deref()) {
-                        Ok(rows) => (of, rows),
+                        Ok(rows) => {
+                            let ground = ground.filter(|_| *on_terrain);
+                            self.rows(&rows, of, ground, &path)
+                        }
                         Err(error) => {
                             let problem =
                                 Diagnostic::error(format!("{path}.file"), error.to_string());
                             self.problems.push(problem);
-                            (of, Vec::new())
+                            Vec::new()
                         }
                     }
                 }
-                Instances::List { of, at_m, yaw_deg, scale, .. } => {
-                    (of, listed(at_m, yaw_deg, scale))
+                Instances::List { of, at_m, yaw_deg, scale, on_terrain, .. } => {
+                    let rows = listed(at_m, yaw_deg, scale);
+                    self.rows(&rows, of, ground.filter(|_| *on_terrain), &path)
                 }
-                Instances::Scatter { .. } => continue,
+                Instances::Scatter { .. } => {
+                    // A terrain that could not be built was reported.
+                    let Some(ground) = ground else { continue };
+                    self.scatter(instances, index, meshes, ground)
+                }
             };
-            let Some(prototype) = scene.meshes.get_index_of(of) else {
-                let known = scene.meshes.keys().map(String::as_str);
-                self.problems.push(unknown_name(format!("{path}.of"), "mesh", of, known));
-                continue;
-            };
-            if placements.len() + rows.len() > MOST_INSTANCES {
+            let shown: Vec<usize> = shown(scene, index, instances)
+                .filter_map(|name| scene.meshes.get_index_of(name))
+                .collect();
+            placed.retain(|placement| shown.contains(&(placement.prototype.0 as usize)));
+            if placements.len() + placed.len() > MOST_INSTANCES {
                 self.problems.push(
                     Diagnostic::error(path, format!("more than {MOST_INSTANCES} instances"))
                         .help("group trees into larger meshes"),
                 );
                 break;
             }
-            for row in rows {
-                let id = SceneId(placements.len() as u32);
-                placements.push(placement(&row, PrototypeId(prototype as u32), id));
-            }
+            placements.append(&mut placed);
+        }
+        for (id, placement) in placements.iter_mut().enumerate() {
+            placement.id = SceneId(id as u32);
         }
         placements
     }
+
+    /// The mesh of this name; where there is none, a problem is noted.
+    pub(super) fn prototype(&mut self, name: &str, path: String) -> Option<PrototypeId> {
+        let scene = self.scene;
+        let index = scene.meshes.get_index_of(name);
+        if index.is_none() {
+            let known = scene.meshes.keys().map(String::as_str);
+            self.problems.push(unknown_name(path, "mesh", name, known));
+        }
+        index.map(|index| PrototypeId(index as u32))
+    }
+
+    /// Rows of a table or a list; their heights count from the ground where it is given.
+    fn rows(
+        &mut self,
+        rows: &[Row],
+        of: &str,
+        ground: Option<&Ground>,
+        path: &str,
+    ) -> Vec<Placement> {
+        let Some(prototype) = self.prototype(of, format!("{path}.of")) else { return Vec::new() };
+        let mut beside = Vec::new();
+        let placed = rows
+            .iter()
+            .filter_map(|row| {
+                let base = match ground.map(|ground| ground.height(row.position.truncate())) {
+                    Some(None) => {
+                        beside.push(row.position);
+                        return None;
+                    }
+                    Some(Some(height)) => height,
+                    None => 0.0,
+                };
+                Some(placement(row, base, prototype))
+            })
+            .collect();
+        if let Some(DVec3 { x, y, .. }) = beside.first() {
+            let message =
+                format!("{} of {} places have no terrain below", beside.len(), rows.len());
+            let help = format!("({x}, {y}) is one; move it, or take out `on_terrain`");
+            self.problems.push(Diagnostic::error(path, message).help(help));
+        }
+        placed
+    }
+
+    /// Patterns that name nothing of the scene.
+    pub(super) fn check_patterns(&mut self) {
+        let scene = self.scene;
+        if scene.hide.is_empty() && scene.select.is_empty() {
+            return;
+        }
+        let mut named: Vec<(String, &str)> = Vec::new();
+        for (index, instances) in scene.instances.iter().enumerate() {
+            named.extend(instances.meshes().map(|mesh| (name_of(index, instances), mesh)));
+        }
+        for (key, patterns) in [("hide", &scene.hide), ("select", &scene.select)] {
+            for (index, text) in patterns.iter().enumerate() {
+                let pattern = Pattern::new(text);
+                if !named.iter().any(|(name, mesh)| pattern.matches(name, mesh)) {
+                    let full = named.iter().map(|(name, mesh)| format!("{name}/{mesh}"));
+                    let mut known: Vec<String> =
+                        named.iter().map(|&(_, mesh)| mesh.to_owned()).chain(full).collect();
+                    known.sort();
+                    known.dedup();
+                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                    let help = suggestion(text, &known, "patterns here may be");
+                    let message = format!("nothing stands there by the name `{text}`");
+                    let at = format!("{key}[{index}]");
+                    self.problems.push(Diagnostic::error(at, message).help(help));
+                }
+            }
+        }
+    }
 }
 
-fn placement(row: &Row, prototype: PrototypeId, id: SceneId) -> Placement {
+/// The meshes that any instances place and that are not hidden there.
+pub(super) fn shown_meshes(scene: &Scene) -> BTreeSet<&str> {
+    let instances = scene.instances.iter().enumerate();
+    instances.flat_map(|(index, instances)| shown(scene, index, instances)).collect()
+}
+
+/// The meshes of these instances that are not hidden.
+fn shown<'a>(
+    scene: &'a Scene,
+    index: usize,
+    instances: &'a Instances,
+) -> impl Iterator<Item = &'a str> {
+    let Scene { hide, select, .. } = scene;
+    let name = name_of(index, instances);
+    let any = |patterns: &[String], name: &str, mesh: &str| {
+        patterns.iter().any(|pattern| Pattern::new(pattern).matches(name, mesh))
+    };
+    instances.meshes().filter(move |mesh| {
+        (select.is_empty() || any(select, &name, mesh)) && !any(hide, &name, mesh)
+    })
+}
+
+/// Name of instances for patterns: the author's, or their number in the list.
+fn name_of(index: usize, instances: &Instances) -> String {
+    instances.name().map_or_else(|| index.to_string(), str::to_owned)
+}
+
+fn placement(row: &Row, base: f64, prototype: PrototypeId) -> Placement {
     Placement {
-        position: row.position,
+        position: row.position + DVec3::Z * base,
         yaw: row.yaw as f32,
         tilt: row.tilt as f32,
         tilt_azimuth: row.tilt_azimuth as f32,
         scale_horizontal: row.scale_horizontal as f32,
         scale_vertical: row.scale_vertical as f32,
         prototype,
-        id,
+        id: SceneId(0),
     }
 }
 

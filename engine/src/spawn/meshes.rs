@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::Spawner;
+use super::instances::shown_meshes;
 use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
 use crate::components::{MaterialId, Mesh, Name, PartMaterials, Placement};
 use crate::document::{self, Diagnostic, Map, unknown_name};
@@ -15,17 +16,17 @@ pub(super) struct Prototype {
 }
 
 impl Spawner<'_> {
-    /// The meshes that instances use, by their place in the document; each is read once.
-    pub(super) fn meshes(&mut self, placements: &[Placement]) -> BTreeMap<u32, Prototype> {
+    /// The meshes that instances may place, by their place in the document; each is read once.
+    pub(super) fn meshes(&mut self) -> BTreeMap<u32, Prototype> {
         let scene = self.scene;
-        let used: BTreeSet<u32> = placements.iter().map(|p| p.prototype.0).collect();
+        let used = shown_meshes(scene);
         let mut wanted = Vec::new();
         for (index, (name, mesh)) in scene.meshes.iter().enumerate() {
-            if used.contains(&(index as u32)) {
+            if used.contains(name.as_str()) {
                 self.note_file(mesh);
                 wanted.push((index as u32, name, mesh));
             } else {
-                self.skipped.push(format!("mesh `{name}`: nothing stands of it"));
+                self.skipped.push(nothing_of(name));
             }
         }
         let folder = self.folder;
@@ -49,6 +50,23 @@ impl Spawner<'_> {
             }
         }
         prototypes
+    }
+
+    /// The meshes of which anything stands.
+    pub(super) fn keep_placed(
+        &mut self,
+        mut meshes: BTreeMap<u32, Prototype>,
+        placements: &[Placement],
+    ) -> BTreeMap<u32, Prototype> {
+        let placed: BTreeSet<u32> = placements.iter().map(|p| p.prototype.0).collect();
+        meshes.retain(|id, prototype| {
+            let is_placed = placed.contains(id);
+            if !is_placed {
+                self.skipped.push(nothing_of(&prototype.name.0));
+            }
+            is_placed
+        });
+        meshes
     }
 
     fn note_file(&mut self, mesh: &document::Mesh) {
@@ -120,6 +138,10 @@ impl Spawner<'_> {
         // `document::check` asks for a wood material wherever there is wood.
         loaded.parts.iter().map(|part| of(&part.name).unwrap_or(MaterialId(0))).collect()
     }
+}
+
+fn nothing_of(mesh: &str) -> String {
+    format!("mesh `{mesh}`: nothing stands of it")
 }
 
 fn load(mesh: &document::Mesh, folder: &std::path::Path) -> Result<Loaded<Mesh>, AssetError> {

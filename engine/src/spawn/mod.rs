@@ -6,6 +6,7 @@ mod instances;
 mod light;
 mod materials;
 mod meshes;
+mod scatter;
 mod sensors;
 mod spectra;
 mod standing;
@@ -69,8 +70,10 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
         Spawner { scene, folder, files: Vec::new(), skipped: Vec::new(), problems: Vec::new() };
     let mut world = World::new();
     let ground = spawner.terrain(&mut world);
-    let placements = spawner.instances();
-    let meshes = spawner.meshes(&placements);
+    let meshes = spawner.meshes();
+    let placements = spawner.instances(&meshes, ground.as_ref());
+    spawner.check_patterns();
+    let meshes = spawner.keep_placed(meshes, &placements);
     if let Some(ground) = &ground {
         spawner.check_standing(&placements, &meshes, ground);
     }

@@ -24,12 +24,15 @@ impl Spawner<'_> {
         ground: &Ground,
     ) {
         let mut cases: BTreeMap<(u32, bool), Case> = BTreeMap::new();
+        // Once a mesh, not once an instance.
+        let bounds: BTreeMap<u32, [DVec3; 2]> = meshes
+            .iter()
+            .filter_map(|(&id, prototype)| Some((id, prototype.mesh.bounds()?)))
+            .map(|(id, (low, high))| (id, [low.as_dvec3(), high.as_dvec3()]))
+            .collect();
         for placement in placements {
-            let Some(bounds) = meshes.get(&placement.prototype.0).and_then(|p| p.mesh.bounds())
-            else {
-                continue;
-            };
-            let (low, high) = heights(placement, [bounds.0.as_dvec3(), bounds.1.as_dvec3()]);
+            let Some(&bounds) = bounds.get(&placement.prototype.0) else { continue };
+            let (low, high) = heights(placement, bounds);
             let Some(below) = ground.height(placement.position.truncate()) else { continue };
             let (gap, height) = (low - below, high - low);
             let floats = gap > height;

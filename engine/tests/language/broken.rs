@@ -37,7 +37,6 @@ broken! {
     image
     last_string_never_closed
     instances
-    later_versions
     leaf_as_light
     missing_keys
     no_bands
@@ -47,6 +46,8 @@ broken! {
     numbers
     params
     photons
+    placement
+    placement_rules
     quoted_key
     repeated_keys
     sky_without_sun

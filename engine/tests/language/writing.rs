@@ -3,11 +3,11 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Axis, Band, BandSource, Boundary, Branches, Cover, CrownShape, FisheyeProjection, Frame,
-    ImageMeasure, Instances, Layers, LeafAngle, LeafShape, Look, Map, Material, Mesh, Options,
-    Origin, PhotonMeasure, Picture, Roulette, Scene, Sensor, Sky, Spectrum, Sun, SunPosition,
-    Sweep, System, Temperature, Terrain, ThermalSky, Transport, Trunk, Until, Views, VirtualPlane,
-    read_text,
+    Area, Axis, Band, BandSource, Boundary, Branches, Cover, CrownShape, Distribution,
+    FisheyeProjection, Frame, ImageMeasure, Instances, Layers, LeafAngle, LeafShape, Look, Map,
+    Material, Mesh, Options, Origin, PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky,
+    Spectrum, Stems, Sun, SunPosition, Sweep, System, Temperature, Terrain, ThermalSky, Transport,
+    Trunk, Until, Views, VirtualPlane, read_text,
 };
 
 fn number() -> impl Strategy<Value = f64> {
@@ -167,16 +167,104 @@ fn mesh() -> BoxedStrategy<Mesh> {
     prop_oneof![from_file(), discs, crown()].boxed()
 }
 
+fn distribution() -> BoxedStrategy<Distribution> {
+    let cut = || (number(), number(), option(number()), option(number()));
+    prop_oneof![
+        number().prop_map(Distribution::Fixed),
+        (number(), number()).prop_map(Distribution::Uniform),
+        cut().prop_map(|(mean, sd, min, max)| Distribution::Normal { mean, sd, min, max }),
+        cut().prop_map(|(median, sd_ln, min, max)| Distribution::LogNormal {
+            median,
+            sd_ln,
+            min,
+            max
+        }),
+    ]
+    .boxed()
+}
+
+fn area() -> BoxedStrategy<Area> {
+    let ring = || list((number(), number()));
+    prop_oneof![
+        (ring(), list(ring()))
+            .prop_map(|(outline_m, holes_m)| Area::Polygon { outline_m, holes_m }),
+        (text(), any::<bool>())
+            .prop_map(|(file, georeferenced)| Area::GeoJson { file, georeferenced }),
+        (text(), any::<bool>())
+            .prop_map(|(file, georeferenced)| Area::Table { file, georeferenced }),
+    ]
+    .boxed()
+}
+
+fn scatter() -> BoxedStrategy<Instances> {
+    let rule = prop_oneof![
+        Just(Rule::Uniform),
+        number().prop_map(|min_distance_m| Rule::PoissonDisc { min_distance_m }),
+        ((number(), number()), number(), number()).prop_map(
+            |(spacing_m, row_azimuth_deg, jitter_m)| Rule::Grid {
+                spacing_m,
+                row_azimuth_deg,
+                jitter_m
+            }
+        ),
+    ];
+    let stems = prop_oneof![
+        Just(Stems::Fill),
+        any::<u32>().prop_map(Stems::Count),
+        number().prop_map(Stems::PerHectare),
+    ];
+    let size = (option(distribution()), distribution(), option(distribution()), number());
+    let turn = (distribution(), distribution(), distribution());
+    let places = (map(number()), rule, stems, list(area()), list(area()));
+    (places, turn, size, option(text()), option(any::<u64>()))
+        .prop_map(|((of, rule, stems, inside, outside), turn, size, name, seed)| {
+            let (yaw_deg, tilt_deg, tilt_azimuth_deg) = turn;
+            let (height_m, scale, scale_vertical, sink_m) = size;
+            Instances::Scatter {
+                of,
+                rule,
+                stems,
+                inside,
+                outside,
+                yaw_deg,
+                tilt_deg,
+                tilt_azimuth_deg,
+                height_m,
+                scale,
+                scale_vertical,
+                sink_m,
+                name,
+                seed,
+            }
+        })
+        .boxed()
+}
+
 fn instances() -> BoxedStrategy<Instances> {
     let place = (number(), number(), number());
     prop_oneof![
-        (text(), text(), option(list(text()))).prop_map(|(file, of, columns)| Instances::Table {
-            file,
-            of,
-            columns
-        }),
-        (text(), prop::collection::vec(place, 0..20), list(number()), list(number()))
-            .prop_map(|(of, at_m, yaw_deg, scale)| Instances::List { of, at_m, yaw_deg, scale }),
+        (text(), text(), option(list(text())), any::<bool>(), option(text())).prop_map(
+            |(file, of, columns, on_terrain, name)| Instances::Table {
+                file,
+                of,
+                columns,
+                on_terrain,
+                name
+            }
+        ),
+        (
+            (text(), prop::collection::vec(place, 0..20), list(number()), list(number())),
+            (any::<bool>(), option(text()))
+        )
+            .prop_map(|((of, at_m, yaw_deg, scale), (on_terrain, name))| Instances::List {
+                of,
+                at_m,
+                yaw_deg,
+                scale,
+                on_terrain,
+                name
+            }),
+        scatter(),
     ]
     .boxed()
 }
@@ -454,13 +542,14 @@ fn scene() -> BoxedStrategy<Scene> {
         names,
         surfaces,
         ground(),
-        list(instances()),
+        (list(instances()), list(text()), list(text())),
         (light(), thermal_sky()),
         map(sensor()),
         transport,
     )
         .prop_map(|(names, surfaces, ground, instances, light, sensors, transport)| {
             let (format, title, params, variants, sweep) = names;
+            let (instances, hide, select) = instances;
             let (bands, spectra, materials, meshes) = surfaces;
             let (frame, terrain, boundary) = ground;
             let ((sun, sky), thermal_sky) = light;
@@ -477,6 +566,8 @@ fn scene() -> BoxedStrategy<Scene> {
                 meshes,
                 terrain,
                 instances,
+                hide,
+                select,
                 sun,
                 sky,
                 thermal_sky,

@@ -1,5 +1,6 @@
 //! Tests of the readers over files on disk.
 
+mod areas;
 mod glb;
 mod gltf;
 mod hostile;

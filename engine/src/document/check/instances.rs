@@ -83,13 +83,18 @@ fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Re
             check_area(area, &format!("{path}.{key}[{index}]"), report);
         }
     }
-    check_distribution(yaw_deg, &format!("{path}.yaw_deg"), None, report);
-    check_distribution(tilt_azimuth_deg, &format!("{path}.tilt_azimuth_deg"), None, report);
+    check_distribution(yaw_deg, &format!("{path}.yaw_deg"), Least::Any, report);
+    check_distribution(tilt_azimuth_deg, &format!("{path}.tilt_azimuth_deg"), Least::Any, report);
     let tilt_path = format!("{path}.tilt_deg");
-    check_distribution(tilt_deg, &tilt_path, Some((0.0, "expected a lean", true)), report);
+    check_distribution(tilt_deg, &tilt_path, Least::Zero("a lean"), report);
     if let Some(most) = largest(tilt_deg).filter(|&most| most >= 90.0) {
-        let message = format!("expected a lean below 90°, found up to {most}");
-        report.error(&tilt_path, message, "add `max: 30.0`, or take a smaller value");
+        let (message, help) = if most.is_finite() {
+            (format!("expected a lean below 90°, found up to {most}"), "0 is upright")
+        } else {
+            let message = "expected a lean below 90°, but a Gaussian has no end".to_owned();
+            (message, "cut it off: add, for example, `max: 30.0`")
+        };
+        report.error(&tilt_path, message, help);
     }
     let sizes = [
         ("height_m", height_m.as_ref()),
@@ -98,8 +103,8 @@ fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Re
     ];
     for (key, size) in sizes {
         if let Some(size) = size {
-            let positive = Some((0.0, "expected sizes", false));
-            check_distribution(size, &format!("{path}.{key}"), positive, report);
+            let path = format!("{path}.{key}");
+            check_distribution(size, &path, Least::AboveZero("sizes"), report);
         }
     }
     report.finite(&format!("{path}.sink_m"), &[*sink_m]);
@@ -120,9 +125,10 @@ fn check_shares(scene: &Scene, of: &Map<f64>, path: &str, report: &mut Report<'_
 
 fn check_rule(rule: &Rule, stems: &Stems, path: &str, report: &mut Report<'_>) {
     match rule {
-        Rule::Uniform if *stems == Stems::Fill => {
-            let message = "`rule: Uniform` has room for any number of stems";
-            report.error(path, message, "add, for example, `stems: PerHectare(400.0)`");
+        Rule::Uniform if *stems == Stems::Fill && report.is_readable(&format!("{path}.stems")) => {
+            let message = "`Uniform` has room for any number of stems";
+            let help = "add, for example, `stems: PerHectare(400.0)`";
+            report.error(&format!("{path}.rule"), message, help);
         }
         Rule::Uniform => {}
         Rule::PoissonDisc { min_distance_m } => {
@@ -168,12 +174,18 @@ fn check_ring(ring: &[(f64, f64)], path: &str, report: &mut Report<'_>) {
     }
 }
 
-/// Whether values are finite, spread the right way round, and not below `least` (its value, what a
-/// message begins with, whether it may be reached).
+/// What a distribution's values may be, and what a person calls them.
+enum Least {
+    Any,
+    Zero(&'static str),
+    AboveZero(&'static str),
+}
+
+/// Whether values are finite, spread the right way round, and not below the least.
 fn check_distribution(
     distribution: &Distribution,
     path: &str,
-    least: Option<(f64, &str, bool)>,
+    least: Least,
     report: &mut Report<'_>,
 ) {
     let before = report.found.len();
@@ -197,25 +209,27 @@ fn check_distribution(
             check_limits(path, ("median", *median), *min, *max, report);
         }
     }
-    let Some((least, expected, may_reach)) = least else { return };
     let lowest = match distribution {
         Distribution::Fixed(value) | Distribution::Uniform((value, _)) => *value,
         Distribution::Normal { mean, sd: 0.0, .. } => *mean,
         Distribution::Normal { min, .. } => min.unwrap_or(f64::NEG_INFINITY),
-        Distribution::LogNormal { .. } => return,
+        // Its values are above 0 whatever its limits.
+        Distribution::LogNormal { .. } => f64::MIN_POSITIVE,
     };
-    let is_lawful = if may_reach { lowest >= least } else { lowest > least };
-    if !is_lawful && report.found.len() == before {
-        let relation = if may_reach { "of at least" } else { "above" };
-        if lowest.is_finite() {
-            report.push(Diagnostic::error(
-                path,
-                format!("{expected} {relation} {least}, found {lowest}"),
-            ));
-        } else {
-            let message = format!("{expected} {relation} {least}, but a Gaussian has no end");
-            report.error(path, message, "cut it off: add, for example, `min: 0.5`");
-        }
+    let (is_lawful, expected) = match least {
+        Least::Any => return,
+        Least::Zero(what) => (lowest >= 0.0, format!("{what} of at least 0")),
+        Least::AboveZero(what) => (lowest > 0.0, format!("{what} above 0")),
+    };
+    if is_lawful || report.found.len() > before {
+        return;
+    }
+    if lowest.is_finite() {
+        report.push(Diagnostic::error(path, format!("expected {expected}, found {lowest}")));
+    } else {
+        let message = format!("expected {expected}, but a Gaussian has no end");
+        let min = if matches!(least, Least::Zero(_)) { "0.0" } else { "0.5" };
+        report.error(path, message, format!("cut it off: add, for example, `min: {min}`"));
     }
 }
 

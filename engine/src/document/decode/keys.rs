@@ -48,19 +48,16 @@ impl<'a> Fields<'a> {
                 continue;
             }
             let name = field.name.as_str();
-            let (message, help) = match later(self.owner, name) {
-                Some((what, instead)) => {
-                    (format!("this version does not know {what} yet"), instead.to_owned())
-                }
-                None if name == "transmittance" && self.owner == "`Lambertian(..)`" => (
+            let (message, help) = match self.owner {
+                "`Lambertian(..)`" if name == "transmittance" => (
                     "a `Lambertian(..)` surface is opaque: it has no transmittance".to_owned(),
                     "write `Leaf(..)` for one that light passes through".to_owned(),
                 ),
-                None if known.is_empty() => (
+                _ if known.is_empty() => (
                     format!("no key `{name}` in {}", self.owner),
                     format!("{} has no keys", self.owner),
                 ),
-                None => (
+                _ => (
                     format!("no key `{name}` in {}", self.owner),
                     suggestion(name, known, "keys here"),
                 ),
@@ -125,13 +122,6 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// What the language will know, but this version does not.
-fn later(owner: &str, name: &str) -> Option<(&'static str, &'static str)> {
-    match (owner, name) {
-        _ => None,
-    }
-}
-
 /// A variant of a choice, as written.
 pub(in super::super) struct Variant<'a> {
     pub(in super::super) name: &'a str,
@@ -173,11 +163,14 @@ impl<'a> Variant<'a> {
             Some(Value::Tuple(items)) => items.as_slice(),
             _ => &[],
         };
+        let is_spread = T::IS_TUPLE
+            && !items.is_empty()
+            && !matches!(items, [Node { value: Value::Tuple(_), .. }]);
+        if let Some(body) = self.body.filter(|_| is_spread) {
+            return T::decode(body, reader);
+        }
         if let [item] = items {
             return reader.by_example(example, |reader| T::decode(item, reader));
-        }
-        if let Some(body) = self.body.filter(|_| T::IS_TUPLE && !items.is_empty()) {
-            return T::decode(body, reader);
         }
         let example = example.map_or_else(T::example, str::to_owned);
         let found = match self.body.map(|body| &body.value) {
@@ -221,15 +214,8 @@ impl<'a> Variant<'a> {
         reader: &mut Reader<'a>,
     ) -> T {
         let expected = T::expected();
-        let (message, help) = match later(kind, self.name) {
-            Some((what, instead)) => {
-                (format!("this version does not know {what} yet"), instead.to_owned())
-            }
-            None => (
-                format!("expected {expected}, found `{}`", self.name),
-                suggestion(self.name, known, "choices here"),
-            ),
-        };
+        let message = format!("expected {expected}, found `{}`", self.name);
+        let help = suggestion(self.name, known, "choices here");
         reader.error(self.name_span, message, Some(help));
         T::placeholder()
     }

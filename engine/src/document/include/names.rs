@@ -50,7 +50,12 @@ pub(super) fn qualify(file: &mut Node, namespace: &str, folder: &str) {
                     }
                 }
             }
-            (_, key) => with.walk(&mut field.value, role(key)),
+            (value, key) => {
+                if let (Value::List(items), "instances") = (value, key) {
+                    items.iter_mut().for_each(|instances| with.own_name(instances));
+                }
+                with.walk(&mut field.value, role(key));
+            }
         }
     }
 }
@@ -78,6 +83,17 @@ impl Qualify<'_> {
             Role::Name => text.insert_str(0, self.namespace),
             Role::File if std::path::Path::new(text.as_str()).is_absolute() => {}
             Role::File => text.insert_str(0, self.folder),
+        }
+    }
+
+    /// The name of instances.
+    fn own_name(&self, instances: &mut Node) {
+        let Value::Named(variant) = &mut instances.value else { return };
+        let Some(Value::Record(fields)) = variant.body.as_mut().map(|body| &mut body.value) else {
+            return;
+        };
+        for field in fields.iter_mut().filter(|field| field.name == "name") {
+            self.text(&mut field.value, Role::Name);
         }
     }
 

@@ -99,13 +99,13 @@ choice! {
 
 choice! {
     /// How many stems there are.
-    pub enum Stems ("a number of stems") {
-        /// As many as the rule has room for.
-        Fill,
+    pub enum Stems ("a choice of how many stems") {
         /// So many.
         Count(u32 => "500"),
         /// So many a hectare of the area where they may stand.
         PerHectare(f64 => "400.0"),
+        /// As many as the rule has room for.
+        Fill,
     }
 }
 

@@ -1,0 +1,186 @@
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::Spawner;
+use super::meshes::Prototype;
+use crate::assets;
+use crate::components::Placement;
+use crate::document::{Area, Boundary, Diagnostic, Instances, Map};
+use crate::geometry::{Polygon, Rectangle};
+use crate::placement::{Habit, PlacementError, Region, Species, places, stand};
+use crate::sampling::Key;
+use crate::terrain::Ground;
+
+impl Spawner<'_> {
+    /// Instances by a rule; where that cannot be, a problem is noted.
+    pub(super) fn scatter(
+        &mut self,
+        scatter: &Instances,
+        index: usize,
+        meshes: &BTreeMap<u32, Prototype>,
+        ground: &Ground,
+    ) -> Vec<Placement> {
+        let Instances::Scatter {
+            of,
+            rule,
+            stems,
+            inside,
+            outside,
+            yaw_deg,
+            tilt_deg,
+            tilt_azimuth_deg,
+            height_m,
+            scale,
+            scale_vertical,
+            sink_m,
+            name,
+            seed,
+        } = scatter
+        else {
+            unreachable!("called with a scatter")
+        };
+        let path = format!("instances[{index}]");
+        let species = self.species(of, meshes, height_m.is_some(), &path);
+        let corner = ground.corner();
+        let terrain = Rectangle { min: corner, max: corner + ground.size() };
+        let Some(region) = self.region(terrain, inside, outside, &path) else {
+            return Vec::new();
+        };
+        let seed = Key::new(seed.unwrap_or(self.scene.transport.seed)).path("instances");
+        let stream = match name {
+            Some(name) => seed.path(name),
+            None => seed.index(index as u64),
+        };
+        let is_periodic = self.scene.boundary == Boundary::Periodic;
+        let places = places(rule, stems, &region, terrain, is_periodic, stream.path("places"));
+        let places = match places {
+            Ok(places) => places,
+            Err(error) => {
+                self.problems.push(Diagnostic::error(path, error.to_string()));
+                return Vec::new();
+            }
+        };
+        let habit = Habit {
+            yaw_deg,
+            tilt_deg,
+            tilt_azimuth_deg,
+            height_m: height_m.as_ref(),
+            scale,
+            scale_vertical: scale_vertical.as_ref(),
+            sink_m: *sink_m,
+        };
+        let trees = stand(&places, &species, &habit, |place| ground.height(place), stream);
+        if trees.len() < places.len() && !species.is_empty() {
+            let count = places.len() - trees.len();
+            let message = format!("{count} of {} stems fell on holes of the terrain", places.len());
+            let help = "none stands there; `outside` keeps an area free and the number as it is";
+            self.problems.push(Diagnostic::warning(path, message).help(help));
+        }
+        trees
+    }
+
+    /// What may stand there.
+    fn species<'a>(
+        &mut self,
+        of: &'a Map<f64>,
+        meshes: &BTreeMap<u32, Prototype>,
+        is_scaled_to_height: bool,
+        path: &str,
+    ) -> Vec<Species<'a>> {
+        let mut species = Vec::new();
+        for (name, &share) in of {
+            let Some(prototype) = self.prototype(name, format!("{path}.of.{name}")) else {
+                continue;
+            };
+            // A hidden mesh is not loaded, but its stems keep their places.
+            let bounds = meshes.get(&prototype.0).map(|prototype| prototype.mesh.bounds());
+            let top = bounds.map_or(1.0, |bounds| bounds.map_or(0.0, |(_, top)| top.z.into()));
+            if is_scaled_to_height && top <= 0.0 {
+                let message = format!("`{name}` lies below its origin and has no height to scale");
+                let help = "add `origin: BaseCenter` to the mesh, or take `height_m` out";
+                self.problems
+                    .push(Diagnostic::error(format!("{path}.of.{name}"), message).help(help));
+                continue;
+            }
+            species.push(Species { name, share, prototype, height: top });
+        }
+        species
+    }
+
+    fn region(
+        &mut self,
+        terrain: Rectangle,
+        inside: &[Area],
+        outside: &[Area],
+        path: &str,
+    ) -> Option<Region> {
+        let mut owners = Vec::new();
+        let mut read = |key: &str, areas: &[Area], spawner: &mut Self| {
+            let mut polygons = Vec::new();
+            for (index, area) in areas.iter().enumerate() {
+                let path = format!("{path}.{key}[{index}]");
+                let found = spawner.polygons(area, &path)?;
+                owners.extend(found.iter().map(|_| path.clone()));
+                polygons.extend(found);
+            }
+            Some(polygons)
+        };
+        let (inside, outside) = (read("inside", inside, self), read("outside", outside, self));
+        match Region::new(terrain, &inside?, &outside?) {
+            Ok(region) => Some(region),
+            Err(error) => {
+                let (path, help) = match &error {
+                    PlacementError::CrossesItself { polygon, .. } => (
+                        owners.get(*polygon as usize).cloned().unwrap_or_default(),
+                        "list the corners of each ring in the order of its outline".to_owned(),
+                    ),
+                    PlacementError::NoGround => {
+                        let Rectangle { min, max } = terrain;
+                        let help = format!(
+                            "the terrain reaches from ({}, {}) to ({}, {}); see also `georeferenced`",
+                            min.x, min.y, max.x, max.y
+                        );
+                        (path.to_owned(), help)
+                    }
+                    _ => (path.to_owned(), String::new()),
+                };
+                let problem = Diagnostic::error(path, error.to_string());
+                self.problems.push(if help.is_empty() { problem } else { problem.help(help) });
+                None
+            }
+        }
+    }
+
+    /// Polygons of an area in the local frame.
+    fn polygons(&mut self, area: &Area, path: &str) -> Option<Vec<Polygon>> {
+        let (read, is_georeferenced) = match area {
+            Area::Polygon { outline_m, holes_m } => {
+                let ring = |ring: &Vec<(f64, f64)>| ring.iter().copied().map(DVec2::from).collect();
+                let rings = std::iter::once(outline_m).chain(holes_m).map(ring).collect();
+                return Some(vec![Polygon { rings }]);
+            }
+            Area::GeoJson { file, georeferenced } => {
+                (assets::read_geojson(&self.file(file)), *georeferenced)
+            }
+            Area::Table { file, georeferenced } => {
+                (assets::read_polygons(&self.file(file)), *georeferenced)
+            }
+        };
+        match read {
+            Ok(mut polygons) => {
+                if is_georeferenced {
+                    let (x, y, _) = self.scene.frame.origin_m;
+                    let corners =
+                        polygons.iter_mut().flat_map(|polygon| &mut polygon.rings).flatten();
+                    corners.for_each(|corner| *corner -= DVec2::new(x, y));
+                }
+                Some(polygons)
+            }
+            Err(error) => {
+                self.problems.push(Diagnostic::error(format!("{path}.file"), error.to_string()));
+                None
+            }
+        }
+    }
+}
