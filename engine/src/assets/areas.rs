@@ -108,14 +108,13 @@ impl Found<'_> {
         let corners = || polygons.iter().flat_map(|polygon| &polygon.rings).flatten();
         let low = corners().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = corners().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let in_degrees = match crs {
-            Some(name) => ["CRS84", "4326", "4258", "4269"].iter().any(|of| name.ends_with(of)),
-            None => {
-                let globe = DVec2::new(180.0, 90.0);
-                low.cmpge(-globe).all()
-                    && high.cmple(globe).all()
-                    && (high - low).max_element() < NARROWEST
-            }
+        let in_degrees = if let Some(name) = crs {
+            ["CRS84", "4326", "4258", "4269"].iter().any(|of| name.ends_with(of))
+        } else {
+            let globe = DVec2::new(180.0, 90.0);
+            low.cmpge(-globe).all()
+                && high.cmple(globe).all()
+                && (high - low).max_element() < NARROWEST
         };
         if in_degrees {
             return Err(AssetError::InDegrees { file: self.path.to_owned(), x: low.x, y: low.y });
@@ -153,14 +152,15 @@ pub fn read_polygons(path: &Path) -> Result<Vec<Polygon>, AssetError> {
             if hole == 0.0 {
                 polygons.push(Polygon::default());
             }
-            let Some(polygon) = polygons.last_mut() else {
-                return Err(AssetError::HoleOfNothing { file: path.to_owned(), line });
-            };
-            polygon.rings.push(Vec::new());
             current = Some((ring, hole));
+            match polygons.last_mut() {
+                Some(polygon) => polygon.rings.push(Vec::new()),
+                None => return Err(AssetError::HoleOfNothing { file: path.to_owned(), line }),
+            }
         }
-        let ring = polygons.last_mut().and_then(|polygon| polygon.rings.last_mut());
-        ring.into_iter().for_each(|ring| ring.push(DVec2::new(x, y)));
+        if let Some(ring) = polygons.last_mut().and_then(|polygon| polygon.rings.last_mut()) {
+            ring.push(DVec2::new(x, y));
+        }
     }
     checked(path, polygons)
 }

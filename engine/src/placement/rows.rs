@@ -38,7 +38,7 @@ impl Rows {
         let (rows, stems) = (numbers(across, self.spacing.x), numbers(along, self.spacing.y));
         let candidates = (rows.1 - rows.0 + 1.0) * (stems.1 - stems.0 + 1.0);
         // A turned square may cover half of the square around it.
-        if !(candidates <= 4.0 * MOST_STEMS as f64) {
+        if candidates.is_nan() || candidates > 4.0 * MOST_STEMS as f64 {
             return Err(PlacementError::TooManyStems { stems: candidates, most: MOST_STEMS });
         }
         let whole = |(low, high): (f64, f64)| -> RangeInclusive<i64> { low as i64..=high as i64 };

@@ -87,7 +87,8 @@ fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Re
     check_distribution(tilt_azimuth_deg, &format!("{path}.tilt_azimuth_deg"), Least::Any, report);
     let tilt_path = format!("{path}.tilt_deg");
     check_distribution(tilt_deg, &tilt_path, Least::Zero("a lean"), report);
-    if let Some(most) = largest(tilt_deg).filter(|&most| most >= 90.0) {
+    let most = largest(tilt_deg);
+    if most >= 90.0 {
         let (message, help) = if most.is_finite() {
             (format!("expected a lean below 90°, found up to {most}"), "0 is upright")
         } else {
@@ -175,6 +176,7 @@ fn check_ring(ring: &[(f64, f64)], path: &str, report: &mut Report<'_>) {
 }
 
 /// What a distribution's values may be, and what a person calls them.
+#[derive(Clone, Copy)]
 enum Least {
     Any,
     Zero(&'static str),
@@ -252,13 +254,13 @@ fn check_limits(
     }
 }
 
-/// The largest value that a distribution can give; none if there is no end.
-fn largest(distribution: &Distribution) -> Option<f64> {
+/// The largest value that a distribution can give.
+fn largest(distribution: &Distribution) -> f64 {
     match distribution {
-        Distribution::Fixed(value) | Distribution::Uniform((_, value)) => Some(*value),
-        Distribution::Normal { mean, sd: 0.0, .. } => Some(*mean),
+        Distribution::Fixed(value) | Distribution::Uniform((_, value)) => *value,
+        Distribution::Normal { mean, sd: 0.0, .. } => *mean,
         Distribution::Normal { max, .. } | Distribution::LogNormal { max, .. } => {
-            Some(max.unwrap_or(f64::INFINITY))
+            max.unwrap_or(f64::INFINITY)
         }
     }
 }

@@ -9,6 +9,7 @@ use super::Map;
 
 choice! {
     /// Instances of mesh prototypes.
+    #[expect(clippy::large_enum_variant, reason = "a scene has few of them")]
     pub enum Instances ("instances") {
         /// Places from a text table.
         Table {

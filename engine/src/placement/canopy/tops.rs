@@ -54,8 +54,7 @@ fn plateaus(model: &HeightModel, least: f64) -> Vec<usize> {
     let mut found = Vec::new();
     for start in 0..model.heights.len() {
         let height = model.heights[start];
-        // Written so that NaN is no height.
-        if seen[start] || !(height >= least) {
+        if seen[start] || height.is_nan() || height < least {
             continue;
         }
         seen[start] = true;
