@@ -94,7 +94,7 @@ macro_rules! choice {
                         $(($tuple $(=> $tuple_example)?))?
                         $({ $($field: $type $(=> $example)? $(= $default)?),* })?
                     ),)*
-                    _ => written.unknown($kind, &[$(stringify!($variant)),*], reader),
+                    _ => written.unknown(&[$(stringify!($variant)),*], reader),
                 }
             }
 

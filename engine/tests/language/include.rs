@@ -116,10 +116,7 @@ fn what_is_included_has_names_of_its_own_and_paths_of_the_scene() {
     assert!(matches!(&scene.materials["birch.bark"], Material::Lambertian { reflectance, .. }
         if *reflectance == Spectrum::Named("birch.bark".to_owned())));
     assert!(matches!(&scene.terrain, Terrain::Plane { material, .. } if material == "site.soil"));
-    let of = |instances: &Instances| match instances {
-        Instances::List { of, .. } | Instances::Table { of, .. } => of.clone(),
-    };
-    let of: Vec<_> = scene.instances.iter().map(of).collect();
+    let of: Vec<&str> = scene.instances.iter().flat_map(Instances::meshes).collect();
     assert_eq!(of, ["birch.crown", "birch.tree", "bare.tree"], "the scene's own first");
     assert!(matches!(scene.sensors["birch.up"], Sensor::Directions { .. }));
 }

@@ -209,7 +209,6 @@ impl<'a> Variant<'a> {
     /// A name that no variant has.
     pub(in super::super) fn unknown<T: Decode>(
         &self,
-        kind: &str,
         known: &[&'static str],
         reader: &mut Reader<'a>,
     ) -> T {

@@ -52,7 +52,9 @@ pub(super) fn qualify(file: &mut Node, namespace: &str, folder: &str) {
             }
             (value, key) => {
                 if let (Value::List(items), "instances") = (value, key) {
-                    items.iter_mut().for_each(|instances| with.own_name(instances));
+                    for instances in items {
+                        with.own_name(instances);
+                    }
                 }
                 with.walk(&mut field.value, role(key));
             }
