@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use super::crown::CrownError;
 use super::gltf::GltfError;
+use super::raster::RasterError;
 
 /// Why a file is not what a scene can use: the file, the line where it has lines, and what to
 /// write instead.
@@ -117,6 +118,8 @@ pub enum AssetError {
 
     #[error("{}: {problem}", .file.display())]
     Gltf { file: PathBuf, problem: GltfError },
+    #[error("{}: {problem}", .file.display())]
+    Raster { file: PathBuf, problem: RasterError },
     #[error(transparent)]
     Crown(#[from] CrownError),
 }

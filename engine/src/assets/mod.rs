@@ -7,6 +7,7 @@
 //! | [`grow_crown`] | a [`CrownSpec`] | [`Mesh`](crate::components::Mesh) |
 //! | [`read_instances`] | a text table | [`Row`]s |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
+//! | [`read_raster`] | ESRI ASCII grid, ENVI, GeoTIFF | [`Raster`] |
 //! | [`read_spectrum`] | two columns of a table | points (wavelength, value) |
 
 mod areas;
@@ -18,6 +19,7 @@ mod import;
 mod instances;
 mod obj;
 mod polygon;
+mod raster;
 mod spectrum;
 mod table;
 mod text;
@@ -30,6 +32,8 @@ pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
 pub use instances::{Row, read_instances};
 pub use obj::read_obj;
+pub(crate) use raster::companion;
+pub use raster::{Place, Projection, Raster, RasterError, Unit, read_raster};
 pub use spectrum::read_spectrum;
 
 /// What was read, and what about it the author of the scene should know.

@@ -19,9 +19,9 @@ pub struct TerrainPatch {
     pub mesh: Mesh,
     /// Material of each part of the mesh.
     pub materials: PartMaterials,
-    /// Whether the earth is below it everywhere: nothing but light that came in under an isolated
-    /// scene's edge arrives at it from below.
-    pub is_solid: bool,
+    /// First of the triangles, up to the last one, that are no ground but the faces along which an
+    /// isolated ground is cut out of the earth; light that arrives there is lost.
+    pub first_cut: u32,
 }
 
 impl TerrainPatch {

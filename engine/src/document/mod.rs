@@ -18,6 +18,7 @@ mod sun;
 mod syntax;
 
 pub use check::check;
+pub(crate) use check::check_maps;
 pub(crate) use diagnostic::suggestion;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
 pub use format::{format, format_file};

@@ -106,6 +106,7 @@ pub fn extract(
         corner: terrain.corner,
         size: terrain.size,
         ground: terrain.lowest(),
+        first_cut: terrain.first_cut,
         periodic: setting.boundary == Boundary::Periodic,
         thermal: Thermal::of(world, &surfaces.ordered),
         surfaces: surfaces.finish(),

@@ -17,8 +17,11 @@ pub struct Stage {
     pub corner: DVec2,
     /// Extent of the scene's rectangle to the east and to the north, m.
     pub size: DVec2,
-    /// Height of the ground, m.
+    /// Height of the lowest ground, m.
     pub ground: f64,
+    /// First of the ground's triangles that are no ground but the faces along which an isolated one
+    /// is cut out of the earth.
+    pub first_cut: u32,
     /// Whether the rectangle repeats without end.
     pub periodic: bool,
     /// Surfaces, by the id that hits carry; 0 is the ground's.
@@ -84,13 +87,20 @@ impl Stage {
         hit.instance == 0
     }
 
-    /// Height of the ground at a horizontal position, m; that of the plane beside the terrain.
+    /// Whether a hit lies where an isolated ground is cut out of the earth: light ends there, and
+    /// nothing is to be seen.
+    #[must_use]
+    pub fn is_cut(&self, hit: &accel::Hit) -> bool {
+        self.is_ground(hit) && hit.primitive >= self.first_cut
+    }
+
+    /// Height of the ground at a horizontal position, m; the lowest one beside the terrain.
     #[must_use]
     pub fn ground_at(&self, at: DVec2) -> f64 {
         let above = at.extend(self.top() + 1.0);
         let mut ray = accel::Ray { origin: above, direction: DVec3::NEG_Z, from: None };
         while let Some(hit) = self.geometry.closest(&ray) {
-            if self.is_ground(&hit) {
+            if self.is_ground(&hit) && !self.is_cut(&hit) {
                 return hit.point.z;
             }
             ray = hit.leave(DVec3::NEG_Z);

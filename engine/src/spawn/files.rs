@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use crate::document::{
-    Area, Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, ThermalSky,
+    Area, Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, Terrain, ThermalSky,
 };
 
 /// Every file that a scene names and that is not there, used or not.
@@ -47,6 +47,12 @@ pub(crate) fn named_files(scene: &Scene) -> Vec<(String, &str)> {
                     }
                 }
             }
+        }
+    }
+    if let Terrain::Raster { file, land_cover, .. } = &scene.terrain {
+        files.push(("terrain.file".to_owned(), file.as_str()));
+        if let Some(cover) = land_cover {
+            files.push(("terrain.land_cover.file".to_owned(), cover.file.as_str()));
         }
     }
     for (name, mesh) in &scene.meshes {

@@ -6,7 +6,7 @@ use crate::components::{
     Channels, Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
     Perspective, Picture, Stand,
 };
-use crate::document::{self, Cover, FisheyeProjection, Sensor, Terrain};
+use crate::document::{self, Cover, FisheyeProjection, Sensor};
 
 /// Samples of a pixel where a scene does not say.
 const SAMPLES: u32 = 64;
@@ -70,8 +70,7 @@ impl Spawner<'_> {
                 virtual_plane,
                 ..
             } => {
-                let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
-                let middle = DVec2::from(*corner_m) + 0.5 * DVec2::from(*size_m);
+                let middle = self.rectangle.0 + 0.5 * self.rectangle.1;
                 // `document::check` asks for exactly one of the two.
                 let footprint = match (cover, extent_m) {
                     (None, Some(extent)) => Footprint::Rectangle {

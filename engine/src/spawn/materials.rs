@@ -5,7 +5,7 @@ use hecs::World;
 use super::Spawner;
 use super::spectra::Quantity;
 use crate::components::{EnergyGain, MaterialId, Name, SceneId, SurfaceOptics};
-use crate::document::{Diagnostic, Material, Spectrum, Terrain, unknown_name};
+use crate::document::{Diagnostic, Material, Spectrum, unknown_name};
 
 impl Spawner<'_> {
     /// Id of a material by its name.
@@ -25,10 +25,8 @@ impl Spawner<'_> {
 
     /// Spawns the materials that the terrain and the parts of used meshes (`used`) wear. Others are looked at
     /// as far as that takes no file: what is wrong with them should not wait until they are used.
-    pub(super) fn materials(&mut self, mut used: BTreeSet<MaterialId>, world: &mut World) {
+    pub(super) fn materials(&mut self, used: BTreeSet<MaterialId>, world: &mut World) {
         let scene = self.scene;
-        let Terrain::Plane { material, .. } = &scene.terrain;
-        used.extend(self.known_material(material, "terrain.material"));
         for (index, (name, material)) in scene.materials.iter().enumerate() {
             let path = format!("materials.{name}");
             if used.contains(&MaterialId(index as u32)) {

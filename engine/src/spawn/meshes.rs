@@ -6,7 +6,7 @@ use super::Spawner;
 use super::instances::shown_meshes;
 use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
 use crate::components::{MaterialId, Mesh, Name, PartMaterials, Placement};
-use crate::document::{self, Diagnostic, Map, unknown_name};
+use crate::document::{self, Diagnostic, Map, Scene, Terrain, unknown_name};
 
 /// A mesh with the materials of its parts.
 pub(super) struct Prototype {
@@ -25,7 +25,7 @@ impl Spawner<'_> {
             if used.contains(name.as_str()) {
                 self.note_file(mesh);
                 wanted.push((index as u32, name, mesh));
-            } else {
+            } else if !is_ground(scene, name) {
                 self.skipped.push(nothing_of(name));
             }
         }
@@ -61,7 +61,7 @@ impl Spawner<'_> {
         let placed: BTreeSet<u32> = placements.iter().map(|p| p.prototype.0).collect();
         meshes.retain(|id, prototype| {
             let is_placed = placed.contains(id);
-            if !is_placed {
+            if !is_placed && !is_ground(self.scene, &prototype.name.0) {
                 self.skipped.push(nothing_of(&prototype.name.0));
             }
             is_placed
@@ -69,7 +69,7 @@ impl Spawner<'_> {
         meshes
     }
 
-    fn note_file(&mut self, mesh: &document::Mesh) {
+    pub(super) fn note_file(&mut self, mesh: &document::Mesh) {
         match mesh {
             document::Mesh::Obj { file, .. }
             | document::Mesh::Gltf { file, .. }
@@ -81,7 +81,7 @@ impl Spawner<'_> {
     }
 
     /// Material of each part; where one is missing a problem is noted and the first one stands in.
-    fn part_materials(
+    pub(super) fn part_materials(
         &mut self,
         mesh: &document::Mesh,
         loaded: &Mesh,
@@ -140,11 +140,18 @@ impl Spawner<'_> {
     }
 }
 
+fn is_ground(scene: &Scene, mesh: &str) -> bool {
+    matches!(&scene.terrain, Terrain::Mesh { mesh: ground, .. } if ground == mesh)
+}
+
 fn nothing_of(mesh: &str) -> String {
     format!("mesh `{mesh}`: nothing stands of it")
 }
 
-fn load(mesh: &document::Mesh, folder: &std::path::Path) -> Result<Loaded<Mesh>, AssetError> {
+pub(super) fn load(
+    mesh: &document::Mesh,
+    folder: &std::path::Path,
+) -> Result<Loaded<Mesh>, AssetError> {
     match mesh {
         document::Mesh::Obj { file, up, unit_m, origin, .. } => assets::read_obj(
             &folder.join(file),

@@ -6,6 +6,7 @@ mod instances;
 mod light;
 mod materials;
 mod meshes;
+mod raster;
 mod scatter;
 mod sensors;
 mod spectra;
@@ -13,12 +14,15 @@ mod standing;
 mod terrain;
 mod thermal;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
 use hecs::{Entity, Or, World};
 
-use crate::components::{Mesh, PartMaterials, Placement, SceneId, TerrainPatch};
+use crate::components::{MaterialId, Mesh, PartMaterials, Placement, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, Scene};
+use crate::terrain::Ground;
 
 pub use files::missing_files;
 pub(crate) use files::named_files;
@@ -53,6 +57,8 @@ pub(crate) struct Spawner<'a> {
     files: Vec<PathBuf>,
     skipped: Vec<String>,
     problems: Vec<Diagnostic>,
+    /// South-west corner and extent of the ground, m.
+    rectangle: (DVec2, DVec2),
 }
 
 /// Makes the world of a scene; paths in it are relative to `folder`.
@@ -66,10 +72,18 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     if !missing.is_empty() {
         return Err(missing);
     }
-    let mut spawner =
-        Spawner { scene, folder, files: Vec::new(), skipped: Vec::new(), problems: Vec::new() };
+    let mut spawner = Spawner {
+        scene,
+        folder,
+        files: Vec::new(),
+        skipped: Vec::new(),
+        problems: Vec::new(),
+        rectangle: (DVec2::ZERO, DVec2::ONE),
+    };
     let mut world = World::new();
-    let ground = spawner.terrain(&mut world);
+    let patch = spawner.terrain();
+    let ground = patch.as_ref().map(Ground::of);
+    world.spawn_batch(patch.into_iter().map(|patch| (SceneId(0), patch)));
     let meshes = spawner.meshes();
     let placements = spawner.instances(&meshes, ground.as_ref());
     spawner.check_patterns();
@@ -106,7 +120,8 @@ pub fn respawn(spawned: Spawned, scene: &Scene, folder: &Path) -> Result<Spawned
         drop(world.despawn(entity));
     }
     let Notes { files, skipped, problems } = of_geometry.clone();
-    Spawner { scene, folder, files, skipped, problems }.finish(world, of_geometry)
+    let rectangle = (DVec2::ZERO, DVec2::ONE);
+    Spawner { scene, folder, files, skipped, problems, rectangle }.finish(world, of_geometry)
 }
 
 impl Spawner<'_> {
@@ -117,17 +132,22 @@ impl Spawner<'_> {
 
     /// Spawns all that is no geometry.
     fn finish(mut self, mut world: World, of_geometry: Notes) -> Result<Spawned, Vec<Diagnostic>> {
-        let worn = world
+        let mut worn: BTreeSet<MaterialId> = world
             .query::<&PartMaterials>()
             .iter()
             .flat_map(|materials| materials.0.iter().copied())
             .collect();
+        for patch in world.query::<&TerrainPatch>().iter() {
+            worn.extend(patch.materials.0.iter().copied());
+            self.rectangle = (patch.corner, patch.size);
+            self.check_flux_maps(patch.size);
+        }
         self.materials(worn, &mut world);
         self.light(&mut world);
         self.emission(&mut world);
         self.sensors(&mut world);
         let Spawner { mut files, skipped, problems, .. } = self;
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         files.retain(|file| seen.insert(file.clone()));
         if problems.iter().any(Diagnostic::is_error) {
             return Err(problems);

@@ -1,20 +1,74 @@
-use glam::DVec2;
-use hecs::World;
+use glam::{DVec2, DVec3};
 
 use super::Spawner;
-use crate::components::SceneId;
-use crate::document::Terrain;
-use crate::terrain::{Ground, plane};
+use super::meshes::load;
+use crate::components::{MaterialId, TerrainPatch};
+use crate::document::{Boundary, Diagnostic, Sensor, Terrain, check_maps, unknown_name};
+use crate::terrain::{self, plane};
 
 impl Spawner<'_> {
-    /// Spawns the terrain; returns what knows its heights, if nothing is wrong with it.
-    pub(super) fn terrain(&self, world: &mut World) -> Option<Ground> {
-        let Terrain::Plane { size_m, material, corner_m, height_m } = &self.scene.terrain;
-        // An unknown material was reported with all others.
-        let material = self.material_id(material)?;
-        let patch = plane(DVec2::from(*corner_m), DVec2::from(*size_m), *height_m, material);
-        let ground = Ground::of(&patch);
-        world.spawn((SceneId(0), patch));
-        Some(ground)
+    /// The terrain, unless something is wrong with it.
+    pub(super) fn terrain(&mut self) -> Option<TerrainPatch> {
+        let scene = self.scene;
+        Some(match &scene.terrain {
+            Terrain::Plane { size_m, material, corner_m, height_m } => {
+                let material = self.known_material(material, "terrain.material")?;
+                plane(DVec2::from(*corner_m), DVec2::from(*size_m), *height_m, material)
+            }
+            Terrain::Raster { .. } => self.raster()?,
+            Terrain::Mesh { mesh, at_m } => self.terrain_mesh(mesh, DVec3::from(*at_m))?,
+        })
+    }
+
+    pub(super) fn is_periodic(&self) -> bool {
+        self.scene.boundary == Boundary::Periodic
+    }
+
+    fn terrain_mesh(&mut self, name: &str, at: DVec3) -> Option<TerrainPatch> {
+        let scene = self.scene;
+        let Some(mesh) = scene.meshes.get(name) else {
+            let known = scene.meshes.keys().map(String::as_str);
+            self.problems.push(unknown_name("terrain.mesh", "mesh", name, known));
+            return None;
+        };
+        self.note_file(mesh);
+        let path = format!("meshes.{name}");
+        let loaded = match load(mesh, self.folder) {
+            Ok(loaded) => loaded,
+            Err(error) => {
+                self.problems.push(Diagnostic::error(path, error.to_string()));
+                return None;
+            }
+        };
+        let warnings = loaded.warnings.into_iter().map(|w| Diagnostic::warning(&path, w));
+        self.problems.extend(warnings);
+        let materials: Vec<MaterialId> = self.part_materials(mesh, &loaded.value, &path);
+        let names = loaded.value.parts.iter().map(|part| part.name.clone());
+        let parts = names.zip(materials).collect();
+        let patch = terrain::mesh(&loaded.value, at, parts, self.is_periodic());
+        if patch.is_none() {
+            let message =
+                format!("`{name}` covers no ground: it has no extent to the east or north");
+            self.problems.push(
+                Diagnostic::error("terrain.mesh", message)
+                    .help("check `up` of the mesh: it says which axis of the file points up"),
+            );
+        }
+        patch
+    }
+
+    /// Maps of fluxes over ground whose extent its file tells.
+    pub(super) fn check_flux_maps(&mut self, size: DVec2) {
+        if matches!(self.scene.terrain, Terrain::Plane { .. }) {
+            return;
+        }
+        for (name, sensor) in &self.scene.sensors {
+            let Sensor::Photons { measure, .. } = sensor else { continue };
+            for (index, measure) in measure.iter().enumerate() {
+                let path = format!("sensors.{name}.measure[{index}]");
+                let bands = self.scene.bands.len();
+                self.problems.extend(check_maps(&path, measure, bands, size.into()));
+            }
+        }
     }
 }

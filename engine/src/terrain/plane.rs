@@ -17,6 +17,6 @@ pub fn plane(corner: DVec2, size: DVec2, height: f64, material: MaterialId) -> T
             parts: vec![Part { name: "ground".to_owned(), triangles: 0..2, discs: 0..0 }],
         },
         materials: PartMaterials(vec![material]),
-        is_solid: true,
+        first_cut: 2,
     }
 }

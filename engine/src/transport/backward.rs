@@ -119,7 +119,8 @@ impl Path {
         // Light that met nothing at all is uncollided.
         (self.orders, self.met_ground) = (0, true);
         self.note(&ray, false);
-        let Some(first) = stage.geometry.closest(&ray) else { return false };
+        let first = stage.geometry.closest(&ray);
+        let Some(first) = first.filter(|hit| !stage.is_cut(hit)) else { return false };
         if stage.rules.max_order == 0 {
             return true;
         }
@@ -153,7 +154,7 @@ impl Path {
                 }
                 return true;
             };
-            if order == stage.rules.max_order {
+            if order == stage.rules.max_order || stage.is_cut(&found) {
                 return true;
             }
             (hit, wo) = (found, -onward.direction);

@@ -85,7 +85,8 @@ impl Walk for FirstHit {
     fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
         self.rays += 1;
         self.cosine = ray.direction.z * self.upright.unwrap_or(0.0);
-        let Some(hit) = stage.geometry.closest(&ray) else { return false };
+        let hit = stage.geometry.closest(&ray);
+        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return false };
         let is_sunlit = stage.light.sun.as_ref().is_some_and(|sun| {
             let sun = sun.towards(sampler);
             let seen_side_faces_it =

@@ -197,6 +197,10 @@ impl<'a> Packet<'a> {
                 *rays += show(Event::Escape { ray: &ray, order, met_ground, weight });
                 return;
             };
+            if stage.is_cut(&hit) {
+                rays += show(Event::Buried { weight: &weight });
+                break;
+            }
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
             let is_last = order >= most;

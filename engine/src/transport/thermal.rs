@@ -64,6 +64,9 @@ impl ThermalPath {
                 }
                 return order > 0;
             };
+            if stage.is_cut(&hit) {
+                return order > 0;
+            }
             let bsdf = &stage.surface(&hit).bsdf;
             let wo = -ray.direction;
             self.add_surface(stage, thermal, (&hit, bsdf.scattered(hit.normal, wo)), sampler);

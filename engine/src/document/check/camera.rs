@@ -278,8 +278,12 @@ fn check_position(
 ) {
     let path = format!("{path}.position_m");
     report.finite(&path, &[x, y, z]);
-    let Terrain::Plane { height_m, .. } = &scene.terrain;
-    let ground = if above_ground { 0.0 } else { *height_m };
+    let ground = match &scene.terrain {
+        _ if above_ground => 0.0,
+        Terrain::Plane { height_m, .. } => *height_m,
+        // Known only when its file is read.
+        Terrain::Raster { .. } | Terrain::Mesh { .. } => return,
+    };
     if z <= ground && report.is_readable("terrain") {
         let message =
             format!("the camera is not above the ground, whose height here is {ground} m");

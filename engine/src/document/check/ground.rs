@@ -1,6 +1,6 @@
 //! The frame and the terrain.
 
-use super::super::scene::{Scene, Terrain};
+use super::super::scene::{LandCover, NoData, Scene, Terrain};
 use super::Report;
 use super::mesh::check_material;
 
@@ -10,10 +10,71 @@ pub(super) fn check_frame(scene: &Scene, report: &mut Report<'_>) {
 }
 
 pub(super) fn check_terrain(scene: &Scene, report: &mut Report<'_>) {
-    let Terrain::Plane { size_m, material, corner_m, height_m } = &scene.terrain;
-    report.above_zero("terrain.size_m[0]", size_m.0);
-    report.above_zero("terrain.size_m[1]", size_m.1);
-    report.finite("terrain.corner_m", &[corner_m.0, corner_m.1]);
-    report.finite("terrain.height_m", &[*height_m]);
-    check_material("terrain", "material", material, scene, report);
+    match &scene.terrain {
+        Terrain::Plane { size_m, material, corner_m, height_m } => {
+            check_rectangle(Some(*size_m), Some(*corner_m), report);
+            report.finite("terrain.height_m", &[*height_m]);
+            check_material("terrain", "material", material, scene, report);
+        }
+        Terrain::Raster {
+            material,
+            land_cover,
+            tolerance_m,
+            no_data,
+            corner_m,
+            size_m,
+            lowest_m,
+            ..
+        } => {
+            check_rectangle(*size_m, *corner_m, report);
+            report.at_least("terrain.tolerance_m", *tolerance_m, 0.0);
+            report.finite("terrain.lowest_m", lowest_m.as_slice());
+            if let NoData::Height(height) = no_data {
+                report.finite("terrain.no_data", &[*height]);
+            }
+            check_covering(material.as_deref(), land_cover.as_ref(), scene, report);
+        }
+        Terrain::Mesh { mesh, at_m: (x, y, z) } => {
+            report.name("terrain.mesh", "mesh", mesh, &scene.meshes, "meshes");
+            report.finite("terrain.at_m", &[*x, *y, *z]);
+        }
+    }
+}
+
+fn check_rectangle(size: Option<(f64, f64)>, corner: Option<(f64, f64)>, report: &mut Report<'_>) {
+    if let Some((width, height)) = size {
+        report.above_zero("terrain.size_m[0]", width);
+        report.above_zero("terrain.size_m[1]", height);
+    }
+    if let Some((x, y)) = corner {
+        report.finite("terrain.corner_m", &[x, y]);
+    }
+}
+
+/// One material or one for each class.
+fn check_covering(
+    material: Option<&str>,
+    cover: Option<&LandCover>,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
+    match (material, cover) {
+        (Some(material), None) => check_material("terrain", "material", material, scene, report),
+        (None, Some(cover)) => {
+            for (class, material) in &cover.classes {
+                let key = format!("classes.{class}");
+                check_material("terrain.land_cover", &key, material, scene, report);
+            }
+        }
+        (Some(_), Some(_)) => {
+            let message = "the ground has both a `material` and a `land_cover`";
+            report.error("terrain.material", message, "take one of the two out");
+        }
+        (None, None) if report.is_whole("terrain") => {
+            let help = "write `material: \"soil\"`, or `land_cover: (file: \"classes.asc\", \
+                        classes: { \"1\": \"soil\" })`";
+            report.error("terrain", "the ground has no material", help);
+        }
+        (None, None) => {}
+    }
 }

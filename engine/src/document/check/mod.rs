@@ -14,6 +14,8 @@ mod thermal;
 use super::diagnostic::{Diagnostic, unknown_name};
 use super::scene::{Map, Scene, Transport};
 
+pub(crate) use sensor::check_maps;
+
 /// No more errors than this are kept: nobody reads them.
 const ERRORS: usize = 100;
 

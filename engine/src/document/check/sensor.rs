@@ -2,6 +2,7 @@
 
 use std::mem::discriminant;
 
+use super::super::diagnostic::Diagnostic;
 use super::super::scene::{
     ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, Terrain, Until, Views,
 };
@@ -134,13 +135,9 @@ fn check_photon_measure(
         PhotonMeasure::Fluxes { pixel_m, heights_m } => {
             report.above_zero(&format!("{path}.pixel_m"), *pixel_m);
             report.finite(&format!("{path}.heights_m"), heights_m);
-            let Terrain::Plane { size_m: (width, height), .. } = &scene.terrain;
-            let maps = (heights_m.len() + 2) * scene.bands.len();
-            let values = (width / pixel_m).ceil() * (height / pixel_m).ceil() * maps as f64;
-            if values > VALUES && *pixel_m > 0.0 {
-                let message = format!("pixels of {pixel_m} m make maps of {values:.0} values");
-                let help = format!("write a larger `pixel_m`: at most {VALUES} values");
-                report.error(&format!("{path}.pixel_m"), message, help);
+            if let Terrain::Plane { size_m, .. } = &scene.terrain {
+                let problem = check_maps(path, measure, scene.bands.len(), *size_m);
+                problem.into_iter().for_each(|problem| report.push(problem));
             }
         }
     }
@@ -214,4 +211,21 @@ fn check_measures<T>(path: &str, measures: &[T], example: &str, report: &mut Rep
             report.error(&format!("{path}[{index}]"), message, "take one of the two out");
         }
     }
+}
+
+/// Whether the maps of fluxes over a scene of this extent, m, hold more values than anybody wants.
+pub(crate) fn check_maps(
+    path: &str,
+    measure: &PhotonMeasure,
+    bands: usize,
+    (width, height): (f64, f64),
+) -> Option<Diagnostic> {
+    let PhotonMeasure::Fluxes { pixel_m, heights_m } = measure else { return None };
+    let maps = (heights_m.len() + 2) * bands;
+    let values = (width / pixel_m).ceil() * (height / pixel_m).ceil() * maps as f64;
+    (values > VALUES && *pixel_m > 0.0).then(|| {
+        let message = format!("pixels of {pixel_m} m make maps of {values:.0} values");
+        Diagnostic::error(format!("{path}.pixel_m"), message)
+            .help(format!("write a larger `pixel_m`: at most {VALUES} values"))
+    })
 }

@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::super::decode::{Decode, Reader, Variant, example_of_keys};
+use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
+use super::Map;
 
 choice! {
     /// The ground.
@@ -20,6 +21,69 @@ choice! {
             /// Height, m.
             height_m: f64 = 0.0,
         },
+        /// Heights from a file: ESRI ASCII grid, ENVI or GeoTIFF. It lies where the file says, less
+        /// the frame's origin.
+        Raster {
+            /// Path, relative to the scene file.
+            file: String => r#""dem.asc""#,
+            /// Material of all of it.
+            material: Option<String> => r#""soil""# = None,
+            /// Materials by class, in place of `material`.
+            land_cover: Option<LandCover> = None,
+            /// How far the ground may lie above or below a cell's height, m; 0 keeps every cell.
+            tolerance_m: f64 = 0.0,
+            /// What the coordinates are, where the file does not say; degrees are refused without it.
+            coordinates: Option<Coordinates> = None,
+            /// What becomes of cells without data.
+            no_data: NoData = NoData::Refuse,
+            /// South-west corner, m, in place of the file's.
+            corner_m: Option<(f64, f64)> = None,
+            /// Extent to the east and to the north, m, in place of the file's.
+            size_m: Option<(f64, f64)> = None,
+            /// Height of the lowest cell, m, in place of the file's.
+            lowest_m: Option<f64> = None,
+        },
+        /// A mesh, whose rectangle is the one around it.
+        Mesh {
+            /// Its name among `meshes`.
+            mesh: String => r#""hill""#,
+            /// Where its origin lies, m.
+            at_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
+        },
+    }
+}
+
+record! {
+    /// Classes of the ground from a raster.
+    pub struct LandCover ("a land cover") {
+        /// Path, relative to the scene file.
+        file: String => r#""classes.asc""#,
+        /// Material of each class, by its number or, of ENVI classifications, its name.
+        classes: Map<String> => r#"{ "1": "soil", "2": "grass" }"#,
+    }
+}
+
+choice! {
+    /// What the coordinates of a raster are.
+    pub enum Coordinates ("coordinates") {
+        /// Metres east and north.
+        Metres,
+        /// Longitude and latitude on WGS 84, taken for metres as they are in the raster's middle.
+        Degrees,
+    }
+}
+
+choice! {
+    /// What becomes of cells without data.
+    pub enum NoData ("what becomes of cells without data") {
+        /// They are an error.
+        Refuse,
+        /// They get the mean of the cells around them, ring by ring.
+        Neighbours,
+        /// They lie at this height, m, in the raster's heights.
+        Height(f64),
+        /// They are holes: light that falls into them is lost.
+        Hole,
     }
 }
 

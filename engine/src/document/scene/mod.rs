@@ -19,7 +19,7 @@ use super::encode::{Encode, Text, differs};
 use super::syntax::Node;
 
 pub use camera::{Cover, FisheyeProjection, Look, Picture};
-pub use ground::{Boundary, Terrain};
+pub use ground::{Boundary, Coordinates, LandCover, NoData, Terrain};
 pub use instances::{Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, Stems};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};

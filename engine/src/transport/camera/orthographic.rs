@@ -173,7 +173,7 @@ fn axes(view: View) -> (DVec3, DVec3) {
 #[must_use]
 pub fn footprint(sensor: &Orthographic, stage: &Stage) -> (DVec3, DVec2) {
     match sensor.footprint {
-        Footprint::Rectangle { extent, center } => (center.extend(stage.ground), extent),
+        Footprint::Rectangle { extent, center } => (center.extend(stage.ground_at(center)), extent),
         Footprint::WholeScene => {
             let bottom = stage.geometry.bottom().min(stage.ground);
             let size = stage.size.extend(stage.top() - bottom);

@@ -21,7 +21,7 @@ impl EnergyCounter {
     pub const INCIDENT: usize = 0;
     /// Power that is scattered out through the reference plane.
     pub const REFLECTED: usize = 1;
-    /// Power that leaves elsewhere, or misses the scene.
+    /// Power that leaves elsewhere, misses the scene, or meets the earth beside it.
     pub const LOST: usize = 2;
     /// What the choice of lobes, roulette and the limit of orders removed less what they added.
     pub const ROULETTE: usize = 3;
@@ -65,6 +65,7 @@ impl Counter for EnergyCounter {
                 let cell = if reflected { Self::REFLECTED } else { Self::LOST };
                 sums.add(cell, weight, 1.0);
             }
+            Event::Buried { weight } => sums.add(Self::LOST, weight, 1.0),
             Event::Flight { .. } => {}
         }
         0

@@ -72,7 +72,7 @@ impl Counter for FluxCounter {
             };
             match (level, event) {
                 (FluxLevel::Terrain, Event::Arrival { hit, wo, weight, .. })
-                    if stage.is_ground(hit) && wo.z > 0.0 =>
+                    if stage.is_ground(hit) && hit.normal.dot(*wo) > 0.0 =>
                 {
                     add(hit.point, false, &|lane| weight[lane].into());
                     let up = stage.surface(hit).bsdf.reflected(hit.normal, *wo);

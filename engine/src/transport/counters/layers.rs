@@ -93,7 +93,7 @@ impl Counter for LayerCounter {
                 f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])
             });
         }
-        if is_ground && wo.z > 0.0 {
+        if is_ground && hit.normal.dot(*wo) > 0.0 {
             let term = match (order, met_ground) {
                 (0, _) => 1,
                 (_, false) => 2,

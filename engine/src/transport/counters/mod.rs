@@ -74,6 +74,11 @@ pub enum Event<'a> {
         /// The weight that goes on.
         kept: &'a [f32],
     },
+    /// It ends where an isolated ground is cut out of the earth.
+    Buried {
+        /// Its weight.
+        weight: &'a [f32],
+    },
     /// It leaves the scene.
     Escape {
         /// Its last flight.

@@ -1,0 +1,178 @@
+//! ESRI ASCII grids: a few keys, then the values row by row from the north.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::super::AssetError;
+use super::super::error::excerpt;
+use super::super::text::open;
+use super::{Place, Raster, RasterError, Unit, cells, is_no_data, length};
+
+/// Longest word, bytes: a number has far fewer.
+const LONGEST_WORD: usize = 64;
+
+/// Words of a text, wherever its lines end.
+struct Words<R> {
+    reader: R,
+    line: usize,
+    word: Vec<u8>,
+}
+
+impl<R: BufRead> Words<R> {
+    /// The next word and its line.
+    fn next(&mut self) -> std::io::Result<Option<(usize, &str)>> {
+        self.word.clear();
+        loop {
+            let bytes = self.reader.fill_buf()?;
+            let Some(&byte) = bytes.first() else { break };
+            let is_space = byte.is_ascii_whitespace() || byte == b',' && self.word.is_empty();
+            if is_space && !self.word.is_empty() {
+                break;
+            }
+            self.reader.consume(1);
+            if byte == b'\n' {
+                self.line += 1;
+            } else if !is_space && self.word.len() < LONGEST_WORD {
+                self.word.push(byte);
+            }
+        }
+        if self.word.is_empty() {
+            return Ok(None);
+        }
+        let text = std::str::from_utf8(&self.word).unwrap_or("?");
+        // The mark that some editors write before UTF-8 text.
+        Ok(Some((self.line, text.trim_start_matches('\u{feff}'))))
+    }
+}
+
+/// What the header says.
+#[derive(Default)]
+struct Header {
+    numbers: [Option<f64>; KEYS.len()],
+}
+
+/// Keys, and what their values are.
+const KEYS: [(&str, &str); 10] = [
+    ("ncols", "a whole number above 0"),
+    ("nrows", "a whole number above 0"),
+    ("xllcorner", "a number"),
+    ("yllcorner", "a number"),
+    ("xllcenter", "a number"),
+    ("yllcenter", "a number"),
+    ("cellsize", "a number above 0"),
+    ("dx", "a number above 0"),
+    ("dy", "a number above 0"),
+    ("nodata_value", "a number"),
+];
+
+impl Header {
+    fn get(&self, key: &str) -> Option<f64> {
+        KEYS.iter().position(|(name, _)| *name == key).and_then(|index| self.numbers[index])
+    }
+
+    fn set(&mut self, line: usize, key: &str, value: &str) -> Result<(), RasterError> {
+        let name = key.to_ascii_lowercase().replace("centre", "center");
+        let Some(index) = KEYS.iter().position(|(known, _)| *known == name) else {
+            return Err(RasterError::AsciiKey { line, found: excerpt(key) });
+        };
+        let number = value.parse::<f64>().ok().filter(|&number| match KEYS[index].1 {
+            "a whole number above 0" => number >= 1.0 && number.fract() == 0.0 && number < 1e15,
+            "a number above 0" => number > 0.0 && number.is_finite(),
+            // No data may be NaN.
+            _ => number.is_finite() || name == "nodata_value",
+        });
+        let Some(number) = number else {
+            let (found, wanted) = (excerpt(value), KEYS[index].1);
+            return Err(RasterError::AsciiValue { line, key: key.to_owned(), found, wanted });
+        };
+        if self.numbers[index].replace(number).is_some() {
+            return Err(RasterError::Repeated { line, key: key.to_owned() });
+        }
+        Ok(())
+    }
+
+    fn needed(&self, key: &'static str, example: &'static str) -> Result<f64, RasterError> {
+        self.get(key).ok_or(RasterError::AsciiMissing { key, example })
+    }
+
+    /// Width and height of a cell.
+    fn cell(&self) -> Result<DVec2, RasterError> {
+        match (self.get("cellsize"), self.get("dx"), self.get("dy")) {
+            (None, Some(width), Some(height)) => Ok(DVec2::new(width, height)),
+            (size, ..) => size
+                .map(DVec2::splat)
+                .ok_or(RasterError::AsciiMissing { key: "cellsize", example: "cellsize 10" }),
+        }
+    }
+
+    /// One coordinate of the corner, from that of the corner or of the centre of the first cell.
+    fn corner(&self, axis: usize, cell: f64) -> Result<f64, RasterError> {
+        let (corner, center) = [("xllcorner", "xllcenter"), ("yllcorner", "yllcenter")][axis];
+        match (self.get(corner), self.get(center)) {
+            (None, Some(center)) => Ok(center - 0.5 * cell),
+            _ => self.needed(corner, ["xllcorner 0", "yllcorner 0"][axis]),
+        }
+    }
+}
+
+pub(super) fn read(path: &Path) -> Result<Raster, AssetError> {
+    let file = open(path)?;
+    let bytes = length(&file);
+    let mut words =
+        Words { reader: BufReader::with_capacity(1 << 16, file), line: 1, word: Vec::new() };
+    let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
+    let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
+    let mut header = Header::default();
+    let mut first = None;
+    while let Some((line, word)) = words.next().map_err(unreadable)? {
+        if word.parse::<f64>().is_ok() {
+            first = Some(word.to_owned());
+            break;
+        }
+        let key = word.to_owned();
+        if !key.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_') {
+            return Err(wrong(RasterError::AsciiKey { line, found: excerpt(&key) }));
+        }
+        let value = words.next().map_err(unreadable)?.map_or_else(String::new, |w| w.1.to_owned());
+        header.set(line, &key, &value).map_err(wrong)?;
+    }
+    let columns = header.needed("ncols", "ncols 100").map_err(wrong)? as u64;
+    let rows = header.needed("nrows", "nrows 100").map_err(wrong)? as u64;
+    let cell = header.cell().map_err(wrong)?;
+    let corner = |axis| header.corner(axis, cell[axis]);
+    let corner = DVec2::new(corner(0).map_err(wrong)?, corner(1).map_err(wrong)?);
+    let count = cells(columns, rows).map_err(wrong)?;
+    // A value takes a digit and a space; the last one needs no space.
+    let needed = 2 * count as u64 - 1;
+    if bytes < needed {
+        let problem = RasterError::TooShort { columns, rows, needed, found: bytes };
+        return Err(wrong(problem));
+    }
+    let no_data = header.get("nodata_value");
+    let (columns, rows) = (columns as usize, rows as usize);
+    let mut values = Vec::with_capacity(count);
+    let mut take = |line: usize, word: &str| {
+        let value: f64 = word
+            .parse()
+            .map_err(|_| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
+        if values.len() == count {
+            return Err(wrong(RasterError::Long { line, columns, rows }));
+        }
+        values.push(if is_no_data(value, no_data) { f64::NAN } else { value });
+        Ok(())
+    };
+    if let Some(first) = first {
+        take(words.line, &first)?;
+    }
+    while let Some((line, word)) = words.next().map_err(unreadable)? {
+        take(line, word)?;
+    }
+    if values.len() < count {
+        let found = values.len();
+        return Err(wrong(RasterError::Short { columns, rows, found }));
+    }
+    let place = Some(Place { corner, cell, unit: Unit::Unknown, projection: None });
+    Raster { columns, rows, values, place, class_names: Vec::new() }.checked().map_err(wrong)
+}
