@@ -8,7 +8,7 @@ use crate::components::{
     Cone, Directions, ImageMeasure, Layers, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
     System, View, VirtualPlane,
 };
-use crate::document::{self, Diagnostic, Sun, Terrain, Until, Views};
+use crate::document::{self, Diagnostic, Sun, Until, Views};
 
 impl Spawner<'_> {
     /// Spawns the sensors.
@@ -86,9 +86,8 @@ impl Spawner<'_> {
 
     /// A virtual plane; what its author left out is the terrain's.
     pub(super) fn plane(&self, plane: Option<&document::VirtualPlane>) -> Option<VirtualPlane> {
-        let Terrain::Plane { size_m, corner_m, .. } = &self.scene.terrain;
-        let size = DVec2::from(*size_m);
-        let middle = DVec2::from(*corner_m) + 0.5 * size;
+        let (corner, size) = self.rectangle;
+        let middle = corner + 0.5 * size;
         plane.map(|plane| VirtualPlane {
             center: plane.center_m.map_or(middle, DVec2::from),
             size: plane.size_m.map_or(size, DVec2::from),

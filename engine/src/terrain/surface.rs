@@ -41,8 +41,7 @@ impl Surface {
         // One scale for height and extent keeps the boxes of the ray engine's tree in proportion.
         let unit = size.max_element();
         let scale = size.extend(unit);
-        let vertices =
-            used.iter().map(|v| ((*v - DVec3::Z * base) / scale).as_vec3()).map(Vec3::from);
+        let vertices = used.iter().map(|v| ((*v - DVec3::Z * base) / scale).as_vec3());
         Self { corner, size, base, unit, vertices: vertices.collect(), triangles }
     }
 
@@ -63,7 +62,8 @@ impl Surface {
     /// Walls below all four sides, as a part of its own: where an isolated ground is cut out of the
     /// earth. None if it is level.
     fn add_cuts(&mut self, part: u16) {
-        if self.vertices.iter().all(|v| v.z == self.vertices[0].z) {
+        // The lowest ground is zero.
+        if self.vertices.iter().all(|v| v.z <= 0.0) {
             return;
         }
         let sides = [(0, 0.0), (0, 1.0), (1, 0.0), (1, 1.0)];

@@ -243,7 +243,7 @@ fn no_ray_gets_under_a_periodic_ground() {
         // Every fourth starts right over a side or a corner.
         let side = |draw: u64| {
             let at = random.uniform(draw);
-            if random.bits(draw + 2) % 4 == 0 { at.round() } else { at }
+            if random.bits(draw + 2).is_multiple_of(4) { at.round() } else { at }
         };
         let plan = patch.corner + patch.size * DVec2::new(side(0), side(1));
         let (azimuth, down) = (random.uniform(4) * std::f64::consts::TAU, random.uniform(5));

@@ -105,7 +105,7 @@ impl<'a> Insertion<'a> {
 
     /// A border as edges that stay within the tolerance of the bilinear surface.
     fn add_border(&mut self, [from, to]: [DVec2; 2]) {
-        let axis = usize::from(from.x == to.x);
+        let axis = usize::from(to.y > from.y);
         let points = if axis == 0 { &self.grid.xs } else { &self.grid.ys };
         let first = points.partition_point(|&p| p <= from[axis]);
         let end = points.partition_point(|&p| p < to[axis]);
@@ -243,10 +243,10 @@ fn span(corners: &[DVec3; 3], y: f64) -> Option<(f64, f64)> {
     };
     for i in 0..3 {
         let (p, q) = (corners[i], corners[(i + 1) % 3]);
-        if p.y == y {
+        if (p.y - y).abs() <= 0.0 {
             add(p.x);
         }
-        if (p.y < y) != (q.y < y) && p.y != q.y {
+        if (p.y < y) != (q.y < y) {
             // Clamped, so that rounding does not reach beyond the triangle.
             let x = p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y));
             add(x.clamp(p.x.min(q.x), p.x.max(q.x)));

@@ -198,8 +198,8 @@ impl<'a> Packet<'a> {
                 return;
             };
             if stage.is_cut(&hit) {
-                rays += show(Event::Buried { weight: &weight });
-                break;
+                *rays += show(Event::Buried { weight });
+                return;
             }
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;

@@ -50,6 +50,11 @@ impl<'a> Glow<'a> {
         loop {
             packet.rays += 1;
             let Some(hit) = stage.geometry.closest(&line) else { return };
+            if stage.is_cut(&hit) {
+                // The line crosses more of the ground beyond it.
+                line = hit.leave(line.direction);
+                continue;
+            }
             let (black, rays) = self.thermal.black_body(stage, &hit, sampler);
             packet.rays += rays;
             let bsdf = &stage.surface(&hit).bsdf;

@@ -156,7 +156,7 @@ pub(super) fn read(path: &Path) -> Result<Raster, AssetError> {
     let mut take = |line: usize, word: &str| {
         let value: f64 = word
             .parse()
-            .map_err(|_| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
+            .map_err(|_invalid| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
         if values.len() == count {
             return Err(wrong(RasterError::Long { line, columns, rows }));
         }

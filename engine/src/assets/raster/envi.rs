@@ -52,7 +52,7 @@ impl Header {
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let mut bytes = Vec::new();
         let read = File::open(path).and_then(|f| f.take(LONGEST_HEADER).read_to_end(&mut bytes));
-        read.map_err(|_| RasterError::NoHeader(name.clone()))?;
+        read.map_err(|_unreadable| RasterError::NoHeader(name.clone()))?;
         let text = String::from_utf8_lossy(&bytes);
         let mut entries = Vec::new();
         let mut lines = text.lines().skip(1);
@@ -82,7 +82,7 @@ impl Header {
     /// A whole number; the default where nothing is written.
     fn whole(&self, key: &str, default: Option<u64>) -> Result<u64, RasterError> {
         match (self.get(key), default) {
-            (Some(text), _) => text.parse().map_err(|_| {
+            (Some(text), _) => text.parse().map_err(|_invalid| {
                 let found = excerpt(text);
                 self.error(format!("says `{key} = {found}`; write a whole number"))
             }),
@@ -161,8 +161,8 @@ pub(super) fn read(named: &Path, header_path: &Path) -> Result<Raster, RasterErr
         .checked_mul(size)
         .and_then(|bytes| bytes.checked_mul(bands))
         .and_then(|bytes| bytes.checked_add(offset));
-    let mut values_file =
-        File::open(&file).map_err(|_| RasterError::NoValues(file.display().to_string()))?;
+    let mut values_file = File::open(&file)
+        .map_err(|_unreadable| RasterError::NoValues(file.display().to_string()))?;
     let found = length(&values_file);
     if needed.is_none_or(|needed| needed > found) {
         let needed = needed.unwrap_or(u64::MAX);
@@ -181,7 +181,7 @@ pub(super) fn read(named: &Path, header_path: &Path) -> Result<Raster, RasterErr
     };
     let no_data = match header.get("data ignore value") {
         None => None,
-        Some(text) => Some(text.parse::<f64>().map_err(|_| {
+        Some(text) => Some(text.parse::<f64>().map_err(|_invalid| {
             let found = excerpt(text);
             header.error(format!("says `data ignore value = {found}`; write a number"))
         })?),

@@ -1,9 +1,10 @@
-//! GeoTIFF: TIFF with where it lies. Source: OGC GeoTIFF 1.1 (OGC 19-008r4).
+//! `GeoTIFF`: TIFF with where it lies. Source: OGC `GeoTIFF` 1.1 (OGC 19-008r4).
 
 use std::fs::File;
 use std::io::BufReader;
 
 use glam::DVec2;
+use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
@@ -11,13 +12,14 @@ use super::{MOST_CELLS, Place, Projection, Raster, RasterError, Unit, cells, is_
 
 type Tiff = Decoder<BufReader<File>>;
 
-/// GeoKeys, by their numbers.
+/// `GeoKeys`, by their numbers.
 const MODEL_TYPE: u16 = 1024;
 const RASTER_TYPE: u16 = 1025;
 const PROJECTED_CRS: u16 = 3072;
 const LINEAR_UNIT: u16 = 3076;
 
-fn wrong(error: impl ToString) -> RasterError {
+#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` hands over")]
+fn wrong(error: TiffError) -> RasterError {
     RasterError::Tiff(error.to_string())
 }
 

@@ -1,4 +1,4 @@
-//! Rasters: ESRI ASCII grids, ENVI files and GeoTIFF.
+//! Rasters: ESRI ASCII grids, ENVI files and `GeoTIFF`.
 
 mod ascii;
 mod envi;
@@ -107,12 +107,15 @@ impl Raster {
             let (column, row) = (index % self.columns, index / self.columns);
             return Err(RasterError::Infinite { column, row });
         }
-        if let Some(Place { cell, corner, .. }) = &self.place {
-            if !(cell.is_finite() && corner.is_finite() && cell.min_element() > 0.0) {
-                return Err(RasterError::BadCell { width: cell.x, height: cell.y });
+        let place = self.place.as_ref().map(|place| (place.corner, place.cell));
+        match place {
+            Some((corner, cell))
+                if !(cell.is_finite() && corner.is_finite() && cell.min_element() > 0.0) =>
+            {
+                Err(RasterError::BadCell { width: cell.x, height: cell.y })
             }
+            _ => Ok(self),
         }
-        Ok(self)
     }
 }
 
@@ -154,7 +157,7 @@ fn cells(columns: u64, rows: u64) -> Result<usize, RasterError> {
 
 /// Whether a value stands for no data: programs round the largest numbers when they write them.
 fn is_no_data(value: f64, no_data: Option<f64>) -> bool {
-    value.is_nan() || no_data.is_some_and(|no| value == no || (value - no).abs() <= 2e-6 * no.abs())
+    value.is_nan() || no_data.is_some_and(|no| (value - no).abs() <= 2e-6 * no.abs())
 }
 
 fn length(file: &File) -> u64 {

@@ -179,7 +179,7 @@ fn a_broken_envi_header_is_one_clear_error() {
     }
 }
 
-/// A GeoTIFF of 3 x 2 cells of 10 m whose north-west corner (or first centre) is the tie point.
+/// A `GeoTIFF` of 3 x 2 cells of 10 m whose north-west corner (or first centre) is the tie point.
 fn geotiff(path: &Path, raster_type: u16, model_type: u16) {
     let mut file = fs::File::create(path).unwrap();
     let mut tiff = TiffEncoder::new(&mut file).unwrap();

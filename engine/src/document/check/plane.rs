@@ -24,7 +24,10 @@ pub(super) fn check_plane(
     if !report.is_whole("terrain") {
         return;
     }
-    let Terrain::Plane { size_m: terrain, corner_m, height_m: ground, .. } = &scene.terrain;
+    let Terrain::Plane { size_m: terrain, corner_m, height_m: ground, .. } = &scene.terrain else {
+        // Where other terrain lies is known only when its file is read.
+        return report.finite(&format!("{path}.height_m"), height_m.as_slice());
+    };
     if let Some(height) = height_m
         && !(*height >= *ground && height.is_finite())
     {

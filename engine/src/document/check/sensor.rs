@@ -135,9 +135,10 @@ fn check_photon_measure(
         PhotonMeasure::Fluxes { pixel_m, heights_m } => {
             report.above_zero(&format!("{path}.pixel_m"), *pixel_m);
             report.finite(&format!("{path}.heights_m"), heights_m);
-            if let Terrain::Plane { size_m, .. } = &scene.terrain {
-                let problem = check_maps(path, measure, scene.bands.len(), *size_m);
-                problem.into_iter().for_each(|problem| report.push(problem));
+            if let Terrain::Plane { size_m, .. } = &scene.terrain
+                && let Some(problem) = check_maps(path, measure, scene.bands.len(), *size_m)
+            {
+                report.push(problem);
             }
         }
     }

@@ -21,7 +21,7 @@ choice! {
             /// Height, m.
             height_m: f64 = 0.0,
         },
-        /// Heights from a file: ESRI ASCII grid, ENVI or GeoTIFF. It lies where the file says, less
+        /// Heights from a file: ESRI ASCII grid, ENVI or `GeoTIFF`. It lies where the file says, less
         /// the frame's origin.
         Raster {
             /// Path, relative to the scene file.
