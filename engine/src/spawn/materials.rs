@@ -23,9 +23,10 @@ impl Spawner<'_> {
         id
     }
 
-    /// Spawns the materials that the terrain and the parts of used meshes (`used`) wear. Others are looked at
-    /// as far as that takes no file: what is wrong with them should not wait until they are used.
-    pub(super) fn materials(&mut self, used: BTreeSet<MaterialId>, world: &mut World) {
+    /// Spawns the materials that the terrain and the parts of used meshes wear (`used`). Others are
+    /// looked at as far as that takes no file: what is wrong with them should not wait until they are
+    /// used.
+    pub(super) fn materials(&mut self, used: &BTreeSet<MaterialId>, world: &mut World) {
         let scene = self.scene;
         for (index, (name, material)) in scene.materials.iter().enumerate() {
             let path = format!("materials.{name}");

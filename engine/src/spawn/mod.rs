@@ -137,12 +137,12 @@ impl Spawner<'_> {
             .iter()
             .flat_map(|materials| materials.0.iter().copied())
             .collect();
-        for patch in world.query::<&TerrainPatch>().iter() {
+        for patch in &mut world.query::<&TerrainPatch>() {
             worn.extend(patch.materials.0.iter().copied());
             self.rectangle = (patch.corner, patch.size);
             self.check_flux_maps(patch.size);
         }
-        self.materials(worn, &mut world);
+        self.materials(&worn, &mut world);
         self.light(&mut world);
         self.emission(&mut world);
         self.sensors(&mut world);
