@@ -31,6 +31,8 @@ pub(crate) enum Command {
     Expand(Scene),
     /// Lay scene files out evenly; values and comments stay as they are
     Fmt(Fmt),
+    /// Print a JSON schema of the scene language: every key, described
+    Schema,
 }
 
 #[derive(Args, Debug)]

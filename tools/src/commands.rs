@@ -21,6 +21,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Check(scene) => check(scene),
         Command::Expand(scene) => expand(scene),
         Command::Fmt(arguments) => fmt(arguments),
+        Command::Schema => print(&document::json_schema()),
         Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
     }
 }

@@ -4,6 +4,7 @@
 mod schema;
 mod check;
 mod decode;
+mod describe;
 mod diagnostic;
 mod encode;
 mod expand;
@@ -20,6 +21,7 @@ mod syntax;
 pub use check::check;
 pub(crate) use check::check_maps;
 pub(crate) use diagnostic::suggestion;
+pub use describe::json_schema;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
 pub use format::{format, format_file};
 pub use read::{Options, ReadError, Reading, read_file, read_text};

@@ -26,6 +26,19 @@ macro_rules! record {
                 ])
             }
 
+            fn schema(book: &mut crate::document::describe::Book) -> serde_json::Value {
+                use crate::document::describe::{doc, record};
+                book.describe(stringify!($name), |book| record(
+                    &doc(&[$(stringify!($meta)),*]),
+                    vec![$((
+                        stringify!($field),
+                        doc(&[$(stringify!($field_meta)),*]),
+                        <$type>::schema(book),
+                        is_required!($($default)?),
+                    )),*],
+                ))
+            }
+
             fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
                 match Fields::of_record(node, stringify!($name), $kind, Self::KEYS) {
                     Some(fields) => {
@@ -86,6 +99,23 @@ macro_rules! choice {
                 })*)
             }
 
+            fn schema(book: &mut crate::document::describe::Book) -> serde_json::Value {
+                use crate::document::describe::{doc, variant};
+                book.describe(stringify!($name), |book| {
+                    let variants = vec![$(variant(
+                        stringify!($variant),
+                        &doc(&[$(stringify!($variant_meta)),*]),
+                        schema_of_variant!(book $(($tuple))? $({ $(
+                            $(#[$field_meta])* $field: $type $(= $default)?
+                        ),* })?),
+                    )),*];
+                    serde_json::json!({
+                        "description": doc(&[$(stringify!($meta)),*]),
+                        "anyOf": variants,
+                    })
+                })
+            }
+
             fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
                 let Some(written) = Variant::of(node) else { return reader.mismatch(node) };
                 match written.name {
@@ -116,6 +146,33 @@ macro_rules! choice {
                 }
             }
         }
+    };
+}
+
+macro_rules! is_required {
+    () => {
+        true
+    };
+    ($default:expr) => {
+        false
+    };
+}
+
+macro_rules! schema_of_variant {
+    ($book:ident) => {{
+        let _: &mut _ = $book;
+        None
+    }};
+    ($book:ident ($tuple:ty)) => {
+        Some(<$tuple>::schema($book))
+    };
+    ($book:ident { $($(#[$meta:meta])* $field:ident: $type:ty $(= $default:expr)?),* }) => {
+        Some(crate::document::describe::record("", vec![$((
+            stringify!($field),
+            doc(&[$(stringify!($meta)),*]),
+            <$type>::schema($book),
+            is_required!($($default)?),
+        )),*]))
     };
 }
 

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 
 pub(super) use keys::{Fields, Variant, example_of_keys};
 
+use super::describe::Book;
 use super::diagnostic::{Diagnostic, Place};
 use super::source::Source;
 use super::syntax::{Node, Span, Step, Value, path_of};
@@ -30,6 +31,9 @@ pub(super) trait Decode: Sized {
 
     /// How one is written.
     fn example() -> String;
+
+    /// What it looks like in JSON.
+    fn schema(book: &mut Book) -> serde_json::Value;
 
     /// The value; where it cannot be read, the reader is told and the value is a placeholder.
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self;

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use indexmap::IndexMap;
+use serde_json::json;
 
+use super::super::describe::Book;
 use super::super::syntax::{Node, Step, Value};
 use super::{Decode, Reader};
 
@@ -14,6 +16,10 @@ impl Decode for f64 {
 
     fn example() -> String {
         "1.0".to_owned()
+    }
+
+    fn schema(_: &mut Book) -> serde_json::Value {
+        json!({ "anyOf": [{ "type": "number" }, { "type": "string", "pattern": "^=" }] })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
@@ -55,7 +61,11 @@ macro_rules! decode_integer {
                 "1".to_owned()
             }
 
-            fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+            fn schema(_: &mut Book) -> serde_json::Value {
+            json!({ "anyOf": [{ "type": "integer", "minimum": 0 }, { "type": "string", "pattern": "^=" }] })
+        }
+
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
                 match node.value {
                     Value::Integer { negative, magnitude } if !negative || magnitude == 0 => {
                         Self::try_from(magnitude).unwrap_or_else(|_out_of_range| {
@@ -102,6 +112,10 @@ impl Decode for bool {
         "true".to_owned()
     }
 
+    fn schema(_: &mut Book) -> serde_json::Value {
+        json!({ "type": "boolean" })
+    }
+
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
         match node.value {
             Value::Bool(value) => value,
@@ -121,6 +135,10 @@ impl Decode for String {
 
     fn example() -> Self {
         "\"name\"".to_owned()
+    }
+
+    fn schema(_: &mut Book) -> serde_json::Value {
+        json!({ "type": "string" })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
@@ -154,6 +172,10 @@ impl<T: Decode> Decode for Option<T> {
         T::example()
     }
 
+    fn schema(book: &mut Book) -> serde_json::Value {
+        json!({ "anyOf": [T::schema(book), { "const": "None" }] })
+    }
+
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
         if let Value::Named(named) = &node.value {
             match (named.name.as_str(), named.body.as_ref().map(|body| &body.value)) {
@@ -181,6 +203,10 @@ impl<T: Decode> Decode for Vec<T> {
         format!("[{}]", T::example())
     }
 
+    fn schema(book: &mut Book) -> serde_json::Value {
+        json!({ "type": "array", "items": T::schema(book) })
+    }
+
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
         let Value::List(items) = &node.value else { return reader.mismatch(node) };
         let read = |(index, item)| reader.within(Step::Index(index), |r| T::decode(item, r));
@@ -199,6 +225,10 @@ impl<T: Decode> Decode for IndexMap<String, T> {
 
     fn example() -> String {
         format!("{{ \"name\": {} }}", T::example())
+    }
+
+    fn schema(book: &mut Book) -> serde_json::Value {
+        json!({ "type": "object", "additionalProperties": T::schema(book) })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
@@ -233,7 +263,16 @@ macro_rules! decode_tuple {
                 format!("({})", [$($type::example()),*].join(", "))
             }
 
-            fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+            fn schema(book: &mut Book) -> serde_json::Value {
+            json!({
+                    "type": "array",
+                    "prefixItems": [$($type::schema(book)),*],
+                    "minItems": $count,
+                    "maxItems": $count,
+                })
+        }
+
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
                 match &node.value {
                     Value::Tuple(items) if items.len() == $count => {
                         ($(reader.within(

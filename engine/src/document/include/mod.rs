@@ -6,6 +6,9 @@
 
 mod names;
 
+#[cfg(test)]
+pub(super) use names::is_reference;
+
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 

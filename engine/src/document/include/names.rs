@@ -12,6 +12,12 @@ const FILES: [&str; 1] = ["file"];
 /// Variants whose string is a name of the scene's own definitions.
 const NAMING_VARIANTS: [&str; 1] = ["Named"];
 
+/// Whether the strings of a key are names or paths.
+#[cfg(test)]
+pub(in super::super) fn is_reference(key: &str) -> bool {
+    role(key) != Role::Plain || NAMING_VARIANTS.contains(&key)
+}
+
 /// What a string stands for.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
-use super::{Map, Scene};
+use super::{Band, Map, Scene, Terrain};
 
 record! {
     /// A file whose definitions are part of the scene, by names that start with the include's own:
@@ -31,6 +31,12 @@ choice! {
 }
 
 impl Scene {
+    /// Bare ground that nothing lights and nothing measures, to which everything else can be added.
+    #[must_use]
+    pub fn new(bands: Vec<Band>, terrain: Terrain) -> Self {
+        Self { format: 1, bands, terrain, ..Self::placeholder() }
+    }
+
     /// The scene without what has been settled: parameters, variants and sweep. It gives the same
     /// results, and it is what `sunfleck expand` prints.
     #[must_use]

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
+use super::super::describe::Book;
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::{Node, Value};
 use super::camera::{Cover, FisheyeProjection, Look, Picture};
@@ -261,6 +262,10 @@ impl Decode for Layers {
 
     fn example() -> String {
         "1.0".to_owned()
+    }
+
+    fn schema(book: &mut Book) -> serde_json::Value {
+        serde_json::json!({ "anyOf": [f64::schema(book), Vec::<f64>::schema(book)] })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {

@@ -1,0 +1,201 @@
+//! The scene language as a JSON schema, from the same declarations that read and write it.
+
+use serde_json::{Map, Value, json};
+
+use super::decode::Decode;
+use super::scene::Scene;
+
+/// Descriptions of the language's types, each once.
+#[derive(Debug, Default)]
+pub(super) struct Book {
+    types: Map<String, Value>,
+}
+
+impl Book {
+    /// A reference to a type, which is described where it is first met.
+    pub(super) fn describe(&mut self, name: &str, of: impl FnOnce(&mut Self) -> Value) -> Value {
+        if !self.types.contains_key(name) {
+            // Types may hold themselves.
+            self.types.insert(name.to_owned(), Value::Null);
+            let described = of(self);
+            self.types.insert(name.to_owned(), described);
+        }
+        json!({ "$ref": format!("#/$defs/{name}") })
+    }
+}
+
+/// JSON schema (draft 2020-12) of scene files: every key with its description, which keys must be
+/// written, which are known.
+///
+/// JSON has fewer shapes than RON. A variant `Obj(file: ..)` is `{ "Obj": { "file": .. } }`, `Periodic`
+/// alone a string, `(1, 2)` an array; a string `"=expr"` may stand for any number.
+#[must_use]
+pub fn json_schema() -> String {
+    let mut book = Book::default();
+    let root = Scene::schema(&mut book);
+    // A path alone will do.
+    if let Some(include) = book.types.get_mut("Include") {
+        *include = json!({ "anyOf": [include.take(), { "type": "string" }] });
+    }
+    let schema = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "sunfleck scene, format 1",
+        "$ref": root["$ref"],
+        "$defs": book.types,
+    });
+    format!("{schema:#}\n")
+}
+
+/// A key of a record: name, doc attributes, schema, and whether it must be written.
+pub(super) type Key = (&'static str, String, Value, bool);
+
+/// A record, or the keys of a variant.
+pub(super) fn record(doc: &str, keys: Vec<Key>) -> Value {
+    let required: Vec<_> = keys.iter().filter(|key| key.3).map(|key| key.0).collect();
+    let properties: Map<String, Value> = keys
+        .into_iter()
+        .map(|(name, doc, schema, _)| (name.to_owned(), with_description(schema, &doc)))
+        .collect();
+    let mut schema = json!({
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    });
+    if !doc.is_empty() {
+        schema["description"] = doc.into();
+    }
+    schema
+}
+
+/// A variant: its name alone, or its name with what it holds.
+pub(super) fn variant(name: &str, doc: &str, holds: Option<Value>) -> Value {
+    let Some(holds) = holds else {
+        return with_description(json!({ "const": name }), doc);
+    };
+    let may_be_bare = holds["required"].as_array().is_some_and(Vec::is_empty);
+    let object = json!({
+        "type": "object",
+        "properties": { name: holds },
+        "required": [name],
+        "additionalProperties": false,
+    });
+    let schema = if may_be_bare { json!({ "anyOf": [object, { "const": name }] }) } else { object };
+    with_description(schema, doc)
+}
+
+fn with_description(mut schema: Value, doc: &str) -> Value {
+    if let Some(keys) = schema.as_object_mut().filter(|_| !doc.is_empty()) {
+        keys.insert("description".to_owned(), doc.into());
+    }
+    schema
+}
+
+/// The text of doc comments, as `stringify!` shows their attributes.
+pub(super) fn doc(attributes: &[&str]) -> String {
+    let lines = attributes.iter().filter_map(|attribute| {
+        let text = attribute.strip_prefix("doc")?;
+        let (start, end) = (text.find('"')? + 1, text.rfind('"')?);
+        text.get(start..end).map(str::trim)
+    });
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use serde_json::Value;
+
+    use super::super::include;
+
+    /// Keys whose strings are what they say: no names of definitions, no paths.
+    const PLAIN: [&str; 9] =
+        ["blue", "columns", "green", "name", "red", "title", "value", "variant", "wavelength"];
+
+    fn holds_text(schema: &Value) -> bool {
+        match schema {
+            Value::Object(keys) => {
+                let is_text = keys.get("type").is_some_and(|kind| kind == "string");
+                // With a pattern it is a formula.
+                is_text && !keys.contains_key("pattern")
+                    || ["items", "additionalProperties", "prefixItems", "anyOf"]
+                        .iter()
+                        .any(|key| keys.get(*key).is_some_and(holds_text))
+            }
+            Value::Array(items) => items.iter().any(holds_text),
+            _ => false,
+        }
+    }
+
+    fn keys_with_text<'a>(schema: &'a Value, found: &mut BTreeSet<&'a str>) {
+        match schema {
+            Value::Object(keys) => {
+                if let Some(Value::Object(properties)) = keys.get("properties") {
+                    for (name, schema) in properties {
+                        if holds_text(schema) {
+                            found.insert(name);
+                        }
+                    }
+                }
+                for schema in keys.values() {
+                    keys_with_text(schema, found);
+                }
+            }
+            Value::Array(items) => {
+                for schema in items {
+                    keys_with_text(schema, found);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// A file that is included has its names and paths qualified: a new key with a string has to say
+    /// whether it is one.
+    #[test]
+    fn every_string_of_the_language_is_known_as_a_name_a_path_or_plain() {
+        let schema: Value = serde_json::from_str(&super::json_schema()).expect("JSON");
+        let mut found = BTreeSet::new();
+        keys_with_text(&schema, &mut found);
+        for key in &found {
+            let known = include::is_reference(key) || PLAIN.contains(key);
+            assert!(known, "`{key}`: is it a name or a path? say so in `include/names.rs`");
+        }
+        assert!(found.contains("file") && found.contains("parts"), "{found:?}");
+    }
+
+    #[test]
+    fn every_reference_of_the_schema_leads_somewhere() {
+        fn refs<'a>(schema: &'a Value, found: &mut BTreeSet<&'a str>) {
+            match schema {
+                Value::Object(keys) => {
+                    if let Some(Value::String(reference)) = keys.get("$ref") {
+                        found.insert(reference);
+                    }
+                    for schema in keys.values() {
+                        refs(schema, found);
+                    }
+                }
+                Value::Array(items) => {
+                    for schema in items {
+                        refs(schema, found);
+                    }
+                }
+                _ => {}
+            }
+        }
+        let schema: Value = serde_json::from_str(&super::json_schema()).expect("JSON");
+        let mut found = BTreeSet::new();
+        refs(&schema, &mut found);
+        assert!(found.len() > 20, "{found:?}");
+        for reference in found {
+            let at = schema.pointer(reference.trim_start_matches('#')).expect(reference);
+            assert!(at.is_object(), "{reference}");
+        }
+        let format = &schema["$defs"]["Scene"]["properties"]["format"];
+        assert_eq!(format["description"], "Version of the language; this is version 1.");
+        let required = &schema["$defs"]["Scene"]["required"];
+        assert_eq!(required, &serde_json::json!(["format", "bands", "terrain", "sensors"]));
+    }
+}
