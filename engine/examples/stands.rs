@@ -62,6 +62,8 @@ fn stand(leaf_area_m2: f64, trees_a_side: u32) -> Result<Scene, Box<dyn std::err
         at_m: (0..trees_a_side).flat_map(places).collect(),
         yaw_deg: Vec::new(),
         scale: Vec::new(),
+        on_terrain: true,
+        name: None,
     });
     // What has defaults is shortest as text.
     let text = "(format: 1, bands: [(name: \"nir\", center_nm: 865.0)], \

@@ -20,8 +20,8 @@ mod syntax;
 
 pub use check::check;
 pub(crate) use check::check_maps;
-pub(crate) use diagnostic::suggestion;
 pub use describe::json_schema;
+pub(crate) use diagnostic::suggestion;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
 pub use format::{format, format_file};
 pub use read::{Options, ReadError, Reading, read_file, read_text};

@@ -281,3 +281,22 @@ fn a_device_that_never_ends_is_no_file() {
     let error = read_file(Path::new("/dev/zero"), &Options::default()).expect_err("no scene");
     assert!(error.to_string().contains("more than the"), "{error}");
 }
+
+#[test]
+fn patterns_of_an_included_file_are_of_its_own_names() {
+    let plot = r#"Library(
+        materials: { "leaf": Lambertian(reflectance: Constant(0.2)) },
+        meshes: { "oak": Obj(file: "oak.obj", up: Z, unit_m: 1.0, material: "leaf") },
+        terrain: Mesh(mesh: "oak"),
+        instances: [List(of: "oak", at_m: [(1.0, 1.0, 0.0)], name: "row")],
+        hide: ["oak", "row*/o*"],
+    )"#;
+    let stand = r#"Scene(
+        format: 1, include: { "plot": "plot.ron" },
+        bands: [(name: "red", center_nm: 660.0)], sun: (zenith_deg: 30.0), sensors: { "albedo": Photons },
+    )"#;
+    let folder = Folder::with(&[("plot.ron", plot), ("stand.ron", stand)]);
+    let scene = folder.sound(&Options::default());
+    assert_eq!(scene.hide, ["plot.oak", "plot.row*/plot.o*"]);
+    assert!(matches!(&scene.terrain, Terrain::Mesh { mesh, .. } if mesh == "plot.oak"));
+}

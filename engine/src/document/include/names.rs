@@ -4,7 +4,11 @@ use super::super::syntax::{Node, Value};
 
 /// Keys whose strings are names of the scene's own definitions: alone, in a list, as the values of
 /// a map, or, where those are no strings, as its keys.
-const NAMES: [&str; 5] = ["leaf_material", "material", "of", "parts", "wood_material"];
+const NAMES: [&str; 7] =
+    ["classes", "leaf_material", "material", "mesh", "of", "parts", "wood_material"];
+
+/// Keys whose strings are patterns of names, one before each slash and one at the end.
+const PATTERNS: [&str; 2] = ["hide", "select"];
 
 /// Keys whose strings are paths of files.
 const FILES: [&str; 1] = ["file"];
@@ -23,6 +27,7 @@ pub(in super::super) fn is_reference(key: &str) -> bool {
 enum Role {
     Plain,
     Name,
+    Pattern,
     File,
 }
 
@@ -71,6 +76,8 @@ pub(super) fn qualify(file: &mut Node, namespace: &str, folder: &str) {
 fn role(key: &str) -> Role {
     if NAMES.contains(&key) {
         Role::Name
+    } else if PATTERNS.contains(&key) {
+        Role::Pattern
     } else if FILES.contains(&key) {
         Role::File
     } else {
@@ -89,6 +96,10 @@ impl Qualify<'_> {
         match role {
             Role::Plain => {}
             Role::Name => text.insert_str(0, self.namespace),
+            Role::Pattern => {
+                let names = text.split('/').map(|name| format!("{}{name}", self.namespace));
+                *text = names.collect::<Vec<_>>().join("/");
+            }
             Role::File if std::path::Path::new(text.as_str()).is_absolute() => {}
             Role::File => text.insert_str(0, self.folder),
         }
