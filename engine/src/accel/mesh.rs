@@ -21,6 +21,10 @@ const FARTHEST: f32 = 1e9;
 
 const MOST_PRIMITIVES: usize = 1 << 29;
 
+/// Above this many primitives reinsertion tries half of the nodes: it is most of the time of a
+/// build, and the other half spares one visit in a hundred.
+const LARGE: usize = 1 << 20;
+
 /// Up to eight triangles or parallelograms.
 ///
 /// Corners are kept as the mesh has them, bit for bit, and not as edges: neighbours then agree on
@@ -107,7 +111,8 @@ impl MeshTree {
             (0..primitives.len()).into_par_iter().map(|p| primitives.one(p).bounds()).collect();
         let bounds = boxes.par_iter().copied().reduce(|| Box3::EMPTY, Box3::union);
         let reach = if boxes.is_empty() { 0.0 } else { bounds.reach() };
-        let plan = Plan { leaf: 8, leaf_cost: 0.6, pad: pad(reach), reinsertion: 1.0 };
+        let reinsertion = if boxes.len() > LARGE { 0.5 } else { 1.0 };
+        let plan = Plan { leaf: 8, leaf_cost: 0.6, pad: pad(reach), reinsertion };
         let (mut blocks, mut discs, mut seconds) = (Vec::new(), Vec::new(), Vec::new());
         let pairs = primitives.planar.iter().any(|&(_, second)| second.is_some());
         let is_disc = |p: u32| p >= primitives.planar.len() as u32;
