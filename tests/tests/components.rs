@@ -198,9 +198,18 @@ fn a_fisheye_tells_the_leaf_area_index_of_its_gaps() {
     let weights = [0.034, 0.104, 0.160, 0.218, 0.484];
     let five: f64 =
         rings.iter().zip(weights).map(|(cosine, weight)| 2.0 * half * cosine * weight).sum();
-    let gaps: Vec<_> =
-        (0..15).map(|ring| ((5.0 * f64::from(ring) + 2.5).to_radians(), 0.5, 0.0)).collect();
-    let (miller, _) = sunfleck::products::lai_miller(&gaps);
+    // Contacts are straight lines between rings of 5°, constant before the first and after the last.
+    let contact = |degrees: f64| {
+        let place = ((degrees - 2.5) / 5.0).clamp(0.0, 14.0);
+        let ring = |index: f64| half * (2.5 + 5.0 * index).to_radians().cos();
+        let share = place.fract();
+        (1.0 - share) * ring(place.floor()) + share * ring(place.ceil())
+    };
+    let step = 0.005_f64;
+    let miller: f64 = (0..18_000)
+        .map(|index| step * (f64::from(index) + 0.5))
+        .map(|degrees| 2.0 * contact(degrees) * degrees.to_radians().sin() * step.to_radians())
+        .sum();
     for sensor in ["up", "wide", "down"] {
         let beer = 2.0 * half * 57.5_f64.to_radians().cos();
         for (name, truth) in [("lai_beer", beer), ("lai_miller", miller), ("lai_2000", five)] {
