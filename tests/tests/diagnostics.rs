@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use sunfleck::run::{Options, Unwatched, run_file};
+use sunfleck::run::{Options, Unwatched, check_file, run_file};
 
 const SCENE: &str = r#"Scene(
     format: 1,
@@ -59,4 +59,62 @@ fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
             "6:41 (materials.soil.reflectance)"
         ]
     );
+}
+
+#[test]
+fn what_is_most_likely_not_meant_is_told() {
+    let text = r#"Scene(
+    format: 1,
+    bands: [(name: "red", center_nm: 660.0)],
+    materials: { "leaf": Lambertian(reflectance: Constant(0.5)) },
+    meshes: { "tree": Obj(file: "t.obj", up: Z, unit_m: 1.0, material: "leaf") },
+    terrain: Plane(size_m: (10.0, 20.0), material: "leaf"),
+    instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0), (11.0, 2.0, 0.0)])],
+    sun: (zenith_deg: 20.0),
+    sensors: {
+        "beside": Orthographic(size_px: (8, 8), extent_m: (4.0, 4.0), center_m: (5.0, 21.0)),
+        "wide": Orthographic(size_px: (8, 8), extent_m: (20.0, 20.0), azimuth_deg: 90.0),
+        "whole": Orthographic(size_px: (8, 8), extent_m: (10.0, 20.0)),
+    },
+)
+"#;
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let path = dir.path().join("scene.ron");
+    fs::write(dir.path().join("t.obj"), "g leaf\nv 0 0 0\nv 100 0 0\nv 0 0 850\nf 1 2 3\n")
+        .expect("a file");
+    let warnings = |text: &str| -> Vec<String> {
+        fs::write(&path, text).expect("a file");
+        let found = check_file(&path, &Options::default());
+        let found = found.unwrap_or_else(|failure| panic!("{failure}")).join("\n");
+        let found = found.replace(&format!("{}/", dir.path().display()), "");
+        // All but the quoted lines.
+        found
+            .lines()
+            .filter(|line| !line.contains('|'))
+            .map(|line| line.trim().to_owned())
+            .collect()
+    };
+    let expected = [
+        "warning: 1 of `tree` stand beside the ground",
+        "--> scene.ron:7:16 (instances)",
+        "= help: one stands at (11, 2), and the ground reaches from (0, 0) to (10, 20) m: make it \
+         larger, or move them",
+        "",
+        "warning: `tree` is 850 m large",
+        "--> scene.ron:5:23 (meshes.tree)",
+        "= help: if its file is in centimetres, write `unit_m: 0.01`; in millimetres, \
+         `unit_m: 0.001`",
+        "",
+        "warning: the middle of the image lies beside the ground",
+        "--> scene.ron:10:59 (sensors.beside.extent_m)",
+        "= help: the ground reaches from (0, 0) to (10, 20) m",
+        "",
+        "warning: 50.0 % of the image lies beside the ground",
+        "--> scene.ron:11:57 (sensors.wide.extent_m)",
+        "= help: the ground reaches from (0, 0) to (10, 20) m; what lies beside it holds no data",
+    ];
+    assert_eq!(warnings(text), expected);
+    // Without an end, the ground is everywhere.
+    let periodic = text.replace("terrain:", "boundary: Periodic, terrain:");
+    assert_eq!(warnings(&periodic), expected[4..7]);
 }

@@ -1,5 +1,6 @@
 //! Document and assets to entities; every error of the scene in one pass, each with its place.
 
+mod doubts;
 mod files;
 mod images;
 mod instances;
@@ -90,7 +91,9 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     let meshes = spawner.keep_placed(meshes, &placements);
     if let Some(ground) = &ground {
         spawner.check_standing(&placements, &meshes, ground);
+        spawner.doubt_places(&placements, &meshes, ground);
     }
+    spawner.doubt_sizes(&meshes);
     let of_geometry = spawner.notes();
     for (id, mesh) in meshes {
         world.spawn((SceneId(id), mesh.name, mesh.mesh, mesh.materials));
@@ -141,6 +144,7 @@ impl Spawner<'_> {
             worn.extend(patch.materials.0.iter().copied());
             self.rectangle = (patch.corner, patch.size);
             self.check_flux_maps(patch.size);
+            self.doubt_images();
         }
         self.materials(&worn, &mut world);
         self.light(&mut world);

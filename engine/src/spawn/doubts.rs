@@ -1,0 +1,121 @@
+//! What is lawful and most likely not meant: trees beside the ground, meshes in centimetres, images
+//! that look past the scene.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, Vec2Swizzles as _};
+
+use super::Spawner;
+use super::meshes::Prototype;
+use crate::components::Placement;
+use crate::document::{Cover, Diagnostic, Mesh, Sensor};
+use crate::terrain::Ground;
+
+/// No plant is larger, m.
+const TALLEST: f32 = 200.0;
+
+impl Spawner<'_> {
+    /// Warns of instances that stand beside the ground of an isolated scene.
+    pub(super) fn doubt_places(
+        &mut self,
+        placements: &[Placement],
+        meshes: &BTreeMap<u32, Prototype>,
+        ground: &Ground,
+    ) {
+        if self.is_periodic() {
+            return;
+        }
+        let (low, high) = (ground.corner(), ground.corner() + ground.size());
+        let mut beside: BTreeMap<u32, (usize, DVec2)> = BTreeMap::new();
+        for placement in placements {
+            let at = placement.position.truncate();
+            if at.cmplt(low).any() || at.cmpgt(high).any() {
+                beside.entry(placement.prototype.0).or_insert((0, at)).0 += 1;
+            }
+        }
+        for (prototype, (count, at)) in beside {
+            let Some(prototype) = meshes.get(&prototype) else { continue };
+            let message = format!("{count} of `{}` stand beside the ground", prototype.name.0);
+            let help = format!(
+                "one stands at ({}, {}), and the ground reaches from ({}, {}) to ({}, {}) m: make \
+                 it larger, or move them",
+                at.x, at.y, low.x, low.y, high.x, high.y
+            );
+            self.problems.push(Diagnostic::warning("instances", message).help(help));
+        }
+    }
+
+    /// Warns of meshes from files that are larger than any plant.
+    pub(super) fn doubt_sizes(&mut self, meshes: &BTreeMap<u32, Prototype>) {
+        for prototype in meshes.values() {
+            let name = &prototype.name.0;
+            let Some(Mesh::Obj { .. } | Mesh::Gltf { .. } | Mesh::Discs { .. }) =
+                self.scene.meshes.get(name.as_str())
+            else {
+                continue;
+            };
+            let Some((low, high)) = prototype.mesh.bounds() else { continue };
+            let size = (high - low).max_element();
+            if size > TALLEST {
+                let message = format!("`{name}` is {size:.0} m large");
+                let help = "if its file is in centimetres, write `unit_m: 0.01`; in millimetres, \
+                            `unit_m: 0.001`";
+                let path = format!("meshes.{name}");
+                self.problems.push(Diagnostic::warning(path, message).help(help));
+            }
+        }
+    }
+
+    /// Warns of images whose middle lies beside the ground of an isolated scene, and of nadir images
+    /// that reach beyond it.
+    pub(super) fn doubt_images(&mut self) {
+        if self.is_periodic() {
+            return;
+        }
+        let (corner, size) = self.rectangle;
+        let (low, high) = (corner, corner + size);
+        for (name, sensor) in &self.scene.sensors {
+            let Sensor::Orthographic {
+                extent_m: Some(extent),
+                cover: None::<Cover>,
+                center_m,
+                zenith_deg,
+                azimuth_deg,
+                ..
+            } = sensor
+            else {
+                continue;
+            };
+            let center = center_m.map_or(corner + 0.5 * size, DVec2::from);
+            let path = format!("sensors.{name}.extent_m");
+            let ground = format!(
+                "the ground reaches from ({}, {}) to ({}, {}) m",
+                low.x, low.y, high.x, high.y
+            );
+            if center.cmplt(low).any() || center.cmpgt(high).any() {
+                let message = "the middle of the image lies beside the ground";
+                let warning = Diagnostic::warning(path, message).help(ground);
+                self.problems.push(warning);
+                continue;
+            }
+            // Turned by anything else, or seen aslant, the image is no rectangle along the axes.
+            let quarters = azimuth_deg / 90.0;
+            if *zenith_deg != 0.0 || quarters.fract() != 0.0 {
+                continue;
+            }
+            let mut half = 0.5 * DVec2::from(*extent);
+            if quarters % 2.0 != 0.0 {
+                half = half.yx();
+            }
+            let seen = ((center + half).min(high) - (center - half).max(low)).max(DVec2::ZERO);
+            let beyond = 1.0 - (seen / (2.0 * half)).element_product();
+            // Not the rounding of the extent.
+            if beyond > 1e-9 {
+                let share = 100.0 * beyond;
+                let message = format!("{share:.1} % of the image lies beside the ground");
+                let help = format!("{ground}; what lies beside it holds no data");
+                self.problems.push(Diagnostic::warning(path, message).help(help));
+            }
+        }
+    }
+}
