@@ -4,6 +4,8 @@
 mod advice;
 #[path = "language/broken.rs"]
 mod broken;
+#[path = "language/crowns.rs"]
+mod crowns;
 #[path = "language/formatting.rs"]
 mod formatting;
 #[path = "language/hostile.rs"]

@@ -31,6 +31,7 @@ broken! {
     comment_never_closed
     components
     crown
+    crown_leaves
     directions
     formulas
     fractions

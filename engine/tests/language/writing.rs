@@ -3,23 +3,26 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Area, Axis, Band, BandSource, Boundary, Branches, Cover, CrownShape, Distribution,
-    FisheyeProjection, Frame, ImageMeasure, Instances, Layers, LeafAngle, LeafShape, Look, Map,
-    Material, Mesh, Options, Origin, PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky,
-    Spectrum, Stems, Sun, SunPosition, Sweep, System, Temperature, Terrain, ThermalSky, Transport,
-    Trunk, Until, Views, VirtualPlane, read_text,
+    Area, Axis, Band, BandSource, Boundary, Cover, Distribution, FisheyeProjection, Frame,
+    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, PhotonMeasure,
+    Picture, Roulette, Rule, Scene, Sensor, Sky, Spectrum, Stems, Sun, SunPosition, Sweep, System,
+    Temperature, Terrain, ThermalSky, Transport, Until, Views, VirtualPlane, read_text,
 };
 
-fn number() -> impl Strategy<Value = f64> {
+use crate::crowns::crown;
+
+pub(crate) fn number() -> impl Strategy<Value = f64> {
     use prop::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     prop_oneof![0.0..100.0_f64, POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO]
 }
 
-fn text() -> impl Strategy<Value = String> {
+pub(crate) fn text() -> impl Strategy<Value = String> {
     prop_oneof!["[a-z]{0,8}", "=[a-z]{0,8}", any::<String>()]
 }
 
-fn list<T: std::fmt::Debug>(of: impl Strategy<Value = T>) -> impl Strategy<Value = Vec<T>> {
+pub(crate) fn list<T: std::fmt::Debug>(
+    of: impl Strategy<Value = T>,
+) -> impl Strategy<Value = Vec<T>> {
     prop::collection::vec(of, 0..4)
 }
 
@@ -27,7 +30,9 @@ fn map<T: std::fmt::Debug>(of: impl Strategy<Value = T>) -> impl Strategy<Value 
     list((text(), of)).prop_map(IndexMap::from_iter)
 }
 
-fn option<T: std::fmt::Debug>(of: impl Strategy<Value = T>) -> impl Strategy<Value = Option<T>> {
+pub(crate) fn option<T: std::fmt::Debug>(
+    of: impl Strategy<Value = T>,
+) -> impl Strategy<Value = Option<T>> {
     prop::option::of(of)
 }
 
@@ -110,53 +115,6 @@ fn from_file() -> BoxedStrategy<Mesh> {
                 Mesh::Obj { file, up, unit_m, parts, material, origin }
             } else {
                 Mesh::Gltf { file, up, unit_m, parts, material, origin }
-            }
-        })
-        .boxed()
-}
-
-fn crown() -> BoxedStrategy<Mesh> {
-    let shape = (0..4, number(), number(), number()).prop_map(|(kind, a, b, c)| match kind {
-        0 => CrownShape::Ellipsoid { diameter_m: a, height_m: b },
-        1 => CrownShape::Cone { diameter_m: a, height_m: b },
-        2 => CrownShape::Cylinder { diameter_m: a, height_m: b },
-        _ => CrownShape::Box { size_m: (a, b, c) },
-    });
-    let angle = prop::sample::select(vec![
-        LeafAngle::Spherical,
-        LeafAngle::Uniform,
-        LeafAngle::Planophile,
-        LeafAngle::Erectophile,
-        LeafAngle::Plagiophile,
-        LeafAngle::Extremophile,
-    ]);
-    let leaf = (0..3, number(), number()).prop_map(|(kind, a, b)| match kind {
-        0 => LeafShape::Disc { radius_m: a },
-        1 => LeafShape::Square { side_m: a },
-        _ => LeafShape::Rhombus { length_m: a, width_m: b },
-    });
-    let trunk =
-        (number(), number(), number()).prop_map(|(height_m, diameter_m, tip_diameter_m)| Trunk {
-            height_m,
-            diameter_m,
-            tip_diameter_m,
-        });
-    let branches = (any::<u32>(), number(), number())
-        .prop_map(|(count, diameter_m, zenith_deg)| Branches { count, diameter_m, zenith_deg });
-    let wood = (option(trunk), option(branches), option(text()));
-    (shape, (number(), number()), angle, leaf, text(), wood, any::<u64>())
-        .prop_map(|(shape, (base_m, leaf_area_m2), leaf_angle, leaf, leaf_material, wood, seed)| {
-            Mesh::Crown {
-                shape,
-                base_m,
-                leaf_area_m2,
-                leaf_angle,
-                leaf,
-                leaf_material,
-                trunk: wood.0,
-                branches: wood.1,
-                wood_material: wood.2,
-                seed,
             }
         })
         .boxed()

@@ -36,4 +36,34 @@ pub enum CrownError {
     BadZenith { value: f64 },
     #[error("branches.count is {count}, more than {most}")]
     TooManyBranches { count: u32, most: u32 },
+    #[error("shape.widest_m is {value}; write a height from 0 to shape.height_m = {height}")]
+    BadWidest { value: f64, height: f64 },
+    #[error("leaf_angle.{what} is {value}; write a number from {least} to {most}")]
+    BadLeafAngle { what: &'static str, value: f64, least: f64, most: f64 },
+    #[error("leaf_angle needs either x or mean_deg, and not both")]
+    RatioOrMean,
+    #[error("leaf.needles is 0; a shoot has at least one needle")]
+    NoNeedles,
+    #[error("leaf.needle_angle_deg is {value}; write an angle from 0 (along the twig) to 90")]
+    BadNeedleAngle { value: f64 },
+    #[error("leaf_profile has {points} point(s); write at least two, from the lowest up")]
+    ShortProfile { points: usize },
+    #[error(
+        "leaf_profile[{index}] is ({height}, {leaves}); write a height in metres and an amount of \
+         leaves, 0 or above"
+    )]
+    BadProfile { index: usize, height: f64, leaves: f64 },
+    #[error("leaf_profile[{index}] is lower than the point before; write them from the lowest up")]
+    ProfileNotUpwards { index: usize },
+    #[error("leaf_profile has no leaves within the crown, from {base} to {top} m above the ground")]
+    ProfileBesideCrown { base: f64, top: f64 },
+    #[error("clumps.count is {count}; write a number from 1 to {most}")]
+    BadClumpCount { count: u32, most: u32 },
+    #[error("clumps.on_branches needs branches; give the crown branches, or leave it out")]
+    ClumpsWithoutBranches,
+    #[error(
+        "clumps.on_branches and a leaf_profile exclude each other: branches decide how high the \
+         clumps are; leave out one of the two"
+    )]
+    ClumpsWithProfile,
 }

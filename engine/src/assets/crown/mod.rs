@@ -1,7 +1,10 @@
 //! Trees and shrubs generated leaf by leaf.
 
+mod angles;
 mod error;
+mod heights;
 mod leaves;
+mod places;
 mod shape;
 mod stream;
 mod wood;
@@ -10,12 +13,20 @@ pub use error::CrownError;
 
 use std::ops::RangeInclusive;
 
+use angles::Normals;
+use places::Places;
+
 use super::AssetError;
 use crate::components::{Mesh, Part};
-use crate::document::{self, Branches, CrownShape, LeafAngle, LeafShape, Trunk};
+use crate::document::{
+    self, Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk,
+};
 
-/// Most leaves of one crown.
+/// Most leaves, or needles, of one crown.
 const MOST_LEAVES: f64 = 5e7;
+
+/// Most clumps of one crown.
+const MOST_CLUMPS: u32 = 10_000_000;
 
 /// Most branches of one crown.
 const MOST_BRANCHES: u32 = 1_000_000;
@@ -32,6 +43,10 @@ pub struct CrownSpec {
     pub base_m: f64,
     /// One-sided area of all leaves, m².
     pub leaf_area_m2: f64,
+    /// How leaf area changes with height.
+    pub leaf_profile: LeafProfile,
+    /// Clumps that leaves are gathered in, if any.
+    pub clumps: Option<Clumps>,
     /// Distribution of leaf inclinations.
     pub leaf_angle: LeafAngle,
     /// Shape and size of a leaf.
@@ -52,6 +67,8 @@ impl CrownSpec {
             shape,
             base_m,
             leaf_area_m2,
+            leaf_profile,
+            clumps,
             leaf_angle,
             leaf,
             trunk,
@@ -66,6 +83,8 @@ impl CrownSpec {
             shape: shape.clone(),
             base_m: *base_m,
             leaf_area_m2: *leaf_area_m2,
+            leaf_profile: leaf_profile.clone(),
+            clumps: clumps.clone(),
             leaf_angle: leaf_angle.clone(),
             leaf: leaf.clone(),
             trunk: trunk.clone(),
@@ -77,10 +96,12 @@ impl CrownSpec {
 
 /// A crown as a mesh with the parts `leaf` and `wood`, as far as it has them.
 ///
-/// Leaf centres are uniform in the volume of the outline; normals follow the leaf angle
-/// distribution with uniform azimuths, and half of the fronts face down. There are
-/// `round(leaf area / area of a leaf)` leaves, of a size adjusted so that their total area is
-/// `leaf_area_m2` (to f32 rounding). Squares and rhombi are two triangles each. Trunk and branches
+/// Leaf centres are uniform in the volume of the outline, or follow the profile in height and are
+/// uniform in each cross-section; clumps do so in place of leaves, where there are any, and leaves are
+/// uniform in what a clump shares with the outline. Normals follow the leaf angle distribution with
+/// uniform azimuths, and half of the fronts face down. There are `round(leaf area / area of a leaf)`
+/// leaves, of a size adjusted so that their total area is `leaf_area_m2` (to f32 rounding). Squares,
+/// rhombi and needles are two triangles each. Trunk and branches
 /// are tapered, closed prisms, their corners on the circles of the given diameters; branches start
 /// on the trunk's axis and end near the outline.
 ///
@@ -90,7 +111,8 @@ impl CrownSpec {
 /// [`AssetError::Crown`] for what cannot grow: see [`CrownError`].
 pub fn grow_crown(crown: &CrownSpec) -> Result<Mesh, AssetError> {
     let count = check(crown)?;
-    let mut mesh = leaves::grow(crown, count);
+    let (places, normals) = (Places::new(crown)?, Normals::new(&crown.leaf_angle)?);
+    let mut mesh = leaves::grow(crown, count, &places, &normals);
     let (leaf_triangles, leaf_discs) = (mesh.triangles.len() as u32, mesh.discs.len() as u32);
     wood::grow(crown, &mut mesh);
     let triangles = mesh.triangles.len() as u32;
@@ -115,8 +137,22 @@ fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
     if crown.base_m.is_nan() || crown.base_m.abs() > *LENGTHS.end() {
         return Err(CrownError::BadBase { value: crown.base_m });
     }
+    if let CrownShape::AsymmetricGaussian { widest_m: value, height_m: height, .. } = crown.shape
+        && !(0.0..=height).contains(&value)
+    {
+        return Err(CrownError::BadWidest { value, height });
+    }
+    if let LeafShape::Shoot { needles, needle_angle_deg: value, .. } = crown.leaf {
+        if needles == 0 {
+            return Err(CrownError::NoNeedles);
+        }
+        if !(0.0..=90.0).contains(&value) {
+            return Err(CrownError::BadNeedleAngle { value });
+        }
+    }
     check_trunk(crown)?;
     check_branches(crown)?;
+    check_clumps(crown)?;
     let area = crown.leaf_area_m2;
     if !(area >= 0.0 && area.is_finite()) {
         return Err(CrownError::BadArea { value: area });
@@ -126,8 +162,9 @@ fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
     }
     let leaf = leaves::area(&crown.leaf);
     let count = (area / leaf).round();
-    if count > MOST_LEAVES {
-        return Err(CrownError::TooManyLeaves { count, most: MOST_LEAVES });
+    let flat = count * f64::from(leaves::pieces(&crown.leaf));
+    if flat > MOST_LEAVES {
+        return Err(CrownError::TooManyLeaves { count: flat, most: MOST_LEAVES });
     }
     if count < 1.0 {
         return Err(CrownError::LessThanALeaf { area, leaf });
@@ -170,6 +207,22 @@ fn check_branches(crown: &CrownSpec) -> Result<(), CrownError> {
     if trunk.height_m <= crown.base_m {
         let (height, base) = (trunk.height_m, crown.base_m);
         return Err(CrownError::TrunkBelowCrown { height, base });
+    }
+    Ok(())
+}
+
+fn check_clumps(crown: &CrownSpec) -> Result<(), CrownError> {
+    let Some(clumps) = &crown.clumps else { return Ok(()) };
+    check_length("clumps.radius_m", clumps.radius_m)?;
+    check_length("clumps.height_m", clumps.height_m.unwrap_or(clumps.radius_m))?;
+    if !(1..=MOST_CLUMPS).contains(&clumps.count) {
+        return Err(CrownError::BadClumpCount { count: clumps.count, most: MOST_CLUMPS });
+    }
+    if clumps.on_branches && crown.branches.as_ref().is_none_or(|branches| branches.count == 0) {
+        return Err(CrownError::ClumpsWithoutBranches);
+    }
+    if clumps.on_branches && crown.leaf_profile != LeafProfile::Even {
+        return Err(CrownError::ClumpsWithProfile);
     }
     Ok(())
 }

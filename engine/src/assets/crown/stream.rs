@@ -7,6 +7,7 @@ pub(super) enum Purpose {
     Position = 1,
     Normal = 2,
     Turn = 3,
+    Clump = 4,
 }
 
 /// A sequence of random numbers.

@@ -26,22 +26,43 @@ pub(super) fn grow(crown: &CrownSpec, mesh: &mut Mesh) {
     let radii = [0.5 * trunk.diameter_m, 0.5 * trunk.tip_diameter_m];
     prism([DVec3::ZERO, DVec3::Z * trunk.height_m], radii, TRUNK_SIDES, mesh);
 
-    let Some(branches) = &crown.branches else { return };
+    for Branch { start, end, foot } in branches(crown) {
+        prism([start, end], [foot, TAPER * foot], BRANCH_SIDES, mesh);
+    }
+}
+
+/// A branch.
+pub(super) struct Branch {
+    /// Where it leaves the trunk's axis, m.
+    pub(super) start: DVec3,
+    /// Its tip, m.
+    pub(super) end: DVec3,
+    /// Its radius at the trunk, m.
+    foot: f64,
+}
+
+/// The angle that never lines up again, rad: 2π over the golden ratio squared.
+pub(super) fn golden_angle() -> f64 {
+    TAU * (1.5 - 0.5 * 5_f64.sqrt())
+}
+
+/// The branches of a crown, from the lowest up.
+pub(super) fn branches(crown: &CrownSpec) -> Vec<Branch> {
+    let (Some(trunk), Some(branches)) = (&crown.trunk, &crown.branches) else { return Vec::new() };
     let (sin, cos) = branches.zenith_deg.to_radians().sin_cos();
     let (low, high) = (crown.base_m.max(0.0), trunk.height_m);
-    // The angle that never lines up again: 2π over the golden ratio squared.
-    let golden_angle = TAU * (1.5 - 0.5 * 5_f64.sqrt());
-    for branch in 0..branches.count {
-        let part = (f64::from(branch) + 0.5) / f64::from(branches.count);
+    let branch = |index: u32| {
+        let part = (f64::from(index) + 0.5) / f64::from(branches.count);
         let z = low + (high - low) * part;
-        let (sin_azimuth, cos_azimuth) = (golden_angle * f64::from(branch)).sin_cos();
+        let (sin_azimuth, cos_azimuth) = (golden_angle() * f64::from(index)).sin_cos();
         let direction = DVec3::new(sin * sin_azimuth, sin * cos_azimuth, cos);
         let length = REACH * shape::way_out(&crown.shape, z - crown.base_m, direction);
         // No branch is thicker than the trunk where it starts.
         let foot = (0.5 * branches.diameter_m).min(radius_at(trunk, z));
         let start = DVec3::Z * z;
-        prism([start, start + length * direction], [foot, TAPER * foot], BRANCH_SIDES, mesh);
-    }
+        Branch { start, end: start + length * direction, foot }
+    };
+    (0..branches.count).map(branch).collect()
 }
 
 fn radius_at(trunk: &Trunk, z: f64) -> f64 {

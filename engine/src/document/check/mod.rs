@@ -1,6 +1,7 @@
 //! What a scene may not say, as far as it shows without files: ranges, shapes and names.
 
 mod camera;
+mod crown;
 mod ground;
 mod instances;
 mod light;

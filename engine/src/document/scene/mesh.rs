@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
+use super::super::decode::{Decode, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
 use super::Map;
+use super::crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
 
 choice! {
     /// A mesh prototype.
@@ -56,6 +57,10 @@ choice! {
             base_m: f64 => "2.0",
             /// One-sided area of all leaves, m².
             leaf_area_m2: f64 => "30.0",
+            /// How leaf area changes with height.
+            leaf_profile: LeafProfile = LeafProfile::Even,
+            /// Clumps that leaves are gathered in; without them each stands by itself.
+            clumps: Option<Clumps> = None,
             /// Distribution of leaf inclinations.
             leaf_angle: LeafAngle = LeafAngle::Spherical,
             /// Shape and size of a leaf.
@@ -93,102 +98,5 @@ choice! {
         File,
         /// The middle of the bounding box, at its lowest height.
         BaseCenter,
-    }
-}
-
-choice! {
-    /// Outline of a generated crown.
-    pub enum CrownShape ("a crown shape") {
-        /// Ellipsoid of revolution.
-        Ellipsoid {
-            /// Largest width, m.
-            diameter_m: f64 => "3.0",
-            /// From its lowest to its highest point, m.
-            height_m: f64 => "5.0",
-        },
-        /// Upright cone.
-        Cone {
-            /// Width at its base, m.
-            diameter_m: f64 => "3.0",
-            /// From base to tip, m.
-            height_m: f64 => "5.0",
-        },
-        /// Upright cylinder.
-        Cylinder {
-            /// Width, m.
-            diameter_m: f64 => "3.0",
-            /// From base to top, m.
-            height_m: f64 => "5.0",
-        },
-        /// Box, for homogeneous layers.
-        Box {
-            /// Extent to the east, to the north and up, m.
-            size_m: (f64, f64, f64) => "(10.0, 10.0, 2.0)",
-        },
-    }
-}
-
-choice! {
-    /// Distribution of the angle θ between leaf normal and zenith; azimuths are uniform.
-    pub enum LeafAngle ("a leaf angle distribution") {
-        /// g(θ) = sin θ.
-        Spherical,
-        /// g(θ) = 2/π.
-        Uniform,
-        /// g(θ) = (2/π)(1 + cos 2θ): mostly horizontal leaves.
-        Planophile,
-        /// g(θ) = (2/π)(1 - cos 2θ): mostly vertical leaves.
-        Erectophile,
-        /// g(θ) = (2/π)(1 - cos 4θ): mostly leaves at 45°.
-        Plagiophile,
-        /// g(θ) = (2/π)(1 + cos 4θ): mostly horizontal or vertical leaves.
-        Extremophile,
-    }
-}
-
-choice! {
-    /// Shape of a generated leaf.
-    pub enum LeafShape ("a leaf shape") {
-        /// Flat disc.
-        Disc {
-            /// Radius, m.
-            radius_m: f64 => "0.05",
-        },
-        /// Flat square.
-        Square {
-            /// Side, m.
-            side_m: f64 => "0.05",
-        },
-        /// Flat rhombus.
-        Rhombus {
-            /// Long diagonal, m.
-            length_m: f64 => "0.08",
-            /// Short diagonal, m.
-            width_m: f64 => "0.04",
-        },
-    }
-}
-
-record! {
-    /// Trunk of a generated tree: a tapered, closed prism.
-    pub struct Trunk ("the trunk") {
-        /// Height of its tip, m.
-        height_m: f64 => "5.0",
-        /// Diameter at the ground, m.
-        diameter_m: f64 => "0.2",
-        /// Diameter at the tip, m.
-        tip_diameter_m: f64 = 0.01,
-    }
-}
-
-record! {
-    /// Branches of a generated tree, spread along the trunk within the crown.
-    pub struct Branches ("the branches") {
-        /// How many.
-        count: u32 => "12",
-        /// Diameter at the trunk, m.
-        diameter_m: f64 => "0.2",
-        /// Angle from the zenith, degrees.
-        zenith_deg: f64 = 60.0,
     }
 }

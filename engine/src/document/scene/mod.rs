@@ -1,6 +1,7 @@
 //! What a scene file may say.
 
 mod camera;
+mod crown;
 mod ground;
 mod instances;
 mod light;
@@ -19,10 +20,11 @@ use super::encode::{Encode, Text, differs};
 use super::syntax::Node;
 
 pub use camera::{Cover, FisheyeProjection, Look, Picture};
+pub use crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
 pub use ground::{Boundary, Coordinates, LandCover, NoData, Terrain};
 pub use instances::{Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, Stems};
 pub use light::{Sky, Sun, SunPosition};
-pub use mesh::{Axis, Branches, CrownShape, LeafAngle, LeafShape, Mesh, Origin, Trunk};
+pub use mesh::{Axis, Mesh, Origin};
 pub use program::{Include, Sweep};
 pub use sensor::{
     ImageMeasure, Layers, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,

@@ -1,3 +1,7 @@
+mod angles;
+mod gaps;
+mod places;
+
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -12,6 +16,8 @@ fn spec(shape: CrownShape, leaf: LeafShape) -> CrownSpec {
         shape,
         base_m: 2.0,
         leaf_area_m2: 40.0,
+        leaf_profile: LeafProfile::Even,
+        clumps: None,
         leaf_angle: LeafAngle::Spherical,
         leaf,
         trunk: None,
@@ -20,16 +26,32 @@ fn spec(shape: CrownShape, leaf: LeafShape) -> CrownSpec {
     }
 }
 
-fn shapes() -> [CrownShape; 4] {
+fn shapes() -> [CrownShape; 6] {
     [
         CrownShape::Ellipsoid { diameter_m: 4.0, height_m: 6.0 },
         CrownShape::Cone { diameter_m: 4.0, height_m: 6.0 },
         CrownShape::Cylinder { diameter_m: 4.0, height_m: 6.0 },
         CrownShape::Box { size_m: (4.0, 3.0, 6.0) },
+        CrownShape::HalfEllipsoid { diameter_m: 4.0, height_m: 6.0 },
+        CrownShape::AsymmetricGaussian {
+            diameter_m: 4.0,
+            height_m: 6.0,
+            widest_m: 2.0,
+            below_m: 1.0,
+            above_m: 2.0,
+        },
     ]
 }
 
 const DISC: LeafShape = LeafShape::Disc { radius_m: 0.02 };
+
+const SHOOT: LeafShape = LeafShape::Shoot {
+    length_m: 0.1,
+    needles: 30,
+    needle_length_m: 0.05,
+    needle_width_m: 0.004,
+    needle_angle_deg: 50.0,
+};
 
 fn tree(shape: CrownShape) -> CrownSpec {
     CrownSpec {
@@ -66,12 +88,14 @@ fn leaf_area_is_what_was_asked_for() {
             DISC,
             LeafShape::Square { side_m: 0.05 },
             LeafShape::Rhombus { length_m: 0.06, width_m: 0.03 },
+            SHOOT,
         ] {
             let crown = spec(shape.clone(), leaf.clone());
             let mesh = grow_crown(&crown).unwrap();
             let [part] = &mesh.parts[..] else { panic!("{:?}", mesh.parts) };
             assert_eq!(part.name, "leaf");
-            let count = (40.0 / leaves::area(&leaf)).round() as usize;
+            let count =
+                (40.0 / leaves::area(&leaf)).round() as usize * leaves::pieces(&leaf) as usize;
             assert_eq!(mesh.discs.len() + mesh.triangles.len() / 2, count);
             let area = mesh.part_area(part);
             // One f32 radius rounds all discs alike: 2 × 2^-24; corners round at random, 5e-7 m of
@@ -112,6 +136,8 @@ fn leaves_are_uniform_in_the_volume() {
         (shapes()[2].clone(), 3.0, [1.0, 1.0, 3.0]),
         // Box: a²/12.
         (shapes()[3].clone(), 3.0, [16.0 / 12.0, 9.0 / 12.0, 3.0]),
+        // Half a ball: 3 h/8; r²/5; h²/5 - (3 h/8)².
+        (shapes()[4].clone(), 2.25, [0.8, 0.8, 36.0 / 5.0 - 2.25 * 2.25]),
     ] {
         let mesh = grow_crown(&spec(shape.clone(), DISC)).unwrap();
         assert!(mesh.discs.len() > 30_000);
@@ -123,9 +149,13 @@ fn leaves_are_uniform_in_the_volume() {
                 CrownShape::Ellipsoid { .. } => {
                     (flat / 2.0).length_squared() + ((point.z - 3.0) / 3.0).powi(2) <= 1.0 + 1e-6
                 }
+                CrownShape::HalfEllipsoid { .. } => {
+                    (flat / 2.0).length_squared() + (point.z / 6.0).powi(2) <= 1.0 + 1e-6
+                }
                 CrownShape::Cone { .. } => flat.length() <= 2.0 * (1.0 - point.z / 6.0) + 1e-6,
                 CrownShape::Cylinder { .. } => flat.length() <= 2.0 + 1e-6,
                 CrownShape::Box { .. } => flat.x.abs() <= 2.0 + 1e-6 && flat.y.abs() <= 1.5 + 1e-6,
+                CrownShape::AsymmetricGaussian { .. } => unreachable!("tested in `places`"),
             };
             assert!(inside && (-1e-6..=height + 1e-6).contains(&point.z), "{shape:?} {point}");
         }
@@ -318,12 +348,24 @@ fn what_cannot_grow_is_an_error() {
 #[test]
 fn the_scene_language_describes_the_same_crown() {
     let crown = tree(shapes()[2].clone());
-    let CrownSpec { shape, base_m, leaf_area_m2, leaf_angle, leaf, trunk, branches, seed } =
-        crown.clone();
+    let CrownSpec {
+        shape,
+        base_m,
+        leaf_area_m2,
+        leaf_profile,
+        clumps,
+        leaf_angle,
+        leaf,
+        trunk,
+        branches,
+        seed,
+    } = crown.clone();
     let mesh = document::Mesh::Crown {
         shape,
         base_m,
         leaf_area_m2,
+        leaf_profile,
+        clumps,
         leaf_angle,
         leaf,
         leaf_material: "leaf".to_owned(),
