@@ -9,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3};
 use sunfleck::accel::{Boundary, Domain, InstanceInput, MeshInput, Ray, Scene};
 use sunfleck::assets::{CrownSpec, grow_crown};
 use sunfleck::components::Mesh;
-use sunfleck::document::{CrownShape, LeafAngle, LeafShape};
+use sunfleck::document::{CrownShape, LeafAngle, LeafProfile, LeafShape};
 use sunfleck::sampling::{Key, sobol4};
 
 /// An ellipsoid of leaves, 4 m wide and 6 m high.
@@ -18,6 +18,8 @@ fn crown(leaves: f64, leaf: LeafShape, leaf_area: f64) -> Mesh {
         shape: CrownShape::Ellipsoid { diameter_m: 4.0, height_m: 6.0 },
         base_m: 1.0,
         leaf_area_m2: leaves * leaf_area,
+        leaf_profile: LeafProfile::Even,
+        clumps: None,
         leaf_angle: LeafAngle::Spherical,
         leaf,
         trunk: None,

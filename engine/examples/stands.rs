@@ -8,8 +8,8 @@
 use std::path::{Path, PathBuf};
 
 use sunfleck::document::{
-    Band, BandSource, Boundary, CrownShape, Instances, LeafAngle, LeafShape, Material, Mesh,
-    Options, PhotonMeasure, Scene, Sensor, Spectrum, Sun, Terrain, read_text,
+    Band, BandSource, Boundary, CrownShape, Instances, LeafAngle, LeafProfile, LeafShape, Material,
+    Mesh, Options, PhotonMeasure, Scene, Sensor, Spectrum, Sun, Terrain, read_text,
 };
 use sunfleck::run::{self, Unwatched};
 
@@ -45,6 +45,8 @@ fn stand(leaf_area_m2: f64, trees_a_side: u32) -> Result<Scene, Box<dyn std::err
         shape: CrownShape::Ellipsoid { diameter_m: 2.0, height_m: 3.0 },
         base_m: 1.0,
         leaf_area_m2,
+        leaf_profile: LeafProfile::Even,
+        clumps: None,
         leaf_angle: LeafAngle::Spherical,
         leaf: LeafShape::Disc { radius_m: 0.08 },
         leaf_material: "leaf".to_owned(),

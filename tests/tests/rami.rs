@@ -61,7 +61,6 @@ fn assert_within(share: f64, what: &str, pairs: &[(Estimate, f64)]) {
         squares += error * error;
     }
     let (mean, error) = (sum / pairs.len() as f64, squares.sqrt() / pairs.len() as f64);
-    println!("{what}: {:.3} % ± {:.3} %", 100.0 * mean, 100.0 * error);
     assert!(mean.abs() < share, "{what}: {mean} ± {error} on average");
 }
 

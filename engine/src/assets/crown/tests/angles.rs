@@ -14,12 +14,15 @@ fn draw(angle: &LeafAngle) -> Vec<DVec3> {
     (0..DRAWS).map(|leaf| normals.draw(&mut Stream::new(SEED, Purpose::Normal, leaf))).collect()
 }
 
-/// Each distribution with its density g(θ) up to a factor.
-fn distributions() -> Vec<(LeafAngle, Box<dyn Fn(f64) -> f64>)> {
-    let ellipsoidal = |x: f64| -> Box<dyn Fn(f64) -> f64> {
+/// A density g(θ) up to a factor.
+type Density = Box<dyn Fn(f64) -> f64>;
+
+/// Each distribution with its density.
+fn distributions() -> Vec<(LeafAngle, Density)> {
+    let ellipsoidal = |x: f64| -> Density {
         Box::new(move |t: f64| t.sin() / (t.cos().powi(2) + (x * t.sin()).powi(2)).powi(2))
     };
-    let beta = |mu: f64, nu: f64| -> Box<dyn Fn(f64) -> f64> {
+    let beta = |mu: f64, nu: f64| -> Density {
         Box::new(move |t: f64| {
             (1.0 - t / FRAC_PI_2).powf(mu - 1.0) * (t / FRAC_PI_2).powf(nu - 1.0)
         })
