@@ -45,8 +45,8 @@ fn table(path: &Path, keys: usize) -> HashMap<String, Vec<f64>> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// Asserts that estimates are within `share` of what is expected, and their errors; and their mean
-/// deviation too.
+/// Asserts that estimates are within `share` of what is expected, but for their errors; and so is
+/// their mean deviation.
 fn assert_within(share: f64, what: &str, pairs: &[(Estimate, f64)]) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for &(estimate, expected) in pairs {
@@ -61,7 +61,7 @@ fn assert_within(share: f64, what: &str, pairs: &[(Estimate, f64)]) {
         squares += error * error;
     }
     let (mean, error) = (sum / pairs.len() as f64, squares.sqrt() / pairs.len() as f64);
-    assert!(mean.abs() < share, "{what}: {mean} ± {error} on average");
+    assert!(mean.abs() < share + MOST * error, "{what}: {mean} ± {error} on average");
 }
 
 /// *Scene*: fifteen floating spheres of discs, NIR, sun at 20°. *Expected*: the 76 values of another
@@ -95,7 +95,7 @@ fn small_leaves_in_a_homogeneous_layer_are_a_turbid_medium() {
         ("hom_uniform.ron", "spherical", "HOM03_TUR_UNI_NIR_20"),
         ("hom_planophile.ron", "planophile", "HOM03_TUR_PLA_NIR_20"),
     ] {
-        let report = measure(&scene(file, &small, &["fluxes", "rami.brfpp"]), 0.15);
+        let report = measure(&scene(file, &small, &["fluxes", "rami.brfpp"]), 0.25);
         let row = &fluxes[&format!("{case},{lad}")];
         let of = |name: &str, index: usize| Estimate::of(product(&report, "fluxes", name), index);
         // Behind case and kind of leaf: LAI, optics, angle and G, then what is measured.
