@@ -29,6 +29,11 @@ pub enum PlacementError {
     )]
     NoRoom { placed: usize, wanted: usize, distance: f64, at_random: f64, at_most: f64 },
     #[error(
+        "the raster asks for {wanted} stems around ({:.1}, {:.1}), {distance} m apart: no place is left \
+         there", .at.x, .at.y
+    )]
+    NoRoomInMap { wanted: usize, at: DVec2, distance: f64 },
+    #[error(
         "a stem and its own image across the border of the periodic scene are {side} m apart, \
          less than {distance} m"
     )]

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | areas to a [`Region`] of known size | `region`, `crossings` |
 //! | places: each on its own, at a distance, in rows | `uniform`, `poisson_disc`, `rows` |
+//! | places as dense as a raster says | `map` |
 //! | what stands there, and how | `stand`, `distribution` |
 //! | what is left out | `pattern` |
 //!
@@ -15,6 +16,7 @@ pub mod canopy;
 mod crossings;
 mod distribution;
 mod error;
+mod map;
 mod pattern;
 mod poisson_disc;
 mod region;
@@ -26,9 +28,14 @@ mod uniform;
 
 use glam::DVec2;
 
-use crate::document::{Rule, Stems};
+use crate::document::Rule;
 use crate::geometry::Rectangle;
 use crate::sampling::Key;
+use crate::terrain::Cells;
+
+use poisson_disc::poisson_disc;
+use rows::Rows;
+use uniform::uniform;
 
 pub use error::PlacementError;
 pub use pattern::Pattern;
@@ -38,22 +45,43 @@ pub use stand::{Habit, Species, stand};
 /// Most stems of one scatter.
 const MOST_STEMS: usize = 20_000_000;
 
+/// How many stems are asked for.
+#[derive(Clone, Copy, Debug)]
+pub enum Amount<'a> {
+    /// So many.
+    Count(u32),
+    /// So many m⁻² of the region.
+    Density(f64),
+    /// So many m⁻² as the cell at each place says; none beside them and where that is NaN.
+    Map(&'a Cells<f64>),
+    /// As many as find room.
+    Fill,
+}
+
 /// Places by a rule in a region of the terrain's rectangle, m.
 ///
 /// # Errors
-/// No room for so many stems, or more than [`MOST_STEMS`].
+/// No room for so many stems, or too many of them.
 pub fn places(
     rule: &Rule,
-    stems: &Stems,
+    amount: Amount<'_>,
     region: &Region,
     terrain: Rectangle,
     is_periodic: bool,
     stream: Key,
 ) -> Result<Vec<DVec2>, PlacementError> {
-    let wanted = match *stems {
-        Stems::Fill => None,
-        Stems::Count(count) => Some(f64::from(count)),
-        Stems::PerHectare(density) => Some((density * region.area() / 1e4).round()),
+    let tile = is_periodic.then_some(terrain);
+    let wanted = match amount {
+        Amount::Fill => None,
+        Amount::Count(count) => Some(f64::from(count)),
+        Amount::Density(density) => Some((density * region.area()).round()),
+        Amount::Map(cells) => {
+            let distance = match *rule {
+                Rule::PoissonDisc { min_distance_m } => min_distance_m,
+                _ => 0.0,
+            };
+            return map::map(cells, region, tile, distance, stream);
+        }
     };
     if let Some(stems) = wanted.filter(|&wanted| wanted > MOST_STEMS as f64) {
         return Err(PlacementError::TooManyStems { stems, most: MOST_STEMS });
@@ -61,15 +89,13 @@ pub fn places(
     let wanted = wanted.map(|wanted| wanted as usize);
     match *rule {
         // `document::check` asks for a number.
-        Rule::Uniform => Ok(uniform::uniform(region, wanted.unwrap_or(0), stream)),
+        Rule::Uniform => Ok(uniform(region, wanted.unwrap_or(0), stream)),
         Rule::PoissonDisc { min_distance_m } => {
-            let tile = is_periodic.then_some(terrain);
-            poisson_disc::poisson_disc(region, tile, min_distance_m, wanted, stream)
+            poisson_disc(region, tile, min_distance_m, wanted, stream)
         }
         Rule::Grid { spacing_m, row_azimuth_deg, jitter_m } => {
             let spacing = DVec2::from(spacing_m);
-            let rows =
-                rows::Rows { spacing, azimuth: row_azimuth_deg.to_radians(), jitter: jitter_m };
+            let rows = Rows { spacing, azimuth: row_azimuth_deg.to_radians(), jitter: jitter_m };
             rows.places(region, terrain.min, stream)
         }
     }

@@ -114,7 +114,7 @@ fn a_polygon_that_crosses_itself_is_refused_where_it_does() {
 fn uniform_stems_are_equally_dense_everywhere() {
     let region = Region::new(TERRAIN, &[star(DVec2::new(40.0, 30.0), 9, Key::new(5))], &[]);
     let region = region.expect("a region");
-    let stems = places(&Rule::Uniform, &Stems::Count(40_000), &region, TERRAIN, false, Key::new(2));
+    let stems = places(&Rule::Uniform, Amount::Count(40_000), &region, TERRAIN, false, Key::new(2));
     let stems = stems.expect("room");
     let mut counts = [0_u32; 64];
     for stem in &stems {
@@ -144,9 +144,9 @@ fn uniform_stems_are_equally_dense_everywhere() {
 fn stems_per_hectare_hold_for_the_area_where_they_may_stand() {
     let square = polygon(&[&[(10.0, 10.0), (50.0, 10.0), (50.0, 50.0), (10.0, 50.0)]]);
     let region = Region::new(TERRAIN, &[], &[square]).expect("a region");
-    let stems = Stems::PerHectare(1000.0);
+    let stems = Amount::Density(0.1);
     for rule in [Rule::Uniform, Rule::PoissonDisc { min_distance_m: 1.0 }] {
-        let placed = places(&rule, &stems, &region, TERRAIN, false, Key::new(1)).expect("room");
+        let placed = places(&rule, stems, &region, TERRAIN, false, Key::new(1)).expect("room");
         assert_eq!(placed.len(), 440, "{rule:?}");
     }
 }
@@ -173,7 +173,7 @@ fn the_minimum_distance_is_kept_and_no_place_is_left() {
     let rule = Rule::PoissonDisc { min_distance_m: 1.5 };
     let mut counts = Vec::new();
     for is_periodic in [false, true] {
-        let stems = places(&rule, &Stems::Fill, &region, TERRAIN, is_periodic, Key::new(3));
+        let stems = places(&rule, Amount::Fill, &region, TERRAIN, is_periodic, Key::new(3));
         let stems = stems.expect("room");
         let least = least_distance(&stems, is_periodic);
         assert!((1.5..1.51).contains(&least), "{least}");
@@ -195,7 +195,7 @@ fn the_minimum_distance_is_kept_and_no_place_is_left() {
     // Across the border there is less room.
     assert!(counts[0] > counts[1], "{counts:?}");
     // What keeps its distance in the open scene does not across the border.
-    let open = places(&rule, &Stems::Fill, &region, TERRAIN, false, Key::new(3)).expect("room");
+    let open = places(&rule, Amount::Fill, &region, TERRAIN, false, Key::new(3)).expect("room");
     assert!(least_distance(&open, true) < 1.5);
 }
 
@@ -206,7 +206,7 @@ fn a_full_region_is_covered_as_random_sequential_addition_covers_it() {
     let distance = 0.5;
     let coverage = |seed| {
         let rule = Rule::PoissonDisc { min_distance_m: distance };
-        let stems = places(&rule, &Stems::Fill, &whole(), TERRAIN, true, Key::new(seed));
+        let stems = places(&rule, Amount::Fill, &whole(), TERRAIN, true, Key::new(seed));
         stems.expect("room").len() as f64 * PI * (distance / 2.0).powi(2) / 6000.0
     };
     let all: Vec<f64> = (0..8).map(coverage).collect();
@@ -220,7 +220,7 @@ fn a_full_region_is_covered_as_random_sequential_addition_covers_it() {
 #[test]
 fn too_many_stems_at_a_distance_say_how_many_there_can_be() {
     let rule = Rule::PoissonDisc { min_distance_m: 5.0 };
-    let error = places(&rule, &Stems::Count(400), &whole(), TERRAIN, true, Key::new(1));
+    let error = places(&rule, Amount::Count(400), &whole(), TERRAIN, true, Key::new(1));
     let Err(PlacementError::NoRoom { placed, wanted: 400, at_random, at_most, .. }) = error else {
         panic!("{error:?}");
     };
@@ -228,13 +228,13 @@ fn too_many_stems_at_a_distance_say_how_many_there_can_be() {
     assert!((at_random - 167.15).abs() < 0.1, "{at_random}");
     assert!((at_most - 277.0).abs() < 1.0, "{at_most}");
     let rule = Rule::PoissonDisc { min_distance_m: 61.0 };
-    let error = places(&rule, &Stems::Fill, &whole(), TERRAIN, true, Key::new(1));
+    let error = places(&rule, Amount::Fill, &whole(), TERRAIN, true, Key::new(1));
     assert_eq!(error, Err(PlacementError::TooCloseToItself { distance: 61.0, side: 60.0 }));
     let rule = Rule::PoissonDisc { min_distance_m: 1e-9 };
-    let error = places(&rule, &Stems::Fill, &whole(), TERRAIN, true, Key::new(1));
+    let error = places(&rule, Amount::Fill, &whole(), TERRAIN, true, Key::new(1));
     assert!(matches!(error, Err(PlacementError::TooManyStems { .. })), "{error:?}");
     let rule = Rule::Grid { spacing_m: (1e-9, 1.0), row_azimuth_deg: 0.0, jitter_m: 0.0 };
-    let error = places(&rule, &Stems::Fill, &whole(), TERRAIN, true, Key::new(1));
+    let error = places(&rule, Amount::Fill, &whole(), TERRAIN, true, Key::new(1));
     assert!(matches!(error, Err(PlacementError::TooManyStems { .. })), "{error:?}");
 }
 
@@ -242,7 +242,7 @@ fn too_many_stems_at_a_distance_say_how_many_there_can_be() {
 fn rows_have_their_spacing_and_azimuth() {
     let place = |azimuth, jitter| {
         let rule = Rule::Grid { spacing_m: (4.0, 2.0), row_azimuth_deg: azimuth, jitter_m: jitter };
-        places(&rule, &Stems::Fill, &whole(), TERRAIN, false, Key::new(1)).expect("room")
+        places(&rule, Amount::Fill, &whole(), TERRAIN, false, Key::new(1)).expect("room")
     };
     let north = place(0.0, 0.0);
     assert_eq!(north.len(), 25 * 30);
@@ -281,9 +281,8 @@ fn species(name: &str, share: f64, prototype: u32) -> Species<'_> {
 }
 
 fn trees(count: u32, species: &[Species<'_>], habit: &Habit<'_>) -> Vec<Placement> {
-    let stems = Stems::Count(count);
-    let stems =
-        places(&Rule::Uniform, &stems, &whole(), TERRAIN, false, Key::new(4)).expect("room");
+    let stems = Amount::Count(count);
+    let stems = places(&Rule::Uniform, stems, &whole(), TERRAIN, false, Key::new(4)).expect("room");
     stand(&stems, species, habit, |place| Some(0.1 * place.x), Key::new(4))
 }
 
@@ -328,9 +327,9 @@ fn a_forest_is_the_same_for_any_number_of_threads_and_more_stems_move_none() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
             let rule = Rule::PoissonDisc { min_distance_m: 0.7 };
-            let stems = places(&rule, &Stems::Fill, &whole(), TERRAIN, true, Key::new(9));
+            let stems = places(&rule, Amount::Fill, &whole(), TERRAIN, true, Key::new(9));
             let rule = Rule::Grid { spacing_m: (1.0, 1.0), row_azimuth_deg: 20.0, jitter_m: 0.3 };
-            let rows = places(&rule, &Stems::Fill, &whole(), TERRAIN, true, Key::new(9));
+            let rows = places(&rule, Amount::Fill, &whole(), TERRAIN, true, Key::new(9));
             let own = [species("oak", 2.0, 0), species("birch", 1.0, 1)];
             (stems.expect("room"), rows.expect("room"), trees(3000, &own, &habit(&FIXED)))
         })

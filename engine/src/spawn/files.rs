@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use crate::document::{
-    Area, Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, Terrain, ThermalSky,
+    Area, Diagnostic, Instances, Material, Mesh, Scene, Sky, Spectrum, Stems, Terrain, ThermalSky,
 };
 
 /// Every file that a scene names and that is not there, used or not.
@@ -33,11 +33,14 @@ pub(crate) fn named_files(scene: &Scene) -> Vec<(String, &str)> {
     let mut files = Vec::new();
     for (index, instances) in scene.instances.iter().enumerate() {
         match instances {
-            Instances::Table { file, .. } => {
+            Instances::Table { file, .. } | Instances::CanopyHeights { file, .. } => {
                 files.push((format!("instances[{index}].file"), file.as_str()));
             }
             Instances::List { .. } => {}
-            Instances::Scatter { inside, outside, .. } => {
+            Instances::Scatter { inside, outside, stems, .. } => {
+                if let Stems::Raster { file, .. } = stems {
+                    files.push((format!("instances[{index}].stems.file"), file.as_str()));
+                }
                 for (key, areas) in [("inside", inside), ("outside", outside)] {
                     for (number, area) in areas.iter().enumerate() {
                         if let Area::GeoJson { file, .. } | Area::Table { file, .. } = area {

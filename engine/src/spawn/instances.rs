@@ -49,6 +49,10 @@ impl Spawner<'_> {
                     let Some(ground) = ground else { continue };
                     self.scatter(instances, index, meshes, ground)
                 }
+                Instances::CanopyHeights { .. } => {
+                    let Some(ground) = ground else { continue };
+                    self.canopy(instances, index, meshes, ground).unwrap_or_default()
+                }
             };
             let shown: Vec<usize> = shown(scene, index, instances)
                 .filter_map(|name| scene.meshes.get_index_of(name))
@@ -121,7 +125,9 @@ impl Spawner<'_> {
         }
         let mut named: Vec<(String, &str)> = Vec::new();
         for (index, instances) in scene.instances.iter().enumerate() {
-            named.extend(instances.meshes().map(|mesh| (name_of(index, instances), mesh)));
+            named.extend(
+                instances.meshes().into_iter().map(|mesh| (name_of(index, instances), mesh)),
+            );
         }
         for (key, patterns) in [("hide", &scene.hide), ("select", &scene.select)] {
             for (index, text) in patterns.iter().enumerate() {
@@ -143,10 +149,17 @@ impl Spawner<'_> {
     }
 }
 
-/// The meshes that any instances place and that are not hidden there.
-pub(super) fn shown_meshes(scene: &Scene) -> BTreeSet<&str> {
-    let instances = scene.instances.iter().enumerate();
-    instances.flat_map(|(index, instances)| shown(scene, index, instances)).collect()
+/// The meshes that any instances place and that are not hidden there, or that are needed to choose
+/// among them.
+pub(super) fn needed_meshes(scene: &Scene) -> BTreeSet<&str> {
+    let mut needed = BTreeSet::new();
+    for (index, instances) in scene.instances.iter().enumerate() {
+        match instances {
+            Instances::CanopyHeights { .. } => needed.extend(instances.meshes()),
+            _ => needed.extend(shown(scene, index, instances)),
+        }
+    }
+    needed
 }
 
 /// The meshes of these instances that are not hidden.
@@ -160,7 +173,7 @@ fn shown<'a>(
     let any = |patterns: &[String], name: &str, mesh: &str| {
         patterns.iter().any(|pattern| Pattern::new(pattern).matches(name, mesh))
     };
-    instances.meshes().filter(move |mesh| {
+    instances.meshes().into_iter().filter(move |mesh| {
         (select.is_empty() || any(select, &name, mesh)) && !any(hide, &name, mesh)
     })
 }

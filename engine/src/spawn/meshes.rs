@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::Spawner;
-use super::instances::shown_meshes;
+use super::instances::needed_meshes;
 use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
 use crate::components::{MaterialId, Mesh, Name, PartMaterials, Placement};
 use crate::document::{self, Diagnostic, Map, Scene, Terrain, unknown_name};
@@ -19,7 +19,7 @@ impl Spawner<'_> {
     /// The meshes that instances may place, by their place in the document; each is read once.
     pub(super) fn meshes(&mut self) -> BTreeMap<u32, Prototype> {
         let scene = self.scene;
-        let used = shown_meshes(scene);
+        let used = needed_meshes(scene);
         let mut wanted = Vec::new();
         for (index, (name, mesh)) in scene.meshes.iter().enumerate() {
             if used.contains(name.as_str()) {

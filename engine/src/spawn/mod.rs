@@ -1,9 +1,11 @@
 //! Document and assets to entities; every error of the scene in one pass, each with its place.
 
+mod canopy;
 mod doubts;
 mod files;
 mod images;
 mod instances;
+mod lay;
 mod light;
 mod materials;
 mod meshes;
@@ -24,6 +26,7 @@ use hecs::{Entity, Or, World};
 use crate::components::{MaterialId, Mesh, PartMaterials, Placement, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, Scene};
 use crate::terrain::Ground;
+use lay::Georeference;
 
 pub use files::missing_files;
 pub(crate) use files::named_files;
@@ -60,6 +63,8 @@ pub(crate) struct Spawner<'a> {
     problems: Vec<Diagnostic>,
     /// South-west corner and extent of the ground, m.
     rectangle: (DVec2, DVec2),
+    /// Where rasters lie; `None` if that of the terrain does not say.
+    georeference: Option<Georeference>,
 }
 
 /// Makes the world of a scene; paths in it are relative to `folder`.
@@ -73,14 +78,7 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     if !missing.is_empty() {
         return Err(missing);
     }
-    let mut spawner = Spawner {
-        scene,
-        folder,
-        files: Vec::new(),
-        skipped: Vec::new(),
-        problems: Vec::new(),
-        rectangle: (DVec2::ZERO, DVec2::ONE),
-    };
+    let mut spawner = Spawner::new(scene, folder, Notes::default());
     let mut world = World::new();
     let patch = spawner.terrain();
     let ground = patch.as_ref().map(Ground::of);
@@ -122,12 +120,23 @@ pub fn respawn(spawned: Spawned, scene: &Scene, folder: &Path) -> Result<Spawned
         // It was found there just now.
         drop(world.despawn(entity));
     }
-    let Notes { files, skipped, problems } = of_geometry.clone();
-    let rectangle = (DVec2::ZERO, DVec2::ONE);
-    Spawner { scene, folder, files, skipped, problems, rectangle }.finish(world, of_geometry)
+    Spawner::new(scene, folder, of_geometry.clone()).finish(world, of_geometry)
 }
 
-impl Spawner<'_> {
+impl<'a> Spawner<'a> {
+    fn new(scene: &'a Scene, folder: &'a Path, notes: Notes) -> Self {
+        let Notes { files, skipped, problems } = notes;
+        let (x, y, _) = scene.frame.origin_m;
+        let georeference = Some(Georeference {
+            from: DVec2::new(x, y),
+            to: DVec2::ZERO,
+            scale: DVec2::ONE,
+            is_of_degrees: false,
+        });
+        let rectangle = (DVec2::ZERO, DVec2::ONE);
+        Self { scene, folder, files, skipped, problems, rectangle, georeference }
+    }
+
     fn notes(&self) -> Notes {
         let (files, skipped) = (self.files.clone(), self.skipped.clone());
         Notes { files, skipped, problems: self.problems.clone() }

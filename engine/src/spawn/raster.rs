@@ -3,9 +3,11 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::Spawner;
+use super::lay::Georeference;
 use crate::assets::{Raster, Unit, read_raster};
 use crate::components::TerrainPatch;
 use crate::document::{Coordinates, Diagnostic, LandCover, NoData, Terrain, unknown_name};
+use crate::geometry::Rectangle;
 use crate::terrain::{self, Cells, Parts};
 
 /// Heights beyond this are no heights on Earth, m: a value for no data that the file does not name.
@@ -18,13 +20,27 @@ impl Spawner<'_> {
     /// The terrain of a raster.
     pub(super) fn raster(&mut self) -> Option<TerrainPatch> {
         let scene = self.scene;
-        let Terrain::Raster { file, material, land_cover, tolerance_m, no_data, lowest_m, .. } =
-            &scene.terrain
+        let Terrain::Raster {
+            file,
+            material,
+            land_cover,
+            tolerance_m,
+            coordinates,
+            no_data,
+            lowest_m,
+            ..
+        } = &scene.terrain
         else {
             return None;
         };
         let mut raster = self.read(file, "terrain.file")?;
         let (corner, size) = self.rectangle_of(&raster)?;
+        self.georeference = raster.place.as_ref().map(|place| Georeference {
+            from: place.corner,
+            to: corner,
+            scale: size / (place.cell * raster.size_in_cells()),
+            is_of_degrees: *coordinates != Some(Coordinates::Metres) && raster.is_in_degrees(),
+        });
         self.fill(&mut raster, no_data)?;
         let known = || raster.values.iter().filter(|height| !height.is_nan());
         let beyond = known().find(|height| height.abs() > HIGHEST);
@@ -48,7 +64,8 @@ impl Spawner<'_> {
                 (None, vec![(name.clone(), self.known_material(name, "terrain.material")?)])
             }
             (None, Some(cover)) => {
-                let (cells, parts) = self.land_cover(cover, &raster, corner, size)?;
+                let (cells, parts) =
+                    self.land_cover(cover, Rectangle { min: corner, max: corner + size })?;
                 (Some(cells), parts)
             }
             (None, None) => return None,
@@ -62,7 +79,7 @@ impl Spawner<'_> {
         patch
     }
 
-    fn read(&mut self, file: &str, path: &str) -> Option<Raster> {
+    pub(super) fn read(&mut self, file: &str, path: &str) -> Option<Raster> {
         let file = self.file(file);
         self.files.extend(crate::assets::companion(&file));
         match read_raster(&file) {
@@ -157,13 +174,7 @@ impl Spawner<'_> {
     }
 
     /// The part of each cell of a land cover, and the parts.
-    fn land_cover(
-        &mut self,
-        cover: &LandCover,
-        heights: &Raster,
-        corner: DVec2,
-        size: DVec2,
-    ) -> Option<(Cells<u16>, Parts)> {
+    fn land_cover(&mut self, cover: &LandCover, terrain: Rectangle) -> Option<(Cells<u16>, Parts)> {
         let raster = self.read(&cover.file, "terrain.land_cover.file")?;
         for name in cover.classes.keys().filter(|name| name.parse::<f64>().is_err()) {
             if !raster.class_names.contains(name) {
@@ -172,29 +183,14 @@ impl Spawner<'_> {
                 self.problems.push(unknown_name(path, "class", name, known));
             }
         }
-        // Where it lies in the rectangle is where it lies in the heights, in their own coordinates.
-        let (at, extent) = match (&raster.place, &heights.place) {
-            (Some(own), Some(theirs)) => {
-                let scale = size / (theirs.cell * heights.size_in_cells());
-                let extent = own.cell * raster.size_in_cells() * scale;
-                ((own.corner - theirs.corner) * scale, extent)
-            }
-            _ => (DVec2::ZERO, size),
-        };
-        let room = 1e-6 * size;
-        if !(at.cmple(room).all() && (at + extent).cmpge(size - room).all()) {
-            let (low, high) = (corner + at, corner + at + extent);
+        let (low, size) = self.lay(&raster, terrain, "terrain.land_cover.file")?;
+        let (high, room) = (low + size, 1e-6 * terrain.size());
+        if !(low.cmple(terrain.min + room).all() && high.cmpge(terrain.max - room).all()) {
+            let Rectangle { min, max } = terrain;
             let message = format!(
                 "the land cover reaches from ({}, {}) to ({}, {}) m, the heights from ({}, {}) to \
                  ({}, {}) m",
-                low.x,
-                low.y,
-                high.x,
-                high.y,
-                corner.x,
-                corner.y,
-                corner.x + size.x,
-                corner.y + size.y
+                low.x, low.y, high.x, high.y, min.x, min.y, max.x, max.y
             );
             let help = "give every place a class, or cut the heights";
             self.problems.push(Diagnostic::error("terrain.land_cover.file", message).help(help));
@@ -214,7 +210,7 @@ impl Spawner<'_> {
             return None;
         }
         let (columns, rows) = (raster.columns, raster.rows);
-        Some((Cells { columns, rows, values, corner: corner + at, size: extent }, parts))
+        Some((Cells { columns, rows, values, corner: low, size }, parts))
     }
 
     /// The part of a class; a note if it has no material.

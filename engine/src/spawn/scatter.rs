@@ -6,11 +6,11 @@ use super::Spawner;
 use super::meshes::Prototype;
 use crate::assets;
 use crate::components::Placement;
-use crate::document::{Area, Boundary, Diagnostic, Instances, Map};
+use crate::document::{Area, Boundary, Diagnostic, Instances, Map, Stems};
 use crate::geometry::{Polygon, Rectangle};
-use crate::placement::{Habit, PlacementError, Region, Species, places, stand};
+use crate::placement::{Amount, Habit, PlacementError, Region, Species, places, stand};
 use crate::sampling::Key;
-use crate::terrain::Ground;
+use crate::terrain::{Cells, Ground};
 
 impl Spawner<'_> {
     /// Instances by a rule; where that cannot be, a problem is noted.
@@ -47,13 +47,24 @@ impl Spawner<'_> {
         let Some(region) = self.region(terrain, inside, outside, &path) else {
             return Vec::new();
         };
-        let seed = Key::new(seed.unwrap_or(self.scene.transport.seed)).path("instances");
-        let stream = match name {
-            Some(name) => seed.path(name),
-            None => seed.index(index as u64),
-        };
+        let stream = self.stream(index, name.as_deref(), *seed);
         let is_periodic = self.scene.boundary == Boundary::Periodic;
-        let places = places(rule, stems, &region, terrain, is_periodic, stream.path("places"));
+        let map;
+        let amount = match stems {
+            Stems::Count(count) => Amount::Count(*count),
+            Stems::PerHectare(density) => Amount::Density(density / 1e4),
+            Stems::Fill => Amount::Fill,
+            Stems::Raster { file, factor } => {
+                let path = format!("{path}.stems");
+                let Some(found) = self.densities(file, *factor, terrain, region.bounds(), &path)
+                else {
+                    return Vec::new();
+                };
+                map = found;
+                Amount::Map(&map)
+            }
+        };
+        let places = places(rule, amount, &region, terrain, is_periodic, stream.path("places"));
         let places = match places {
             Ok(places) => places,
             Err(error) => {
@@ -78,6 +89,12 @@ impl Spawner<'_> {
             self.problems.push(Diagnostic::warning(path, message).help(help));
         }
         trees
+    }
+
+    /// Random numbers of instances, by the author's name for them or else their number.
+    pub(super) fn stream(&self, index: usize, name: Option<&str>, seed: Option<u64>) -> Key {
+        let seed = Key::new(seed.unwrap_or(self.scene.transport.seed)).path("instances");
+        name.map_or_else(|| seed.index(index as u64), |name| seed.path(name))
     }
 
     /// What may stand there.
@@ -106,6 +123,43 @@ impl Spawner<'_> {
             species.push(Species { name, share, prototype, height: top });
         }
         species
+    }
+
+    /// Stems per hectare of a raster as stems m⁻²; none where there is no data.
+    fn densities(
+        &mut self,
+        file: &str,
+        factor: f64,
+        terrain: Rectangle,
+        needed: Rectangle,
+        path: &str,
+    ) -> Option<Cells<f64>> {
+        let path = format!("{path}.file");
+        let mut cells = self.cells(file, terrain, &path)?;
+        if let Some(value) = cells.values.iter().find(|value| **value < 0.0) {
+            let message = format!("a density of {value} stems per hectare");
+            let help = "if it stands for no data, name it in the file's header";
+            self.problems.push(Diagnostic::error(path, message).help(help));
+            return None;
+        }
+        let (low, high, room) = (cells.corner, cells.corner + cells.size, 1e-6 * needed.size());
+        if !(low.cmple(needed.min + room).all() && high.cmpge(needed.max - room).all()) {
+            let message = format!(
+                "it reaches from ({}, {}) to ({}, {}) m, but stems may stand from ({}, {}) to ({}, {}) m",
+                low.x,
+                low.y,
+                high.x,
+                high.y,
+                needed.min.x,
+                needed.min.y,
+                needed.max.x,
+                needed.max.y
+            );
+            let help = "nothing stands beside it";
+            self.problems.push(Diagnostic::warning(path, message).help(help));
+        }
+        cells.values.iter_mut().for_each(|value| *value *= factor / 1e4);
+        Some(cells)
     }
 
     fn region(

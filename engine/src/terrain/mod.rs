@@ -1,5 +1,6 @@
 //! The ground: from rasters and meshes to triangles, and its height and slope at any place.
 
+mod cells;
 mod cover;
 mod grid;
 mod ground;
@@ -9,10 +10,11 @@ mod raster;
 mod surface;
 mod tin;
 
+pub use cells::Cells;
 pub use ground::Ground;
 pub use mesh::mesh;
 pub use plane::plane;
-pub use raster::{Cells, raster};
+pub use raster::raster;
 pub use surface::Parts;
 
 #[cfg(test)]

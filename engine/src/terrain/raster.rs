@@ -1,25 +1,9 @@
-use glam::DVec2;
-
+use super::Cells;
 use super::cover::{Cover, HOLE};
 use super::grid::Grid;
 use super::surface::{Parts, Surface};
 use super::tin::triangulate;
 use crate::components::TerrainPatch;
-
-/// A rectangle of cells.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cells<T> {
-    /// From west to east.
-    pub columns: usize,
-    /// From north to south.
-    pub rows: usize,
-    /// Shape `[rows, columns]`, row 0 in the north.
-    pub values: Vec<T>,
-    /// South-west corner, m, local frame.
-    pub corner: DVec2,
-    /// Extent to the east and to the north, m.
-    pub size: DVec2,
-}
 
 /// The ground of a raster of heights, m, triangulated so that its surface passes within `tolerance`
 /// of the height at the centre of every cell, measured vertically, plus the rounding of f32 over the
@@ -52,15 +36,6 @@ pub fn raster(
     let tin = triangulate(&grid, &parts_of_cells, tolerance.max(rounding));
     let surface = Surface::new(corner, size, &tin.corners, tin.triangles);
     Some(surface.finish(parts, is_periodic))
-}
-
-impl<T> Cells<T> {
-    /// Other values of the same cells.
-    #[must_use]
-    pub const fn with<U>(&self, values: Vec<U>) -> Cells<U> {
-        let Self { columns, rows, corner, size, .. } = *self;
-        Cells { columns, rows, values, corner, size }
-    }
 }
 
 /// A cover over the rectangle of the heights, clipped to it.

@@ -50,6 +50,7 @@ broken! {
     placement
     placement_rules
     quoted_key
+    rasters_of_trees
     repeated_keys
     sky_without_sun
     spectra

@@ -35,6 +35,20 @@ pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
                 }
             }
             Instances::Scatter { .. } => check_scatter(scene, instances, &path, report),
+            Instances::CanopyHeights { of, min_height_m, window, sink_m, .. } => {
+                let at = format!("{path}.of");
+                for (index, name) in of.iter().enumerate() {
+                    report.name(&format!("{at}[{index}]"), "mesh", name, &scene.meshes, "meshes");
+                }
+                if of.is_empty() && report.is_whole(&at) {
+                    let help = "write, for example, `of: [\"oak\", \"fir\"]`";
+                    report.error(&at, "nothing would stand there", help);
+                }
+                report.above_zero(&format!("{path}.min_height_m"), *min_height_m);
+                report.at_least(&format!("{path}.window[0]"), window.0, 0.0);
+                report.at_least(&format!("{path}.window[1]"), window.1, 0.0);
+                report.finite(&format!("{path}.sink_m"), &[*sink_m]);
+            }
         }
     }
 }
@@ -146,6 +160,9 @@ fn check_rule(rule: &Rule, stems: &Stems, path: &str, report: &mut Report<'_>) {
                 report.error(&format!("{path}.stems"), message, help);
             }
         }
+    }
+    if let Stems::Raster { factor, .. } = stems {
+        report.at_least(&format!("{path}.stems.factor"), *factor, 0.0);
     }
     if let Stems::PerHectare(density) = stems
         && !(*density >= 0.0 && density.is_finite())

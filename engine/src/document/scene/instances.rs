@@ -72,6 +72,24 @@ choice! {
             /// Another number is another forest under the same light; that of `transport` if absent.
             seed: Option<u64> = None,
         },
+        /// Trees as a canopy height model shows them, on the terrain.
+        CanopyHeights {
+            /// Raster of heights above the ground, m: ESRI ASCII grid, ENVI or `GeoTIFF`. It lies where
+            /// the file says, as the terrain does; over the whole terrain if the file does not.
+            file: String => r#""chm.asc""#,
+            /// Meshes. Each tree gets the one whose ratio of height to crown diameter is nearest to
+            /// its own, scaled to both.
+            of: Vec<String> => r#"["oak", "fir"]"#,
+            /// What is lower is no tree, m.
+            min_height_m: f64 = 3.0,
+            /// Two numbers a, b: of tops less than half of a m + b h² from one of height h m, only
+            /// the highest counts.
+            window: (f64, f64) = (2.51, 0.009),
+            /// How deep the mesh's origin lies below the terrain, m.
+            sink_m: f64 = 0.0,
+            /// Name for `hide` and `select`, and of the random numbers that turn the trees.
+            name: Option<String> = None,
+        },
     }
 }
 
@@ -105,6 +123,15 @@ choice! {
         Count(u32 => "500"),
         /// So many a hectare of the area where they may stand.
         PerHectare(f64 => "400.0"),
+        /// So many a hectare as a raster says, place by place: ESRI ASCII grid, ENVI or `GeoTIFF`. It
+        /// lies where the file says, as the terrain does; over the whole terrain if the file does
+        /// not. Beside it and where it has no data stands nothing.
+        Raster {
+            /// Path, relative to the scene file.
+            file: String => r#""density.asc""#,
+            /// Stems per hectare of a value of 1.
+            factor: f64 = 1.0,
+        },
         /// As many as the rule has room for.
         Fill,
     }
@@ -187,17 +214,20 @@ impl Instances {
     /// Name that the author gave.
     #[must_use]
     pub fn name(&self) -> Option<&str> {
-        let (Self::Table { name, .. } | Self::List { name, .. } | Self::Scatter { name, .. }) =
-            self;
+        let (Self::Table { name, .. }
+        | Self::List { name, .. }
+        | Self::Scatter { name, .. }
+        | Self::CanopyHeights { name, .. }) = self;
         name.as_deref()
     }
 
     /// Meshes that it places, in document order.
-    pub fn meshes(&self) -> impl Iterator<Item = &str> {
-        let (one, many) = match self {
-            Self::Table { of, .. } | Self::List { of, .. } => (Some(of.as_str()), None),
-            Self::Scatter { of, .. } => (None, Some(of.keys().map(String::as_str))),
-        };
-        one.into_iter().chain(many.into_iter().flatten())
+    #[must_use]
+    pub fn meshes(&self) -> Vec<&str> {
+        match self {
+            Self::Table { of, .. } | Self::List { of, .. } => vec![of],
+            Self::Scatter { of, .. } => of.keys().map(String::as_str).collect(),
+            Self::CanopyHeights { of, .. } => of.iter().map(String::as_str).collect(),
+        }
     }
 }

@@ -6,8 +6,9 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
+use super::Window;
 use super::tops::tops;
-use super::{HeightModel, Window};
+use crate::terrain::Cells;
 
 /// A tree as a canopy height model shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,10 +51,10 @@ impl Ord for Waiting {
 ///
 /// Source: Meyer (1994), "Topographic distance and watershed lines", Signal Processing 38, 113–125.
 #[must_use]
-pub fn crowns(model: &HeightModel, window: Window, least: f64) -> Vec<Crown> {
+pub fn crowns(model: &Cells<f64>, window: Window, least: f64) -> Vec<Crown> {
     const NONE: u32 = u32::MAX;
     let tops = tops(model, window, least);
-    let mut owners = vec![NONE; model.heights.len()];
+    let mut owners = vec![NONE; model.values.len()];
     let mut waiting = BinaryHeap::new();
     let mut order = 0;
     let mut wait = |waiting: &mut BinaryHeap<Waiting>, level: f64, cell: usize| {
@@ -62,11 +63,11 @@ pub fn crowns(model: &HeightModel, window: Window, least: f64) -> Vec<Crown> {
     };
     for (tree, &cell) in (0..).zip(&tops) {
         owners[cell] = tree;
-        wait(&mut waiting, model.heights[cell], cell);
+        wait(&mut waiting, model.values[cell], cell);
     }
     while let Some(Waiting { level, cell, .. }) = waiting.pop() {
         for other in model.around(cell) {
-            let height = model.heights[other];
+            let height = model.values[other];
             if owners[other] == NONE && height >= least {
                 owners[other] = owners[cell];
                 wait(&mut waiting, height.min(level), other);
@@ -78,14 +79,14 @@ pub fn crowns(model: &HeightModel, window: Window, least: f64) -> Vec<Crown> {
     for (cell, &owner) in owners.iter().enumerate().filter(|&(_, &owner)| owner != NONE) {
         counts[owner as usize] += 1;
         let top = &mut highest[owner as usize];
-        if model.heights[cell] > model.heights[*top] {
+        if model.values[cell] > model.values[*top] {
             *top = cell;
         }
     }
-    let area = model.cell.x * model.cell.y;
+    let area = model.cell().x * model.cell().y;
     let crown = |(top, count): (usize, u32)| Crown {
         place: model.center(top),
-        height: model.heights[top],
+        height: model.values[top],
         diameter: 2.0 * (f64::from(count) * area / PI).sqrt(),
     };
     highest.into_iter().zip(counts).map(crown).collect()

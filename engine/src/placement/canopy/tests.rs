@@ -5,21 +5,22 @@ use glam::DVec2;
 use super::*;
 use crate::components::PrototypeId;
 use crate::sampling::Key;
+use crate::terrain::Cells;
 
 const WINDOW: Window = Window { a: 2.51, b: 0.009 };
 
 /// A model of 60 m x 40 m in cells of 0.25 m, at a place of its own.
-fn drawn(height: impl Fn(DVec2) -> f64) -> HeightModel {
+fn drawn(height: impl Fn(DVec2) -> f64) -> Cells<f64> {
     let (columns, rows) = (240, 160);
-    let mut model = HeightModel {
+    let mut model = Cells {
         columns,
         rows,
-        heights: vec![0.0; columns * rows],
+        values: vec![0.0; columns * rows],
         corner: DVec2::new(100.0, -50.0),
-        cell: DVec2::splat(0.25),
+        size: DVec2::new(60.0, 40.0),
     };
-    for index in 0..model.heights.len() {
-        model.heights[index] = height(model.center(index));
+    for index in 0..model.values.len() {
+        model.values[index] = height(model.center(index));
     }
     model
 }
@@ -93,17 +94,17 @@ fn every_top_is_the_highest_of_its_window_and_crowns_share_out_the_canopy() {
     let tops = tops::tops(&noise, WINDOW, 3.0);
     assert!(tops.len() > 50);
     for (number, &top) in tops.iter().enumerate() {
-        let height = noise.heights[top];
+        let height = noise.values[top];
         let reach = 0.5 * (WINDOW.a + WINDOW.b * height * height);
         let place = noise.center(top);
-        let higher = (0..noise.heights.len()).find(|&cell| {
-            noise.heights[cell] > height && noise.center(cell).distance(place) <= reach
+        let higher = (0..noise.values.len()).find(|&cell| {
+            noise.values[cell] > height && noise.center(cell).distance(place) <= reach
         });
         assert_eq!(higher, None, "top {number}");
     }
     let found = crowns(&noise, WINDOW, 3.0);
     let area: f64 = found.iter().map(|c| std::f64::consts::PI * (0.5 * c.diameter).powi(2)).sum();
-    let above = noise.heights.iter().filter(|&&height| height >= 3.0).count() as f64 * 0.0625;
+    let above = noise.values.iter().filter(|&&height| height >= 3.0).count() as f64 * 0.0625;
     // Cells that nothing but lower ones surround belong to no tree.
     assert!(area <= above + 1e-6 && area > 0.95 * above, "{area} of {above}");
 }

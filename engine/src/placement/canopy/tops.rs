@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::HeightModel;
+use crate::terrain::Cells;
 
 /// How wide the crown of a tree is expected to be: `a + b h²`, m, for a height h in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,22 +23,22 @@ pub struct Window {
 ///
 /// Source: the variable window is that of Popescu and Wynne (2004), Photogramm. Eng. Remote Sens.
 /// 70, 589–604.
-pub(super) fn tops(model: &HeightModel, window: Window, least: f64) -> Vec<usize> {
+pub(super) fn tops(model: &Cells<f64>, window: Window, least: f64) -> Vec<usize> {
     let offsets = Offsets::new(model, window);
     let candidates = plateaus(model, least);
     let highest: Vec<usize> = candidates
         .into_par_iter()
         .filter(|&cell| {
-            let height = model.heights[cell];
-            !offsets.near(model, window, cell).any(|other| model.heights[other] > height)
+            let height = model.values[cell];
+            !offsets.near(model, window, cell).any(|other| model.values[other] > height)
         })
         .collect();
-    let mut is_top = vec![false; model.heights.len()];
+    let mut is_top = vec![false; model.values.len()];
     let mut tops: Vec<usize> = Vec::new();
     for cell in highest {
-        let height = model.heights[cell];
+        let height = model.values[cell];
         let is_equal = |other: usize| {
-            is_top[other] && model.heights[other].total_cmp(&height) == Ordering::Equal
+            is_top[other] && model.values[other].total_cmp(&height) == Ordering::Equal
         };
         if !offsets.near(model, window, cell).any(is_equal) {
             is_top[cell] = true;
@@ -49,11 +49,11 @@ pub(super) fn tops(model: &HeightModel, window: Window, least: f64) -> Vec<usize
 }
 
 /// One cell of each level group of cells that no neighbour of theirs exceeds, ascending.
-fn plateaus(model: &HeightModel, least: f64) -> Vec<usize> {
-    let mut seen = vec![false; model.heights.len()];
+fn plateaus(model: &Cells<f64>, least: f64) -> Vec<usize> {
+    let mut seen = vec![false; model.values.len()];
     let mut found = Vec::new();
-    for start in 0..model.heights.len() {
-        let height = model.heights[start];
+    for start in 0..model.values.len() {
+        let height = model.values[start];
         if seen[start] || height.is_nan() || height < least {
             continue;
         }
@@ -62,8 +62,8 @@ fn plateaus(model: &HeightModel, least: f64) -> Vec<usize> {
         while let Some(&cell) = group.get(next) {
             next += 1;
             for other in model.around(cell) {
-                is_exceeded |= model.heights[other] > height;
-                let is_level = model.heights[other].total_cmp(&height) == Ordering::Equal;
+                is_exceeded |= model.values[other] > height;
+                let is_level = model.values[other].total_cmp(&height) == Ordering::Equal;
                 if is_level && !seen[other] {
                     seen[other] = true;
                     group.push(other);
@@ -89,16 +89,16 @@ fn plateaus(model: &HeightModel, least: f64) -> Vec<usize> {
 struct Offsets(Vec<(i32, i32, f64)>);
 
 impl Offsets {
-    fn new(model: &HeightModel, window: Window) -> Self {
-        let highest = model.heights.iter().copied().filter(|h| h.is_finite()).fold(0.0, f64::max);
+    fn new(model: &Cells<f64>, window: Window) -> Self {
+        let highest = model.values.iter().copied().filter(|h| h.is_finite()).fold(0.0, f64::max);
         let reach = 0.5 * (window.a + window.b * highest * highest);
         // Beyond the model there are no cells.
         let steps = |cell: f64, count: usize| (reach / cell).min(count as f64) as i32;
-        let (x, y) = (steps(model.cell.x, model.columns), steps(model.cell.y, model.rows));
+        let (x, y) = (steps(model.cell().x, model.columns), steps(model.cell().y, model.rows));
         let mut offsets = Vec::new();
         for dy in -y..=y {
             for dx in -x..=x {
-                let step = DVec2::new(f64::from(dx), f64::from(dy)) * model.cell;
+                let step = DVec2::new(f64::from(dx), f64::from(dy)) * model.cell();
                 let distance = step.length();
                 if distance <= reach && (dx, dy) != (0, 0) {
                     offsets.push((dx, dy, distance));
@@ -110,13 +110,8 @@ impl Offsets {
     }
 
     /// The cells in the window of one.
-    fn near(
-        &self,
-        model: &HeightModel,
-        window: Window,
-        cell: usize,
-    ) -> impl Iterator<Item = usize> {
-        let height = model.heights[cell];
+    fn near(&self, model: &Cells<f64>, window: Window, cell: usize) -> impl Iterator<Item = usize> {
+        let height = model.values[cell];
         let reach = 0.5 * (window.a + window.b * height * height);
         let (columns, rows) = (model.columns as i64, model.rows as i64);
         let (column, row) = (cell as i64 % columns, cell as i64 / columns);

@@ -1,0 +1,91 @@
+use std::collections::BTreeMap;
+
+use super::Spawner;
+use super::meshes::Prototype;
+use crate::components::Placement;
+use crate::document::{Diagnostic, Instances};
+use crate::geometry::Rectangle;
+use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
+use crate::terrain::Ground;
+
+/// Heights beyond this are no trees, m: a value for no data that the file does not name.
+const HIGHEST: f64 = 150.0;
+
+impl Spawner<'_> {
+    /// Trees of a canopy height model; where that cannot be, a problem is noted.
+    pub(super) fn canopy(
+        &mut self,
+        canopy: &Instances,
+        index: usize,
+        meshes: &BTreeMap<u32, Prototype>,
+        ground: &Ground,
+    ) -> Option<Vec<Placement>> {
+        let Instances::CanopyHeights { file, of, min_height_m, window, sink_m, name } = canopy
+        else {
+            return None;
+        };
+        let path = format!("instances[{index}]");
+        let corner = ground.corner();
+        let terrain = Rectangle { min: corner, max: corner + ground.size() };
+        let models = self.models(of, meshes, &path)?;
+        let at = format!("{path}.file");
+        let model = self.cells(file, terrain, &at)?;
+        let beyond = |height: &&f64| height.abs() > HIGHEST;
+        if let Some(height) = model.values.iter().find(beyond) {
+            let message = format!("a tree of {height} m is not of this Earth");
+            let help = "if it stands for no data, name it in the file's header";
+            self.problems.push(Diagnostic::error(at, message).help(help));
+            return None;
+        }
+        let window = Window { a: window.0, b: window.1 };
+        let found = crowns(&model, window, *min_height_m);
+        let heights: Vec<Option<f64>> =
+            found.iter().map(|crown| ground.height(crown.place)).collect();
+        let (trees, heights): (Vec<Crown>, Vec<f64>) =
+            found.iter().zip(heights).filter_map(|(&crown, height)| Some((crown, height?))).unzip();
+        if trees.is_empty() {
+            let message = format!("no tree of {min_height_m} m stands on the terrain");
+            let high = model.values.iter().copied().fold(0.0, f64::max);
+            let end = model.corner + model.size;
+            let help = format!(
+                "its highest cell is {high} m, and it reaches from ({}, {}) to ({}, {})",
+                model.corner.x, model.corner.y, end.x, end.y
+            );
+            self.problems.push(Diagnostic::error(at, message).help(help));
+        } else if trees.len() < found.len() {
+            let beside = found.len() - trees.len();
+            let message = format!("{beside} of {} trees have no terrain below", found.len());
+            let help = "they are left out";
+            self.problems.push(Diagnostic::warning(at, message).help(help));
+        }
+        let stream = self.stream(index, name.as_deref(), None);
+        Some(fit(&trees, &heights, &models, *sink_m, stream))
+    }
+
+    /// The meshes that may stand for trees; `None` if there is none.
+    fn models(
+        &mut self,
+        of: &[String],
+        meshes: &BTreeMap<u32, Prototype>,
+        path: &str,
+    ) -> Option<Vec<Model>> {
+        let mut models = Vec::new();
+        for (index, name) in of.iter().enumerate() {
+            let path = format!("{path}.of[{index}]");
+            let Some(prototype) = self.prototype(name, path.clone()) else { continue };
+            // One that is hidden everywhere or could not be loaded stands for no tree.
+            let Some(mesh) = meshes.get(&prototype.0) else { continue };
+            let (low, high) = mesh.mesh.bounds().unwrap_or_default();
+            let size = (high - low).as_dvec3();
+            let (height, diameter) = (f64::from(high.z), (size.x * size.y).sqrt());
+            if height > 0.0 && diameter > 0.0 {
+                models.push(Model { prototype, height, diameter });
+            } else {
+                let message = format!("`{name}` has no height above its origin, or no width");
+                let help = "add `origin: BaseCenter` to the mesh, or take another";
+                self.problems.push(Diagnostic::error(path, message).help(help));
+            }
+        }
+        (!models.is_empty()).then_some(models)
+    }
+}

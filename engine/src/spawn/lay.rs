@@ -1,0 +1,75 @@
+use glam::DVec2;
+
+use super::Spawner;
+use crate::assets::Raster;
+use crate::document::Diagnostic;
+use crate::geometry::Rectangle;
+use crate::terrain::Cells;
+
+/// How the coordinates of rasters become those of the scene: `to + (place - from) scale`, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Georeference {
+    pub(super) from: DVec2,
+    pub(super) to: DVec2,
+    pub(super) scale: DVec2,
+    pub(super) is_of_degrees: bool,
+}
+
+impl Spawner<'_> {
+    /// South-west corner and extent of a further raster, m, local frame: where it lies in the
+    /// coordinates of the terrain's, and over the whole terrain if one of the two does not say where.
+    pub(super) fn lay(
+        &mut self,
+        raster: &Raster,
+        terrain: Rectangle,
+        path: &str,
+    ) -> Option<(DVec2, DVec2)> {
+        let (Some(place), Some(reference)) = (&raster.place, self.georeference) else {
+            return Some((terrain.min, terrain.size()));
+        };
+        if raster.is_in_degrees() != reference.is_of_degrees {
+            let (own, others) = if reference.is_of_degrees {
+                ("metres", "the terrain's are degrees")
+            } else {
+                ("degrees", "a scene is in metres")
+            };
+            let message = format!("its coordinates are {own}, but {others}");
+            let help = "reproject it to the coordinates of the others, for example \
+                        `gdalwarp -t_srs EPSG:32633 -r near in out` (UTM zone 33 north)";
+            self.problems.push(Diagnostic::error(path, message).help(help));
+            return None;
+        }
+        let corner = reference.to + (place.corner - reference.from) * reference.scale;
+        Some((corner, place.cell * raster.size_in_cells() * reference.scale))
+    }
+
+    /// A raster on the terrain, of which it covers at least a part.
+    pub(super) fn cells(
+        &mut self,
+        file: &str,
+        terrain: Rectangle,
+        path: &str,
+    ) -> Option<Cells<f64>> {
+        let raster = self.read(file, path)?;
+        let (corner, size) = self.lay(&raster, terrain, path)?;
+        let end = corner + size;
+        if !(corner.cmplt(terrain.max).all() && end.cmpgt(terrain.min).all()) {
+            let message = format!(
+                "it reaches from ({}, {}) to ({}, {}) m, the terrain from ({}, {}) to ({}, {}) m",
+                corner.x,
+                corner.y,
+                end.x,
+                end.y,
+                terrain.min.x,
+                terrain.min.y,
+                terrain.max.x,
+                terrain.max.y
+            );
+            let help = "rasters lie where their files say, less `frame.origin_m`";
+            self.problems.push(Diagnostic::error(path, message).help(help));
+            return None;
+        }
+        let (columns, rows) = (raster.columns, raster.rows);
+        Some(Cells { columns, rows, values: raster.values, corner, size })
+    }
+}
