@@ -70,7 +70,8 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let mut sweep = run::Sweep::read(&arguments.scene.file, &run_options(arguments))?;
     let points = sweep.points().to_vec();
     let mut ran = 0;
-    for (index, point) in points.iter().enumerate() {
+    for index in sweep.order().to_vec() {
+        let point = &points[index];
         if output::is_complete(point, &folder) {
             continue;
         }

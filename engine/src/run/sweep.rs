@@ -20,6 +20,7 @@ pub struct Sweep {
     file: PathBuf,
     options: Options,
     points: Vec<Point>,
+    order: Vec<usize>,
     kept: Option<Kept>,
     builds: usize,
 }
@@ -40,21 +41,34 @@ impl Sweep {
         let sweep = sweep.fixed(&options.document.set);
         let mut contents = HashMap::new();
         let mut points = Vec::with_capacity(sweep.len());
+        // The first point of the same geometry as each.
+        let (mut alike, mut firsts) = (Vec::with_capacity(sweep.len()), HashMap::new());
         for index in 0..sweep.len() {
             let params = sweep.point(index);
             let mut point = Point { params, key: String::new() };
-            let key = key(file, &at(options, &point), &mut contents);
-            point.key = key.map_err(|source| wrong_at(&point, source))?;
+            let found = keys(file, &at(options, &point), &mut contents);
+            let (key, geometry) = found.map_err(|source| wrong_at(&point, source))?;
+            point.key = key;
             points.push(point);
+            alike.push(*firsts.entry(geometry).or_insert(index));
         }
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by_key(|&index| alike[index]);
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, points, kept: None, builds: 0 })
+        Ok(Self { file, options, points, order, kept: None, builds: 0 })
     }
 
     /// All points, the last parameter fastest.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
+    }
+
+    /// Places of the points in the order to run them in: those of the same geometry, which is then
+    /// built once, one after the other.
+    #[must_use]
+    pub fn order(&self) -> &[usize] {
+        &self.order
     }
 
     /// How often meshes, instances and terrain have been built so far.
@@ -96,7 +110,12 @@ fn wrong_at(point: &Point, source: Failure) -> Failure {
 /// Content hashes of files by path, so that each file is read once.
 type Contents = HashMap<PathBuf, blake3::Hash>;
 
-fn key(file: &Path, options: &Options, contents: &mut Contents) -> Result<String, Failure> {
+/// Hashes of all that decides the results at a point, and of its geometry.
+fn keys(
+    file: &Path,
+    options: &Options,
+    contents: &mut Contents,
+) -> Result<(String, blake3::Hash), Failure> {
     let reading = read(file, options)?;
     let swept = |path: &str| {
         let name = path.strip_prefix("params.")?;
@@ -124,7 +143,8 @@ fn key(file: &Path, options: &Options, contents: &mut Contents) -> Result<String
         };
         hasher.update(hash.as_bytes());
     }
-    Ok(hasher.finalize().to_hex().to_string())
+    let geometry = blake3::hash(form(&reading.scene).to_ron().as_bytes());
+    Ok((hasher.finalize().to_hex().to_string(), geometry))
 }
 
 /// Geometry that was built, and the scene that it is of.
