@@ -33,6 +33,28 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Print a JSON schema of the scene language: every key, described
     Schema,
+    /// Turn a project folder of LESS 1.8.8 into a scene, and say what became of each setting
+    ImportLess(ImportLess),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ImportLess {
+    /// Folder of the project, with `Parameters/input.conf` in it
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: PathBuf,
+
+    /// Folder for the scene and its files [default: imported/<name of the project>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl ImportLess {
+    /// Folder for the scene.
+    pub(crate) fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            Path::new("imported").join(self.folder.file_name().unwrap_or_default())
+        })
+    }
 }
 
 #[derive(Args, Debug)]

@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use sunfleck::{document, output, run};
 
 use crate::arguments::{Bench, Command, Fmt, Run, Scene};
-use crate::bench;
+use crate::{bench, import_less};
 use crate::progress::Bars;
 
 /// Heading of what a scene defines and does not use.
@@ -22,6 +22,9 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Expand(scene) => expand(scene),
         Command::Fmt(arguments) => fmt(arguments),
         Command::Schema => print(&document::json_schema()),
+        Command::ImportLess(arguments) => {
+            print(&import_less::import(&arguments.folder, &arguments.out())?)
+        }
         Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
     }
 }

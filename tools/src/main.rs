@@ -5,6 +5,7 @@
 mod arguments;
 mod bench;
 mod commands;
+mod import_less;
 mod progress;
 
 use std::io::{self, Write as _};

@@ -1,0 +1,114 @@
+//! Batch files: lists of values for settings, zipped within a group, combined between groups.
+
+use std::path::Path;
+
+use anyhow::{Context as _, Result};
+
+use super::conf::{self, Node};
+use super::text;
+
+/// A batch has no more points.
+const MOST_POINTS: usize = 100_000;
+
+/// What a batch varies.
+#[derive(Debug)]
+pub(super) struct Batch {
+    /// Its name: that of the file.
+    pub(super) name: String,
+    groups: Vec<Vec<Axis>>,
+}
+
+/// A setting and its values.
+#[derive(Debug)]
+pub(super) struct Axis {
+    pub(super) name: String,
+    pub(super) values: Vec<f64>,
+    /// `file:line` of the list.
+    pub(super) place: String,
+}
+
+/// Files of settings beside `input.conf`.
+pub(super) fn read_all(folder: &Path) -> Result<Vec<Batch>> {
+    let entries = folder.read_dir().with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut files: Vec<_> = entries.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+    files.retain(|file| {
+        let is_settings = file.extension().is_some_and(|ext| ext == "conf" || ext == "json");
+        is_settings && file.is_file() && file.file_name().is_some_and(|name| name != "input.conf")
+    });
+    files.sort();
+    files.iter().map(|file| read(file)).collect()
+}
+
+fn read(file: &Path) -> Result<Batch> {
+    let root = Node::read(file)?;
+    let mut groups = Vec::new();
+    for (_, group) in root.entries() {
+        let axes: Vec<Axis> =
+            group.entries().iter().map(|(name, node)| axis(name, node)).collect::<Result<_>>()?;
+        if let Some(other) = axes.iter().find(|axis| axis.values.len() != axes[0].values.len()) {
+            let (first, n, m) = (&axes[0].name, axes[0].values.len(), other.values.len());
+            return Err(group.wrong(&format!(
+                "`{first}` has {n} values and `{}` has {m}: those of a group go together",
+                other.name
+            )));
+        }
+        if axes.is_empty() {
+            return Err(group.wrong("a group holds settings: {\"sun_zenith\": \"LIST:30,45\"}"));
+        }
+        groups.push(axes);
+    }
+    let points = groups.iter().map(|axes| axes[0].values.len());
+    if points.fold(1_usize, usize::saturating_mul) > MOST_POINTS {
+        return Err(root.wrong(&format!("the batch has more than {MOST_POINTS} points")));
+    }
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    Ok(Batch { name: text::file_name(&name), groups })
+}
+
+fn axis(name: &str, node: &Node) -> Result<Axis> {
+    let text = node.text()?;
+    let list = text.strip_prefix("LIST:").ok_or_else(|| {
+        node.wrong(&format!("{:?} is no list: write \"LIST:30,45\"", text::excerpt(&text)))
+    })?;
+    let values =
+        conf::numbers(list).map_err(|part| node.wrong(&format!("{part:?} is not a number")))?;
+    Ok(Axis { name: name.to_owned(), values, place: node.place.clone() })
+}
+
+impl Batch {
+    /// What it varies.
+    pub(super) fn axes(&self) -> impl Iterator<Item = &Axis> {
+        self.groups.iter().flatten()
+    }
+
+    /// Leaves out settings that the scene does not follow.
+    pub(super) fn keep(&mut self, is_kept: impl Fn(&str) -> bool) {
+        for group in &mut self.groups {
+            group.retain(|axis| is_kept(&axis.name));
+        }
+        self.groups.retain(|group| !group.is_empty());
+    }
+
+    /// The scene's `sweep`; none if nothing varies.
+    pub(super) fn sweep(&self) -> Option<String> {
+        let grid = self.groups.iter().all(|group| group.len() == 1);
+        let (mut before, mut after) = (1, self.groups.iter().map(|g| g[0].values.len()).product());
+        let mut axes = Vec::new();
+        for group in &self.groups {
+            let count = group[0].values.len();
+            after /= count.max(1);
+            for axis in group {
+                let each = |&value: &f64| std::iter::repeat_n(value, after);
+                let values: Vec<f64> = if grid || self.groups.len() == 1 {
+                    axis.values.clone()
+                } else {
+                    (0..before).flat_map(|_| axis.values.iter().flat_map(each)).collect()
+                };
+                axes.push(format!("{}: {}", text::quoted(&axis.name), text::list(&values)));
+            }
+            before *= count;
+        }
+        let rule = if grid { "Grid" } else { "Zip" };
+        (!axes.is_empty()).then(|| format!("{rule}({{ {} }})", axes.join(", ")))
+    }
+}

@@ -1,0 +1,134 @@
+//! Places of objects.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+
+use anyhow::{Context as _, Result, bail};
+use indexmap::IndexMap;
+
+use super::objects::Bounds;
+use super::optics::unknown;
+use super::text::{self, quoted};
+use super::{Project, Section, conf};
+
+/// Where an object stands: x, y, z (m), yaw (degrees), horizontal and vertical scale.
+type Row = [f64; 6];
+
+impl Project {
+    /// The scene's `instances` and `hide`: a table for each object.
+    pub(super) fn instances_ron(
+        &mut self,
+        objects: &IndexMap<String, Bounds>,
+        section: &mut Section,
+    ) -> Result<()> {
+        let Some((name, place)) = self.list_file("tree_pos_file", "instances.txt")? else {
+            return Ok(());
+        };
+        let mut rows: IndexMap<String, Vec<Row>> = IndexMap::new();
+        let (width, height) = self.size;
+        let is_bounded = !section.terrain.starts_with("terrain: Mesh");
+        text::lines(&self.parameters.join(&name), |line| {
+            let (object, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+            let Some(bounds) = objects.get(object) else {
+                bail!(unknown("object", object, objects.keys()));
+            };
+            let numbers: Option<Vec<f64>> = rest.split_whitespace().map(conf::finite).collect();
+            let (x, y, z, yaw, scale) = match numbers.as_deref() {
+                Some(&[x, y, z]) => (x, y, z, 0.0, (1.0, 1.0)),
+                Some(&[x, y, z, turn]) => (x, y, z, turn, (1.0, 1.0)),
+                Some(&[x, y, z, diameter, tall]) if diameter > 0.0 && tall > 0.0 => {
+                    (x, y, z, 0.0, (diameter / bounds.diameter(), tall / bounds.height()))
+                }
+                _ => bail!(
+                    "{:?} is not `object x y z`, `.. rotation` or `.. diameter height`",
+                    text::excerpt(line)
+                ),
+            };
+            if !(scale.0.is_finite() && scale.1.is_finite()) {
+                bail!("the object {object:?} is flat: it cannot be scaled to a diameter and a height");
+            }
+            let north = height - y;
+            if is_bounded && !((0.0..=width).contains(&x) && (0.0..=height).contains(&north)) {
+                bail!("({x}, {y}) lies outside the scene of {width} m x {height} m");
+            }
+            rows.entry(object.to_owned()).or_default().push([x, north, z, yaw, scale.0, scale.1]);
+            Ok(())
+        })
+        .with_context(|| place)?;
+        if rows.values().flatten().any(|row| row[3] != 0.0) {
+            let what = "taken as counter-clockwise seen from above";
+            self.report.add(&name, "rotations", what);
+        }
+        if rows.values().flatten().any(|row| (row[4], row[5]) != (1.0, 1.0)) {
+            let what = "scaled by the extent of the whole object; LESS took its first component's";
+            self.report.add(&name, "diameters and heights", what);
+        }
+        for object in objects.keys().filter(|object| !rows.contains_key(*object)) {
+            self.report.add(&name, object, "stands nowhere");
+        }
+        section.instances = "instances: [\n".to_owned();
+        let mut files = Vec::new();
+        for (object, rows) in &rows {
+            let mut file = format!("assets/places_{}.csv", text::file_name(object));
+            while files.contains(&file.to_ascii_lowercase()) {
+                file = file.replace(".csv", "_.csv");
+            }
+            files.push(file.to_ascii_lowercase());
+            self.write_places(&file, rows)?;
+            writeln!(
+                section.instances,
+                "Table(file: {}, of: {}, on_terrain: true),",
+                quoted(&file),
+                quoted(object)
+            )?;
+        }
+        section.instances += "],\n";
+        self.hidden(objects, section)
+    }
+
+    fn write_places(&self, file: &str, rows: &[Row]) -> Result<()> {
+        let path = self.out.join(file);
+        let mut out = BufWriter::new(
+            File::create(&path).with_context(|| format!("cannot write {}", path.display()))?,
+        );
+        let is_turned = rows.iter().any(|row| row[3] != 0.0);
+        let is_scaled = rows.iter().any(|row| (row[4], row[5]) != (1.0, 1.0));
+        let turn = if is_turned { ",yaw_deg" } else { "" };
+        let scale = if is_scaled { ",scale,scale_vertical" } else { "" };
+        writeln!(out, "x_m,y_m,z_m{turn}{scale}")?;
+        for [x, y, z, yaw, horizontal, vertical] in rows {
+            write!(out, "{x},{y},{z}")?;
+            if is_turned {
+                write!(out, ",{yaw}")?;
+            }
+            if is_scaled {
+                write!(out, ",{horizontal},{vertical}")?;
+            }
+            writeln!(out)?;
+        }
+        Ok(out.flush()?)
+    }
+
+    /// Objects that the user has hidden; LESS leaves them out of the simulation too.
+    fn hidden(&mut self, objects: &IndexMap<String, Bounds>, section: &mut Section) -> Result<()> {
+        let file = self.parameters.join("hide_object.txt");
+        if !file.exists() {
+            return Ok(());
+        }
+        let mut hidden: Vec<String> = Vec::new();
+        text::lines(&file, |line| {
+            for name in line.split_whitespace() {
+                if !objects.contains_key(name) {
+                    bail!(unknown("object", name, objects.keys()));
+                }
+                hidden.push(quoted(name));
+            }
+            Ok(())
+        })?;
+        if !hidden.is_empty() {
+            section.instances += &format!("hide: [{}],\n", hidden.join(", "));
+        }
+        Ok(())
+    }
+}
