@@ -7,8 +7,8 @@ use anyhow::{Context as _, bail};
 use sunfleck::{document, output, run};
 
 use crate::arguments::{Bench, Command, Fmt, Run, Scene};
-use crate::{bench, import_less};
 use crate::progress::Bars;
+use crate::{bench, import_less};
 
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";

@@ -46,7 +46,9 @@ impl Project {
                 ),
             };
             if !(scale.0.is_finite() && scale.1.is_finite()) {
-                bail!("the object {object:?} is flat: it cannot be scaled to a diameter and a height");
+                bail!(
+                    "the object {object:?} is flat: it cannot be scaled to a diameter and a height"
+                );
             }
             let north = height - y;
             if is_bounded && !((0.0..=width).contains(&x) && (0.0..=height).contains(&north)) {
@@ -67,7 +69,7 @@ impl Project {
         for object in objects.keys().filter(|object| !rows.contains_key(*object)) {
             self.report.add(&name, object, "stands nowhere");
         }
-        section.instances = "instances: [\n".to_owned();
+        section.instances.push_str("instances: [\n");
         let mut files = Vec::new();
         for (object, rows) in &rows {
             let mut file = format!("assets/places_{}.csv", text::file_name(object));
@@ -84,7 +86,7 @@ impl Project {
             )?;
         }
         section.instances += "],\n";
-        self.hidden(objects, section)
+        self.hidden(objects, &rows, section)
     }
 
     fn write_places(&self, file: &str, rows: &[Row]) -> Result<()> {
@@ -111,7 +113,12 @@ impl Project {
     }
 
     /// Objects that the user has hidden; LESS leaves them out of the simulation too.
-    fn hidden(&mut self, objects: &IndexMap<String, Bounds>, section: &mut Section) -> Result<()> {
+    fn hidden(
+        &self,
+        objects: &IndexMap<String, Bounds>,
+        rows: &IndexMap<String, Vec<Row>>,
+        section: &mut Section,
+    ) -> Result<()> {
         let file = self.parameters.join("hide_object.txt");
         if !file.exists() {
             return Ok(());
@@ -122,12 +129,15 @@ impl Project {
                 if !objects.contains_key(name) {
                     bail!(unknown("object", name, objects.keys()));
                 }
-                hidden.push(quoted(name));
+                // Whatever stands nowhere has been told of already.
+                if rows.contains_key(name) {
+                    hidden.push(quoted(name));
+                }
             }
             Ok(())
         })?;
         if !hidden.is_empty() {
-            section.instances += &format!("hide: [{}],\n", hidden.join(", "));
+            writeln!(section.instances, "hide: [{}],", hidden.join(", "))?;
         }
         Ok(())
     }

@@ -49,7 +49,8 @@ impl Project {
                 name = format!("{name}_{}", names.len() + 1);
             }
             write!(text, "(name: {}, center_nm: {center:?}, width_nm: {width:?}", quoted(&name))?;
-            text += if self.is_thermal { ", source: Emission),\n" } else { ", source: Sunlight),\n" };
+            text +=
+                if self.is_thermal { ", source: Emission),\n" } else { ", source: Sunlight),\n" };
             names.push(name);
         }
         Ok(text + "],\n")
@@ -66,7 +67,7 @@ impl Project {
     }
 
     /// The scene's `sun`, `sky` and `thermal_sky`.
-    pub(super) fn light_ron(&mut self, swept: &mut Swept<'_>) -> Result<String> {
+    pub(super) fn light_ron(&self, swept: &mut Swept<'_>) -> Result<String> {
         let illumination = self.conf.need("illumination")?;
         let sun = illumination.need("sun")?;
         let zenith = sun.need("sun_zenith")?;
@@ -82,7 +83,8 @@ impl Project {
             writeln!(text, "irradiance: Bands({}),", list(&self.per_band(spectrum)?))?;
         } else if self.needs_solar_table() {
             writeln!(text, "irradiance: Table(file: {SOLAR_FILE:?}),")?;
-            let what = "the sun of ASTM G173-03 in place of LESS's own table; BRF does not depend on it";
+            let what =
+                "the sun of ASTM G173-03 in place of LESS's own table; BRF does not depend on it";
             self.report.add("illumination.sun", "", what);
         } else if !self.is_thermal {
             let what = "bands beyond the sun's table: an irradiance of 1; give `sun.irradiance`";
@@ -144,7 +146,9 @@ impl Project {
             let name = node.text()?;
             let mean = match conf::finite(&name) {
                 Some(kelvin) => kelvin,
-                None => self.materials.mean_temperature(&name).with_context(|| node.place.clone())?,
+                None => {
+                    self.materials.mean_temperature(&name).with_context(|| node.place.clone())?
+                }
             };
             writeln!(text, "thermal_sky: BlackBody({mean:?}),")?;
         }

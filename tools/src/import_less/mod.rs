@@ -75,9 +75,9 @@ pub(crate) fn import(folder: &Path, out: &Path) -> Result<String> {
     let conf = Node::read(&file)?;
     let (scene, sensor) = (conf.need("scene")?, conf.need("sensor")?);
     let bands = light::bands(sensor)?;
-    let mut report = Report::default();
+    let report = Report::default();
     let mut project = Project {
-        materials: Materials::read(scene, bands.len(), &mut report)?,
+        materials: Materials::read(scene, bands.len(), &report)?,
         size: Project::extent(scene)?,
         is_thermal: sensor.get("thermal_radiation").map_or(Ok(false), Node::flag)?,
         parameters,
@@ -109,7 +109,8 @@ impl Project {
             self.sensor_ron(&mut swept)?;
             for axis in batch.axes().filter(|axis| !swept.params.contains_key(&axis.name)) {
                 let what = "not varied: the scene has no number of this name";
-                self.report.add(&axis.place, &axis.name, what);
+                let place = axis.place.rsplit(['/', '\\']).next().unwrap_or_default();
+                self.report.add(place, &axis.name, what);
             }
             let followed = swept.params;
             batch.keep(|name| followed.contains_key(name));
@@ -157,14 +158,15 @@ impl Project {
         text += &light;
         text += &sensor;
         if let Some(sweep) = batch.and_then(Batch::sweep) {
-            writeln!(text, "sweep: Some({sweep}),")?;
+            writeln!(text, "sweep: {sweep},")?;
         }
         Ok(text + ")\n")
     }
 
     /// Writes a scene in normal form, once it reads.
     fn finish(&self, file: &str, text: &str) -> Result<()> {
-        let mut remarks = "// From a project of LESS 1.8.8. What is not as it was there:\n".to_owned();
+        let mut remarks =
+            "// From a project of LESS 1.8.8. What is not as it was there:\n".to_owned();
         for line in self.report.lines() {
             writeln!(remarks, "// {}", line.trim_end())?;
         }

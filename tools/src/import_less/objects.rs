@@ -22,6 +22,13 @@ pub(super) struct Bounds {
 impl Bounds {
     const NONE: Self = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
 
+    fn extend(&mut self, corner: [f64; 3]) {
+        for (axis, at) in corner.into_iter().enumerate() {
+            self.low[axis] = self.low[axis].min(at);
+            self.high[axis] = self.high[axis].max(at);
+        }
+    }
+
     fn extent(&self, axis: usize) -> f64 {
         self.high[axis] - self.low[axis]
     }
@@ -47,7 +54,8 @@ pub(super) struct Obj {
 
 impl Obj {
     pub(super) fn create(path: &Path) -> Result<Self> {
-        let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+        let file =
+            File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         Ok(Self { file: BufWriter::new(file), vertices: 0, bounds: Bounds::NONE })
     }
 
@@ -64,10 +72,7 @@ impl Obj {
                         bail!("not three numbers: {:?}", text::excerpt(line));
                     };
                     let corner = [0.0 - x, z, y];
-                    for axis in 0..3 {
-                        self.bounds.low[axis] = self.bounds.low[axis].min(corner[axis]);
-                        self.bounds.high[axis] = self.bounds.high[axis].max(corner[axis]);
-                    }
+                    self.bounds.extend(corner);
                     self.vertices += 1;
                     writeln!(self.file, "v {} {} {}", corner[0], corner[1], corner[2])?;
                 }
@@ -75,7 +80,8 @@ impl Obj {
                     let mut face = "f".to_owned();
                     let known = self.vertices - base;
                     for word in words {
-                        let number: Option<i64> = word.split('/').next().and_then(|n| n.parse().ok());
+                        let number: Option<i64> =
+                            word.split('/').next().and_then(|n| n.parse().ok());
                         let corner = match number {
                             Some(n) if (1..=known).contains(&n) => base + n,
                             Some(n) if (-known..0).contains(&n) => self.vertices + 1 + n,
@@ -108,19 +114,23 @@ impl Project {
     /// Name of a file in `Parameters/` that a setting gives.
     pub(super) fn list_file(&self, key: &str, usual: &str) -> Result<Option<(String, String)>> {
         let Some(forest) = self.conf.at(&["scene", "forest"]) else { return Ok(None) };
-        let named = forest.get(key).map(|node| Ok((node.text()?, node.place.clone())));
-        let (name, place) = named.unwrap_or_else(|| Ok((usual.to_owned(), forest.place.clone())))?
-            as (String, String);
+        let (name, place) = match forest.get(key) {
+            Some(node) => (node.text()?, &node.place),
+            None => (usual.to_owned(), &forest.place),
+        };
         if name.is_empty() {
             return Ok(None);
         }
         // LESS makes these files once there is something to put into them.
         let is_there = self.parameters.join(&name).exists();
-        Ok((is_there || name != usual).then_some((name, place)))
+        Ok((is_there || name != usual).then(|| (name, place.clone())))
     }
 
     /// The scene's `meshes`, and the extent of each object.
-    pub(super) fn objects_ron(&mut self, section: &mut Section) -> Result<IndexMap<String, Bounds>> {
+    pub(super) fn objects_ron(
+        &mut self,
+        section: &mut Section,
+    ) -> Result<IndexMap<String, Bounds>> {
         let mut objects = IndexMap::new();
         let Some((name, place)) = self.list_file("objects_file", "objects.txt")? else {
             return Ok(objects);
@@ -134,7 +144,9 @@ impl Project {
             }
             let components = components(words, &mut colours)?;
             if components.is_empty() {
-                bail!("the object {object:?} has no components: write `{object} file.obj property`");
+                bail!(
+                    "the object {object:?} has no components: write `{object} file.obj property`"
+                );
             }
             let mesh = self.mesh_name(object);
             let file = format!("assets/{mesh}.obj");
@@ -142,15 +154,18 @@ impl Project {
             let mut parts: IndexMap<String, String> = IndexMap::new();
             for Component { file, optics, temperature } in components {
                 let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
-                let mut part = text::file_name(stem.strip_prefix(&format!("{object}_")).unwrap_or(&stem));
+                let mut part =
+                    text::file_name(stem.strip_prefix(&format!("{object}_")).unwrap_or(&stem));
                 while parts.contains_key(&part) {
                     part.push('_');
                 }
                 obj.append(&part, &self.parameters.join(&file))?;
                 parts.insert(part, self.materials.wear(&optics, temperature.as_deref())?);
             }
-            let parts: Vec<_> =
-                parts.iter().map(|(part, material)| format!("{}: {}", quoted(part), quoted(material))).collect();
+            let parts: Vec<_> = parts
+                .iter()
+                .map(|(part, material)| format!("{}: {}", quoted(part), quoted(material)))
+                .collect();
             writeln!(
                 section.meshes,
                 "{}: Obj(file: {}, up: Z, unit_m: 1.0, parts: {{ {} }}),",
@@ -185,7 +200,8 @@ fn components<'a>(
 ) -> Result<Vec<Component>> {
     let mut groups: Vec<Vec<&str>> = Vec::new();
     for word in words {
-        let is_file = Path::new(word).extension().is_some_and(|ext| ext.eq_ignore_ascii_case("obj"));
+        let is_file =
+            Path::new(word).extension().is_some_and(|ext| ext.eq_ignore_ascii_case("obj"));
         match groups.last_mut() {
             _ if is_file => groups.push(vec![word]),
             Some(group) => group.push(word),
@@ -198,7 +214,10 @@ fn components<'a>(
         let (shades, temperatures): (Vec<&str>, Vec<&str>) =
             rest.iter().partition(|word| word.starts_with("0x") || word.starts_with('#'));
         if temperatures.len() > 1 || shades.len() > 1 {
-            bail!("{:?} is no component: `file.obj property temperature 0xcolour`", group.join(" "));
+            bail!(
+                "{:?} is no component: `file.obj property temperature 0xcolour`",
+                group.join(" ")
+            );
         }
         *colours += shades.len();
         Ok(Component {

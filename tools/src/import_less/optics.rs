@@ -26,7 +26,7 @@ struct Optics([Vec<f64>; 3]);
 
 impl Materials {
     /// Those of a project with so many bands.
-    pub(super) fn read(scene: &Node, bands: usize, report: &mut Report) -> Result<Self> {
+    pub(super) fn read(scene: &Node, bands: usize, report: &Report) -> Result<Self> {
         let mut materials = Self::default();
         for (name, node) in scene.get("optical_properties").map_or(&[][..], Node::entries) {
             materials.optics.insert(name.clone(), optics(name, node, bands, report)?);
@@ -85,11 +85,11 @@ impl Materials {
                 write!(text, "transmittance: Bands({}), ", list(through))?;
             }
             if front != back {
-                write!(text, "back_reflectance: Some(Bands({})), ", list(back))?;
+                write!(text, "back_reflectance: Bands({}), ", list(back))?;
             }
             if let Some(temperature) = temperature {
                 let (mean, range) = self.temperatures[temperature];
-                write!(text, "temperature: Some(MeanDelta(mean_k: {mean:?}, delta_k: {range:?})), ")?;
+                write!(text, "temperature: MeanDelta(mean_k: {mean:?}, delta_k: {range:?}), ")?;
             }
             text += "),\n";
         }
@@ -97,7 +97,7 @@ impl Materials {
     }
 }
 
-fn optics(name: &str, node: &Node, bands: usize, report: &mut Report) -> Result<Optics> {
+fn optics(name: &str, node: &Node, bands: usize, report: &Report) -> Result<Optics> {
     let value = node.need("value")?;
     let text = value.text()?;
     let parts: Vec<&str> = text.split(';').collect();
@@ -106,12 +106,14 @@ fn optics(name: &str, node: &Node, bands: usize, report: &mut Report) -> Result<
         return Err(value.wrong(&format!("{n} parts, not three: `front;back;transmittance`")));
     };
     let read = |what: &str, part: &str| -> Result<Vec<f64>> {
-        let values =
-            conf::numbers(part).map_err(|part| value.wrong(&format!("{part:?} is not a number")))?;
+        let values = conf::numbers(part)
+            .map_err(|part| value.wrong(&format!("{part:?} is not a number")))?;
         if values.len() != bands {
             let n = values.len();
             let values = if n == 1 { "value" } else { "values" };
-            return Err(value.wrong(&format!("{what} has {n} {values}, `sensor.bands` has {bands}")));
+            return Err(
+                value.wrong(&format!("{what} has {n} {values}, `sensor.bands` has {bands}"))
+            );
         }
         match values.iter().find(|&value| !(0.0..=1.0).contains(value)) {
             Some(wrong) => Err(value.wrong(&format!("{what} {wrong} is not between 0 and 1"))),
@@ -136,7 +138,11 @@ fn optics(name: &str, node: &Node, bands: usize, report: &mut Report) -> Result<
     let path = &node.path;
     if let Some(kind) = node.get("Type") {
         match kind.text()?.as_str() {
-            "0" => report.add(path, name, "values as stored here; LESS read them again from its database"),
+            "0" => report.add(
+                path,
+                name,
+                "values as stored here; LESS read them again from its database",
+            ),
             "1" => {}
             "2" => report.add(path, name, "values of PROSPECT as stored here, not its parameters"),
             other => report.add(path, other, "unknown type; the values as stored"),
@@ -145,14 +151,20 @@ fn optics(name: &str, node: &Node, bands: usize, report: &mut Report) -> Result<
     if let Some(prospect) = node.get("ProspectDParams") {
         let shown = match prospect.entries() {
             [] => prospect.shown(),
-            all => all.iter().map(|(k, v)| format!("{k} {}", v.shown())).collect::<Vec<_>>().join(", "),
+            all => {
+                all.iter().map(|(k, v)| format!("{k} {}", v.shown())).collect::<Vec<_>>().join(", ")
+            }
         };
         report.add(&prospect.path, &shown, "not kept; `Prospect(..)` computes such spectra anew");
         prospect.settle();
     }
     let is_dark = |side: &[f64]| side.iter().all(|&value| value <= 0.0);
     if is_dark(&sides[1]) && is_dark(&sides[2]) && !is_dark(&sides[0]) {
-        report.add(path, name, "black from behind, as in LESS; take out `back_reflectance` if not meant");
+        report.add(
+            path,
+            name,
+            "black from behind, as in LESS; take out `back_reflectance` if not meant",
+        );
     }
     Ok(Optics(sides))
 }
@@ -163,11 +175,9 @@ pub(super) fn unknown<'a>(
     name: &str,
     known: impl Iterator<Item = &'a String> + Clone,
 ) -> String {
-    match nearest(name, known.clone().map(String::as_str)) {
-        Some(near) => format!("there is no {what} {name:?}; the nearest is {near:?}"),
-        None => {
-            let known: Vec<_> = known.take(10).map(String::as_str).collect();
-            format!("there is no {what} {name:?}; there is {}", known.join(", "))
-        }
+    if let Some(near) = nearest(name, known.clone().map(String::as_str)) {
+        return format!("there is no {what} {name:?}; the nearest is {near:?}");
     }
+    let known: Vec<_> = known.take(10).map(String::as_str).collect();
+    format!("there is no {what} {name:?}; there is {}", known.join(", "))
 }

@@ -14,7 +14,7 @@ const CELLS: &str = "150";
 const MOST_LAYERS: f64 = 100_000.0;
 
 /// A `Photons` sensor.
-pub(super) fn photons(project: &mut Project, swept: &mut Swept<'_>) -> Result<String> {
+pub(super) fn photons(project: &Project, swept: &mut Swept<'_>) -> Result<String> {
     let sensor = project.conf.need("sensor")?;
     let own = sensor.need("PhotonTracing")?;
     let resolution = own.need("sunRayResolution")?;
@@ -31,7 +31,9 @@ pub(super) fn photons(project: &mut Project, swept: &mut Swept<'_>) -> Result<St
         let text = node.text()?;
         if !text.is_empty() && brf {
             let list = read(&text).ok_or_else(|| {
-                node.wrong(&format!("{text:?} is neither a list of directions nor angles to combine"))
+                node.wrong(&format!(
+                    "{text:?} is neither a list of directions nor angles to combine"
+                ))
             })?;
             measures.push(format!("{quantity}{kind}({list})"));
         }
@@ -56,7 +58,10 @@ pub(super) fn photons(project: &mut Project, swept: &mut Swept<'_>) -> Result<St
         let what = "flux densities in square pixels; LESS has W nm⁻¹ a pixel";
         project.report.add("sensor.PhotonTracing.UpDownProduct", "true", what);
     } else {
-        ["image_width", "image_height"].into_iter().filter_map(|key| sensor.get(key)).for_each(Node::settle);
+        ["image_width", "image_height"]
+            .into_iter()
+            .filter_map(|key| sensor.get(key))
+            .for_each(Node::settle);
     }
     let layers = own.get("LayerDefinition");
     if is_on("fPARProduct")? {
@@ -74,10 +79,11 @@ pub(super) fn photons(project: &mut Project, swept: &mut Swept<'_>) -> Result<St
         measures.push(if radiance { "Exitance" } else { "Albedo" }.to_owned());
     }
     let mut text = format!("Photons(\nper_m2: {per_m2},\nmeasure: [{}],\n", measures.join(", "));
-    let what = "photons a square metre of the ground; LESS counts that of the box around all objects";
+    let what =
+        "photons a square metre of the ground; LESS counts that of the box around all objects";
     project.report.add(&resolution.path, &resolution.shown(), what);
     if let Some((plane, _)) = project.virtual_plane()? {
-        writeln!(text, "virtual_plane: Some({plane}),")?;
+        writeln!(text, "virtual_plane: {plane},")?;
     }
     Ok(text + ")")
 }
@@ -109,7 +115,9 @@ fn cones(text: &str) -> Option<String> {
         }
         all => all
             .iter()
-            .map(|cone| <[f64; 3]>::try_from(cone.as_slice()).ok().map(|[z, a, angle]| (z, a, angle)))
+            .map(|cone| {
+                <[f64; 3]>::try_from(cone.as_slice()).ok().map(|[z, a, angle]| (z, a, angle))
+            })
             .collect::<Option<_>>()?,
     };
     Some(format!("{cones:?}"))

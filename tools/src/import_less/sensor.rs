@@ -14,7 +14,7 @@ const INFINITE_DEPTH: f64 = 200.0;
 
 impl Project {
     /// The scene's `boundary`, `sensors` and `transport`.
-    pub(super) fn sensor_ron(&mut self, swept: &mut Swept<'_>) -> Result<String> {
+    pub(super) fn sensor_ron(&self, swept: &mut Swept<'_>) -> Result<String> {
         let sensor = self.conf.need("sensor")?;
         let mut text = String::new();
         if let Some(node) = sensor.get("RepetitiveScene") {
@@ -49,7 +49,9 @@ impl Project {
             (&["sensor", "CircularFisheye"], "not of this sensor"),
             (&["sensor", "PhotonTracing"], "not of this sensor"),
             (&["sensor", "virtualPlane"], "not of this sensor"),
-            (&["sensor"], "not of this sensor"),
+            (&["sensor", "film_type"], "not of this sensor"),
+            (&["sensor", "hasFourComponentProduct"], "not of this sensor"),
+            (&["sensor", "sample_per_square_meter"], "not of this sensor"),
             (&["Advanced", "network_sim"], "sunfleck runs on one machine"),
             (&["Advanced", "number_of_cores"], "all; `--threads` of `sunfleck run`"),
             (&["Advanced", "external_py_interpreter"], "there is none"),
@@ -59,7 +61,7 @@ impl Project {
     }
 
     /// Says of settings that nothing has read why.
-    fn leave_out(&mut self, keys: &[(&[&str], &str)]) {
+    fn leave_out(&self, keys: &[(&[&str], &str)]) {
         for (path, why) in keys {
             for node in self.conf.at(path).map(Node::unread).unwrap_or_default() {
                 self.report.add(&node.path, &node.shown(), *why);
@@ -68,7 +70,7 @@ impl Project {
         }
     }
 
-    fn orthographic(&mut self, swept: &mut Swept<'_>) -> Result<String> {
+    fn orthographic(&self, swept: &mut Swept<'_>) -> Result<String> {
         let sensor = self.conf.need("sensor")?;
         let own = sensor.need("orthographic")?;
         let view = self.conf.need("observation")?;
@@ -77,7 +79,7 @@ impl Project {
         let is_upright = zenith.number()? == 0.0 && azimuth.number()?.rem_euclid(90.0) == 0.0;
         let covers = own.get("cover_whole_scene").map_or(Ok(false), Node::flag)?;
         if covers && !is_upright {
-            text += "cover: Some(WholeScene),\n";
+            text += "cover: WholeScene,\n";
             if let Some(node) = own.get("cover_whole_scene") {
                 let what = "the rectangle around all that stands on the ground";
                 self.report.add(&node.path, "true", what);
@@ -85,16 +87,17 @@ impl Project {
         } else {
             let extent = [own.need("sub_region_width")?, own.need("sub_region_height")?];
             let [width, height] = [swept.term(extent[0])?, swept.term(extent[1])?];
-            writeln!(text, "extent_m: Some(({width}, {height})),")?;
+            writeln!(text, "extent_m: ({width}, {height}),")?;
         }
         let plane = self.virtual_plane()?;
         if let Some((plane, (x, y))) = plane {
             if !text.contains("WholeScene") {
-                writeln!(text, "center_m: Some(({x:?}, {y:?})),")?;
-                let what = "in the middle of the image, which keeps its extent; LESS made it a square";
+                writeln!(text, "center_m: ({x:?}, {y:?}),")?;
+                let what =
+                    "in the middle of the image, which keeps its extent; LESS made it a square";
                 self.report.add("sensor.virtualPlane", "", what);
             }
-            writeln!(text, "virtual_plane: Some({plane}),")?;
+            writeln!(text, "virtual_plane: {plane},")?;
         }
         writeln!(text, "zenith_deg: {},", swept.term(zenith)?)?;
         writeln!(text, "azimuth_deg: {},", swept.term(azimuth)?)?;
@@ -102,7 +105,7 @@ impl Project {
         Ok(text + ")")
     }
 
-    fn perspective(&mut self, swept: &mut Swept<'_>) -> Result<String> {
+    fn perspective(&self, swept: &mut Swept<'_>) -> Result<String> {
         let own = self.conf.need("sensor")?.need("perspective")?;
         let (position, target, above) = self.pose(swept)?;
         let mut text = format!("Perspective(\n{}", self.size_px(swept)?);
@@ -118,7 +121,7 @@ impl Project {
         Ok(text + ")")
     }
 
-    fn fisheye(&mut self, swept: &mut Swept<'_>) -> Result<String> {
+    fn fisheye(&self, swept: &mut Swept<'_>) -> Result<String> {
         let own = self.conf.need("sensor")?.need("CircularFisheye")?;
         let (position, target, above) = self.pose(swept)?;
         let mut text = format!("Fisheye(\n{}", self.size_px(swept)?);
@@ -177,13 +180,18 @@ impl Project {
     }
 
     /// Samples, measures and picture.
-    fn finish_image(&mut self, own: &Node, text: &mut String, swept: &mut Swept<'_>) -> Result<()> {
+    fn finish_image(&self, own: &Node, text: &mut String, swept: &mut Swept<'_>) -> Result<()> {
         let sensor = self.conf.need("sensor")?;
-        if let Some(node) = own.get("sample_per_square_meter").or(sensor.get("sample_per_square_meter")) {
+        if let Some(node) =
+            own.get("sample_per_square_meter").or(sensor.get("sample_per_square_meter"))
+        {
             let samples = swept.term(node)?.whole();
-            let samples = if text.starts_with("Orthographic") { format!("Some({samples})") } else { samples };
             writeln!(text, "samples_per_px: {samples},")?;
-            self.report.add(&node.path, &node.shown(), "a pixel, as in the program LESS, not its manual");
+            self.report.add(
+                &node.path,
+                &node.shown(),
+                "a pixel, as in the program LESS, not its manual",
+            );
         }
         let mut measures = if self.is_thermal {
             vec!["Radiance", "BrightnessTemperature"]
@@ -204,11 +212,13 @@ impl Project {
                 "spectrum" => {}
                 "rgb" if self.visible_bands() >= 10 && !self.is_thermal => {
                     text.push_str("picture: Cie,\n");
-                    let what = "coloured by the wavelengths of the bands; LESS takes them for equal parts";
+                    let what =
+                        "coloured by the wavelengths of the bands; LESS takes them for equal parts";
                     self.report.add(&node.path, "rgb", what);
                 }
                 "rgb" => {
-                    let what = "true colours need ten visible bands: a quick look of those there are";
+                    let what =
+                        "true colours need ten visible bands: a quick look of those there are";
                     self.report.add(&node.path, "rgb", what);
                 }
                 other => return Err(node.wrong(&format!("{other:?} is neither spectrum nor rgb"))),
@@ -218,7 +228,7 @@ impl Project {
     }
 
     /// The virtual plane and its middle.
-    pub(super) fn virtual_plane(&mut self) -> Result<Option<(String, (f64, f64))>> {
+    pub(super) fn virtual_plane(&self) -> Result<Option<(String, (f64, f64))>> {
         let Some(plane) = self.conf.need("sensor")?.get("virtualPlane") else { return Ok(None) };
         let number = |key| plane.need(key)?.number();
         let center = (number("vx")?, self.size.1 - number("vy")?);
@@ -229,7 +239,7 @@ impl Project {
             let what = "the top of the scene, as in LESS; `height_m` sets another height";
             self.report.add(&z.path, &z.shown(), what);
         }
-        Ok(Some((format!("(center_m: Some({center:?}), size_m: Some({size:?}))"), center)))
+        Ok(Some((format!("(center_m: {center:?}, size_m: {size:?})"), center)))
     }
 
     fn transport(&self, swept: &mut Swept<'_>) -> Result<String> {
@@ -239,10 +249,10 @@ impl Project {
             if depth < 2.0 || depth.fract() != 0.0 {
                 return Err(node.wrong(&format!("{depth} is no depth of paths: 2 or more")));
             }
-            if depth == 2.0 {
+            if depth < 3.0 {
                 text += "first_order_only: true,\n";
             } else if depth < INFINITE_DEPTH {
-                writeln!(text, "max_order: Some({}),", depth - 1.0)?;
+                writeln!(text, "max_order: {},", depth - 1.0)?;
             }
         }
         if let Some(node) = self.conf.at(&["Advanced", "minimum_iteration"]) {

@@ -55,7 +55,8 @@ pub(super) fn lines(path: &Path, mut each: impl FnMut(&str) -> Result<()>) -> Re
 
 /// The start of a text, without what would break a line.
 pub(super) fn excerpt(text: &str) -> String {
-    let mut short: String = text.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let mut short: String =
+        text.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if short.len() < text.len() {
         short.push('…');
     }
