@@ -31,7 +31,7 @@ pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
 pub use optics::{EnergyGain, SurfaceOptics};
 pub use placement::Placement;
 pub use sensor::{
-    Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, PhotonMeasure, Photons,
+    Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, Per, PhotonMeasure, Photons,
     Sensor, Stop, System, View, VirtualPlane,
 };
 pub use terrain::TerrainPatch;

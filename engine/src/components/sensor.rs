@@ -144,6 +144,8 @@ pub enum PhotonMeasure {
     /// Fraction of the incident flux that each material absorbs in each horizontal layer, and what
     /// reaches the ground.
     Fapar(Layers),
+    /// Power that each instance absorbs, or each of its triangles and discs too.
+    Absorbed(Per),
     /// Down- and upwelling flux density on the terrain and through horizontal planes.
     Fluxes {
         /// Side of a square pixel, m.
@@ -169,6 +171,7 @@ impl PhotonMeasure {
             | Self::Albedo
             | Self::BrightnessTemperature
             | Self::Orders
+            | Self::Absorbed(_)
             | Self::Fapar(_) => false,
         }
     }
@@ -203,6 +206,15 @@ pub struct Cone {
     pub axis: View,
     /// Between its middle and its border, rad.
     pub half_angle: f64,
+}
+
+/// What absorbed power is told of, the finer with the coarser.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Per {
+    /// Each instance, the terrain as the first.
+    Instance,
+    /// Each triangle and disc of each instance.
+    Triangle,
 }
 
 /// Horizontal layers.

@@ -1,5 +1,6 @@
 //! World to [`Stage`]: what this run needs, flat and immutable, and nothing else.
 
+mod inventory;
 mod light;
 mod stage;
 mod thermal;
@@ -15,6 +16,7 @@ use crate::components::{
 };
 use crate::scattering::{BiLambertian, Bsdf};
 
+pub use inventory::{Face, Inventory, Standing};
 pub use light::{Beam, Disc, Dome, Light};
 pub use stage::{Rules, Stage, Surface};
 pub use thermal::{Thermal, Warmth};
@@ -30,7 +32,7 @@ pub struct Setting {
     pub rules: Rules,
 }
 
-/// Builds the stage of a world. Reads every component but those of sensors.
+/// Builds the stage of a world. Reads every component; of sensors, whether they ask for the inventory.
 ///
 /// `built` is the geometry of a stage that was extracted from the same meshes, instances and terrain;
 /// without it, the ray engine's trees are built.
@@ -71,6 +73,16 @@ pub fn extract(
         .iter()
         .map(|(_, _, materials)| materials.0.iter().map(|&id| surfaces.id(id)).collect())
         .collect();
+    let mut instances = vec![InstanceInput {
+        mesh: 0,
+        linear: terrain.world_from_object(),
+        translation: terrain.origin(),
+    }];
+    instances.extend(placements.iter().map(|placement| InstanceInput {
+        mesh: used[&placement.prototype.0],
+        linear: placement.world_from_object(),
+        translation: placement.position,
+    }));
     let build = || {
         let mut meshes = vec![MeshInput { mesh: &terrain.mesh, surfaces: &ground_surfaces }];
         meshes.extend(
@@ -79,16 +91,6 @@ pub fn extract(
                 .zip(&part_surfaces)
                 .map(|(&(_, mesh, _), surfaces)| MeshInput { mesh, surfaces }),
         );
-        let mut instances = vec![InstanceInput {
-            mesh: 0,
-            linear: terrain.world_from_object(),
-            translation: terrain.origin(),
-        }];
-        instances.extend(placements.iter().map(|placement| InstanceInput {
-            mesh: used[&placement.prototype.0],
-            linear: placement.world_from_object(),
-            translation: placement.position,
-        }));
         let domain = Domain {
             min: terrain.corner,
             max: terrain.corner + terrain.size,
@@ -111,6 +113,13 @@ pub fn extract(
         thermal: Thermal::of(world, &surfaces.ordered),
         surfaces: surfaces.finish(),
         light: Light::of(world, setting.bands),
+        inventory: Inventory::of(
+            world,
+            terrain,
+            (&placements, &instances),
+            &prototypes.iter().map(|&(id, mesh, _)| (id, mesh)).collect::<Vec<_>>(),
+        )
+        .map(Arc::new),
         geometry,
     })
 }

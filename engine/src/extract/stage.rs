@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::{Light, Thermal};
+use super::{Inventory, Light, Thermal};
 use crate::accel;
 use crate::scattering::{Bsdf, LANES};
 
@@ -30,6 +30,8 @@ pub struct Stage {
     pub light: Light,
     /// What surfaces and the sky emit, where a sensor measures it.
     pub thermal: Option<Thermal>,
+    /// What stands in the scene, where a sensor reports of each instance.
+    pub inventory: Option<Arc<Inventory>>,
     /// What rays can hit.
     pub geometry: Arc<accel::Scene>,
 }

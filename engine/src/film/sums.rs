@@ -1,15 +1,43 @@
+use indexmap::IndexSet;
+
 /// Sums over the samples of one block or one randomisation, shape `[cells, bands]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
     bands: usize,
     values: Vec<f64>,
+    /// Cells that have values, in the order of these; `None` if all have.
+    touched: Option<IndexSet<usize>>,
 }
+
+/// Values from which a block's sums hold only the cells that it touches, 512 KiB.
+const MANY: usize = 1 << 16;
 
 impl Sums {
     /// All zero.
     #[must_use]
     pub fn new(cells: usize, bands: usize) -> Self {
-        Self { bands, values: vec![0.0; cells * bands] }
+        Self { bands, values: vec![0.0; cells * bands], touched: None }
+    }
+
+    /// All zero, to be merged into others: of many cells, it takes the memory of those alone that
+    /// something is added to. Sums come out the same, bit for bit.
+    #[must_use]
+    pub fn of_block(cells: usize, bands: usize) -> Self {
+        if cells * bands < MANY {
+            return Self::new(cells, bands);
+        }
+        Self { bands, values: Vec::new(), touched: Some(IndexSet::new()) }
+    }
+
+    fn cell(&mut self, cell: usize) -> &mut [f64] {
+        let row = self.touched.as_mut().map_or(cell, |touched| {
+            let (row, is_new) = touched.insert_full(cell);
+            if is_new {
+                self.values.resize(self.values.len() + self.bands, 0.0);
+            }
+            row
+        });
+        &mut self.values[row * self.bands..(row + 1) * self.bands]
     }
 
     /// Adds `spectrum · scale` to a cell; of `spectrum`, padded or not, the bands count.
@@ -17,9 +45,7 @@ impl Sums {
     /// # Panics
     /// If there is no such cell.
     pub fn add(&mut self, cell: usize, spectrum: &[f32], scale: f64) {
-        let start = cell * self.bands;
-        let cell = &mut self.values[start..start + self.bands];
-        for (sum, &value) in cell.iter_mut().zip(spectrum) {
+        for (sum, &value) in self.cell(cell).iter_mut().zip(spectrum) {
             *sum += f64::from(value) * scale;
         }
     }
@@ -29,8 +55,7 @@ impl Sums {
     /// # Panics
     /// If there is no such cell.
     pub fn add_with(&mut self, cell: usize, f: impl Fn(usize) -> f64) {
-        let start = cell * self.bands;
-        for (lane, sum) in self.values[start..start + self.bands].iter_mut().enumerate() {
+        for (lane, sum) in self.cell(cell).iter_mut().enumerate() {
             *sum += f(lane);
         }
     }
@@ -40,7 +65,7 @@ impl Sums {
     /// # Panics
     /// If there is no such cell or band.
     pub fn add_at(&mut self, cell: usize, band: usize, value: f64) {
-        self.values[cell * self.bands + band] += value;
+        self.cell(cell)[band] += value;
     }
 
     /// Adds sums of one cell, shape `[bands]`.
@@ -56,15 +81,26 @@ impl Sums {
     /// # Panics
     /// If the shapes differ.
     pub fn merge(&mut self, other: &Self) {
-        assert_eq!((self.bands, self.values.len()), (other.bands, other.values.len()), "one shape");
+        assert_eq!(self.bands, other.bands, "one shape");
+        if let Some(touched) = &other.touched {
+            for (&cell, values) in touched.iter().zip(other.values.chunks_exact(self.bands)) {
+                self.add_cell(cell, values);
+            }
+            return;
+        }
+        assert_eq!(self.values.len(), other.values.len(), "one shape");
         for (sum, value) in self.values.iter_mut().zip(&other.values) {
             *sum += value;
         }
     }
 
     /// The sums, shape `[cells, bands]`, bands fastest.
+    ///
+    /// # Panics
+    /// If they are of a block.
     #[must_use]
     pub fn values(&self) -> &[f64] {
+        assert!(self.touched.is_none(), "a block's sums are there to be merged");
         &self.values
     }
 
@@ -72,5 +108,34 @@ impl Sums {
     #[must_use]
     pub const fn bands(&self) -> usize {
         self.bands
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_that_holds_only_what_it_touches_merges_to_the_same_bits() {
+        let cells = MANY / 2;
+        let fill = |sums: &mut Sums, seed: usize| {
+            for step in 0..1000 {
+                let cell = (step * step * 7919 + seed) % 97 * (cells / 97);
+                sums.add_with(cell, |band| 1.0 / (1 + step + band) as f64);
+                sums.add(cell, &[0.1, 0.7, 0.0], 1e-3 * seed as f64);
+            }
+        };
+        let (mut sparse, mut dense) = (Sums::new(cells, 2), Sums::new(cells, 2));
+        for seed in 1..5 {
+            let (mut block, mut all) = (Sums::of_block(cells, 2), Sums::new(cells, 2));
+            fill(&mut block, seed);
+            fill(&mut all, seed);
+            assert!(block.values.len() <= 2 * 97 && all.values.len() == 2 * cells);
+            sparse.merge(&block);
+            dense.merge(&all);
+        }
+        assert!(dense.values().iter().any(|sum| *sum > 1.0));
+        let bits = |sums: &Sums| sums.values().iter().map(|sum| sum.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&sparse), bits(&dense));
     }
 }

@@ -1,13 +1,14 @@
 //! Files of a run, with provenance; the only module that writes.
 //!
-//! A folder gets `summary.json`, for each image an EXR, an ENVI pair and a PNG quicklook, and for
-//! each other product a CSV. Nothing appears under its final name before all of it is complete.
+//! A folder gets `summary.json`, for each image an EXR, an ENVI pair and a PNG quicklook, for
+//! values of triangles a PLY, and for each other product a CSV. Nothing appears under its final name before all of it is complete.
 
 mod colour;
 mod envi;
 mod exr;
 mod names;
 mod picture;
+mod ply;
 mod rows;
 mod staging;
 mod summary;
@@ -59,6 +60,10 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
     for (sensor, planned) in report.sensors.iter().zip(&plan) {
         for (product, names) in sensor.products.iter().zip(&planned.products) {
             let source = Source { report, sensor: &sensor.name, product };
+            if let Some(faces) = &product.faces {
+                staging.file(&names.ply(), |file| ply::write(&source, faces, file))?;
+                continue;
+            }
             match &product.image {
                 None => staging.file(&names.csv(), |file| rows::write(&source, file))?,
                 Some(image) => {
@@ -149,6 +154,11 @@ fn check_shape(sensor: &str, product: &Product) -> Result<(), OutputError> {
     let values = product.dimensions.iter().map(|dimension| length(dimension)).product();
     equal("values", values, product.values.len())?;
     equal("standard errors", values, product.standard_error.len())?;
+    if let Some(faces) = &product.faces {
+        let values = faces.inventory.faces().count() * faces.bands.len();
+        equal("values of faces", values, faces.values.len())?;
+        equal("standard errors of faces", values, faces.standard_error.len())?;
+    }
     let Some(image) = &product.image else { return Ok(()) };
     let pixels = image.width * image.height;
     let samples = pixels * image.bands.len();

@@ -27,6 +27,10 @@ impl ProductNames {
         format!("{}.csv", self.stem)
     }
 
+    pub(super) fn ply(&self) -> String {
+        format!("{}.ply", self.stem)
+    }
+
     /// EXR, ENVI pixels, ENVI header, PNG.
     pub(super) fn image(&self) -> [String; 4] {
         ["exr", "img", "hdr", "png"].map(|extension| format!("{}.{extension}", self.stem))

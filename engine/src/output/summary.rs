@@ -106,9 +106,10 @@ fn entry<'a>(product: &'a Product, names: &ProductNames) -> Entry<'a> {
         shape: product.dimensions.iter().map(|dimension| length(dimension)).collect(),
         values: &product.values,
         standard_error: &product.standard_error,
-        files: match product.image {
-            Some(_) => names.image().into(),
-            None => vec![names.csv()],
+        files: match (&product.image, &product.faces) {
+            (_, Some(_)) => vec![names.ply()],
+            (Some(_), _) => names.image().into(),
+            (None, None) => vec![names.csv()],
         },
     }
 }

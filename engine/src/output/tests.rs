@@ -26,6 +26,7 @@ fn views() -> Product {
         values: vec![0.1, 1.0 / 3.0, 1e-300, f64::NAN, 0.05, 0.1 + 0.2],
         standard_error: vec![0.001, 0.002, f64::NAN, f64::NAN, 1e-9, 0.0],
         image: None,
+        faces: None,
     }
 }
 
@@ -55,6 +56,7 @@ fn image() -> Product {
                 pixel_height: 0.25,
             }),
         }),
+        faces: None,
     }
 }
 
@@ -296,6 +298,7 @@ fn csv_of_several_dimensions_counts_the_last_fastest() {
         values: vec![0.1, 0.2, 0.3, 0.4],
         standard_error: vec![0.01; 4],
         image: None,
+        faces: None,
     };
     write(&report(vec![sensor("flux", product)]), folder.path()).unwrap();
     let text = fs::read_to_string(folder.path().join("flux_fapar.csv")).unwrap();

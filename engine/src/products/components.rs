@@ -186,6 +186,7 @@ fn product(name: &str, dimensions: Vec<Vec<Axis>>, values: &[f64], errors: &[f64
         values: values.to_vec(),
         standard_error: errors.to_vec(),
         image: None,
+        faces: None,
     }
 }
 

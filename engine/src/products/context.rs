@@ -63,6 +63,7 @@ impl Context {
             values: scale(values, &self.irradiance),
             standard_error: scale(standard_error, &self.irradiance),
             image: None,
+            faces: None,
         }
     }
 }

@@ -57,6 +57,7 @@ pub fn of_directions(
                     values,
                     standard_error,
                     image: None,
+                    faces: None,
                 }]
             }
             ImageMeasure::FourComponents | ImageMeasure::GapFraction => return None,

@@ -117,6 +117,7 @@ fn brightness_image(
             rendering: Rendering::Quicklook,
             georeference,
         }),
+        faces: None,
     }
 }
 

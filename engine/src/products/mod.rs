@@ -1,6 +1,7 @@
 //! What a run reports: named quantities with unit, axes and standard error, made from films by pure
 //! functions.
 
+mod absorbed;
 mod components;
 mod context;
 mod directions;
@@ -13,6 +14,7 @@ mod sources;
 mod thermal;
 
 pub use crate::components::Channels;
+pub use absorbed::{Faces, absorbed};
 pub use components::{components_of_directions, components_of_image};
 pub use context::{BandSources, Context};
 pub use directions::of_directions;

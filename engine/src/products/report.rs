@@ -1,3 +1,4 @@
+use super::Faces;
 use crate::components::Channels;
 
 /// One axis of a product's values.
@@ -53,6 +54,8 @@ pub struct Product {
     pub standard_error: Vec<f64>,
     /// Pixels, where the quantity is an image.
     pub image: Option<Image>,
+    /// What each triangle and disc has, where the quantity is one of theirs; `values` are the mean.
+    pub faces: Option<Faces>,
 }
 
 /// Pixels of an image; row 0 is its top.

@@ -48,7 +48,7 @@ pub fn of_sources(
         super::Image { values: narrow(pixels), standard_error: narrow(errors), ..image.clone() }
     });
     let dimensions = one.dimensions.clone();
-    Product { name, unit: unit.to_owned(), dimensions, values, standard_error, image }
+    Product { name, unit: unit.to_owned(), dimensions, values, standard_error, image, faces: None }
 }
 
 /// Brightness temperature of a product of radiance, K, in the bands that hold emission; `None` for
@@ -67,5 +67,6 @@ pub fn brightness_of(radiance: &Product, context: &Context) -> Option<Product> {
         values,
         standard_error,
         image: None,
+        faces: None,
     })
 }

@@ -1,3 +1,4 @@
+use std::sync::Arc;
 use std::time::Instant;
 
 use hecs::World;
@@ -6,15 +7,15 @@ use crate::components::{
     Directions, ImageMeasure, ImageSensor, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
     System,
 };
-use crate::extract::Stage;
+use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
 use crate::products::{self, BandSources, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, FluxCounter, FluxLevel, Hemisphere,
-    LayerCounter, Part, PartCounter, PhotonOutcome, Projection, ReferencePlane, Source,
-    ViewCounter, Watch, measure_directions, measure_directions_components, measure_image,
-    measure_image_components, measure_image_forward, trace_photons,
+    AbsorbedCounter, AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, FluxCounter,
+    FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, PhotonOutcome, Projection,
+    ReferencePlane, Source, ViewCounter, Watch, measure_directions, measure_directions_components,
+    measure_image, measure_image_components, measure_image_forward, trace_photons,
 };
 
 /// All sensors in document order.
@@ -320,6 +321,7 @@ enum Kind {
     Cones(ConeCounter),
     Views(ViewCounter, Vec<crate::components::View>),
     Layers(LayerCounter),
+    Absorbed(AbsorbedCounter, Arc<Inventory>),
     Fluxes(FluxCounter),
 }
 
@@ -342,6 +344,10 @@ impl Kind {
                     views.iter().map(|&view| Projection::of_plane(view, &plane, stage)).collect();
                 Self::Views(ViewCounter::new(projections), views.clone())
             }
+            PhotonMeasure::Absorbed(per) => {
+                let inventory = stage.inventory.clone()?;
+                Self::Absorbed(AbsorbedCounter::of(&inventory, *per, plane), inventory)
+            }
             PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers, plane)),
             PhotonMeasure::Fluxes { pixel, heights } => {
                 let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
@@ -355,7 +361,7 @@ impl Kind {
     const fn is_of_reflection(&self) -> bool {
         match self {
             Self::Albedo(_) | Self::Cells(_) | Self::Cones(_) | Self::Views(..) => true,
-            Self::Layers(_) | Self::Fluxes(_) => false,
+            Self::Layers(_) | Self::Absorbed(..) | Self::Fluxes(_) => false,
         }
     }
 
@@ -371,6 +377,9 @@ impl Kind {
                 vec![products::brf_views(spread, counter, views, stage, context)]
             }
             Self::Layers(layers) => products::fapar(spread, layers, stage, context),
+            Self::Absorbed(counter, inventory) => {
+                products::absorbed(spread, counter, (inventory, stage), context)
+            }
             Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, context),
         }
     }
@@ -382,6 +391,7 @@ impl Kind {
             Self::Views(counter, _) => Box::new(counter.clone()),
             Self::Layers(counter) => Box::new(counter.clone()),
             Self::Cones(counter) => Box::new(counter.clone()),
+            Self::Absorbed(counter, _) => Box::new(counter.clone()),
             Self::Fluxes(counter) => Box::new(counter.clone()),
         }
     }

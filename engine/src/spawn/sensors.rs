@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec2;
@@ -5,10 +6,16 @@ use hecs::World;
 
 use super::Spawner;
 use crate::components::{
-    Cone, Directions, ImageMeasure, Layers, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
-    System, View, VirtualPlane,
+    Cone, Directions, ImageMeasure, Layers, Mesh, Name, Per, PhotonMeasure, Photons, Placement,
+    SceneId, Sensor, Stop, System, TerrainPatch, View, VirtualPlane,
 };
 use crate::document::{self, Diagnostic, Sun, Until, Views};
+
+/// Memory of the sums of one triangle or instance in one band and all that is made of them, bytes.
+const ABSORBED_BYTES: usize = 64;
+
+/// Memory that the sums of what absorbs may take, GiB.
+const MOST_GIB: f64 = 2.0;
 
 impl Spawner<'_> {
     /// Spawns the sensors.
@@ -16,13 +23,13 @@ impl Spawner<'_> {
         let scene = self.scene;
         for (index, (name, sensor)) in scene.sensors.iter().enumerate() {
             let path = format!("sensors.{name}");
-            if let Some(sensor) = self.sensor(sensor, &path) {
+            if let Some(sensor) = self.sensor(sensor, &path, world) {
                 world.spawn((SceneId(index as u32), Name(name.clone()), sensor));
             }
         }
     }
 
-    fn sensor(&mut self, sensor: &document::Sensor, path: &str) -> Option<Sensor> {
+    fn sensor(&mut self, sensor: &document::Sensor, path: &str, world: &World) -> Option<Sensor> {
         Some(match sensor {
             document::Sensor::Orthographic { .. }
             | document::Sensor::Perspective { .. }
@@ -67,6 +74,14 @@ impl Spawner<'_> {
                             PhotonMeasure::BrightnessTemperature
                         }
                         document::PhotonMeasure::Orders => PhotonMeasure::Orders,
+                        document::PhotonMeasure::Absorbed { per } => {
+                            let per = match per {
+                                document::Per::Instance => Per::Instance,
+                                document::Per::Triangle => Per::Triangle,
+                            };
+                            self.check_absorbed(&at, per, world);
+                            PhotonMeasure::Absorbed(per)
+                        }
                         document::PhotonMeasure::Fapar { layer_m } => {
                             PhotonMeasure::Fapar(match layer_m {
                                 document::Layers::Thickness(m) => Layers::Thickness(*m),
@@ -82,6 +97,34 @@ impl Spawner<'_> {
                 Sensor::Photons(Photons { per_area: *per_m2, measure: measures, plane })
             }
         })
+    }
+
+    /// Whether all that absorbs has a place in memory.
+    fn check_absorbed(&mut self, path: &str, per: Per, world: &World) {
+        let mut faces: BTreeMap<u32, usize> = BTreeMap::new();
+        for (id, mesh) in &mut world.query::<(&SceneId, &Mesh)>() {
+            faces.insert(id.0, mesh.triangles.len() + mesh.discs.len());
+        }
+        let mut grounds = world.query::<&TerrainPatch>();
+        let ground = grounds.iter().map(|ground| ground.mesh.triangles.len()).sum();
+        let (mut instances, mut triangles): (usize, usize) = (1, ground);
+        for placement in &mut world.query::<&Placement>() {
+            instances += 1;
+            triangles += faces.get(&placement.prototype.0).copied().unwrap_or(0);
+        }
+        let (count, what, help) = match per {
+            Per::Instance => (instances, "instances", "measure `Fapar`, by material"),
+            Per::Triangle => (triangles, "triangles", "measure `Absorbed(per: Instance)`"),
+        };
+        let bands = self.scene.bands.len();
+        let gib = (count * bands * ABSORBED_BYTES) as f64 / f64::from(1 << 30);
+        if gib > MOST_GIB {
+            let message = format!(
+                "absorption by {count} {what} in {bands} bands takes {gib:.1} GiB; at most {MOST_GIB} are allowed"
+            );
+            let help = format!("{help}, or fewer bands or trees");
+            self.problems.push(Diagnostic::error(path, message).help(help));
+        }
     }
 
     /// A virtual plane; what its author left out is the terrain's.

@@ -125,11 +125,10 @@ pub(super) fn trace_packets(
         |block, (sums, rays)| {
             ledger.rays += rays;
             if current.is_empty() {
-                current = sums;
-            } else {
-                for (total, part) in current.iter_mut().zip(&sums) {
-                    total.merge(part);
-                }
+                current = all.iter().map(|one| Sums::new(one.cells(), stage.bands)).collect();
+            }
+            for (total, part) in current.iter_mut().zip(&sums) {
+                total.merge(part);
             }
             if (block + 1) % per_randomisation == 0 {
                 let sums = std::mem::take(&mut current);
@@ -159,7 +158,8 @@ pub(super) struct Packet<'a> {
 impl<'a> Packet<'a> {
     fn new(stage: &'a Stage, counters: &'a [&'a dyn Counter], full: f32) -> Self {
         let dark = vec![0.0; stage.lanes()];
-        let sums = counters.iter().map(|counter| Sums::new(counter.cells(), stage.bands)).collect();
+        let empty = |counter: &&dyn Counter| Sums::of_block(counter.cells(), stage.bands);
+        let sums = counters.iter().map(empty).collect();
         Self { stage, counters, sums, weight: dark.clone(), before: dark, full, rays: 0 }
     }
 

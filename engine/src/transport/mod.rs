@@ -27,8 +27,8 @@ pub use components::{
     measure_image_components,
 };
 pub use counters::{
-    AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter, FluxLevel,
-    GROUND_TERMS, LayerCounter, ViewCounter,
+    AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
+    FluxLevel, GROUND_TERMS, LayerCounter, ViewCounter,
 };
 pub use directions::{DirectionsOutcome, ViewsOutcome, measure_directions};
 pub use forward::{PhotonOutcome, trace_photons};

@@ -31,7 +31,7 @@ const EMPTY: &str = "Scene(
         \"d\": Directions(views: List, until: Seconds),
         \"e\": Directions(views: List, until: Samples),
         \"g\": Perspective, \"h\": Fisheye, \"i\": Fisheye(look: Towards), \"j\": Fisheye(look: Target),
-        \"f\": Photons(measure: [BrfCells, BrfViews, BrfCones, Albedo, Orders, Fapar, Fluxes]),
+        \"f\": Photons(measure: [BrfCells, BrfViews, BrfCones, Albedo, Orders, Absorbed, Fapar, Fluxes]),
     },
     transport: (roulette: ()),
     variants: { \"winter\": {} },

@@ -4,9 +4,10 @@ use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
     Area, Axis, Band, BandSource, Boundary, Cover, Distribution, FisheyeProjection, Frame,
-    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, PhotonMeasure,
-    Picture, Roulette, Rule, Scene, Sensor, Sky, Spectrum, Stems, Sun, SunPosition, Sweep, System,
-    Temperature, Terrain, ThermalSky, Transport, Until, Views, VirtualPlane, read_text,
+    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, Per,
+    PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky, Spectrum, Stems, Sun, SunPosition,
+    Sweep, System, Temperature, Terrain, ThermalSky, Transport, Until, Views, VirtualPlane,
+    read_text,
 };
 
 use crate::crowns::crown;
@@ -402,6 +403,8 @@ fn sensor() -> BoxedStrategy<Sensor> {
         views().prop_map(PhotonMeasure::BrfViews),
         Just(PhotonMeasure::Albedo),
         Just(PhotonMeasure::Orders),
+        prop_oneof![Just(Per::Instance), Just(Per::Triangle)]
+            .prop_map(|per| PhotonMeasure::Absorbed { per }),
         list((number(), number(), number())).prop_map(PhotonMeasure::BrfCones),
         number().prop_map(|m| PhotonMeasure::Fapar { layer_m: Layers::Thickness(m) }),
         list(number()).prop_map(|m| PhotonMeasure::Fapar { layer_m: Layers::Borders(m) }),

@@ -124,6 +124,7 @@ fn check_photon_measure(
         }
         PhotonMeasure::Albedo
         | PhotonMeasure::Orders
+        | PhotonMeasure::Absorbed { .. }
         | PhotonMeasure::Exitance
         | PhotonMeasure::BrightnessTemperature => {}
         PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {

@@ -27,7 +27,7 @@ pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Mesh, Origin};
 pub use program::{Include, Sweep};
 pub use sensor::{
-    ImageMeasure, Layers, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
+    ImageMeasure, Layers, Per, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
     VirtualPlane,
 };
 pub use spectrum::{Material, Spectrum};

@@ -235,6 +235,11 @@ choice! {
             /// Thickness of a layer, m, or the heights of all borders between layers.
             layer_m: Layers = Layers::Thickness(1.0),
         },
+        /// Power of sun and sky that each instance absorbs, W nm⁻¹, the terrain as the first of them.
+        Absorbed {
+            /// `Triangle` reports what each triangle and disc absorbs too, as a coloured PLY.
+            per: Per = Per::Instance,
+        },
         /// Down- and upwelling flux density, W m⁻² nm⁻¹, on the terrain and at the top of the scene,
         /// from the sources that the band names.
         Fluxes {
@@ -243,6 +248,16 @@ choice! {
             /// Further heights, m.
             heights_m: Vec<f64> = Vec::new(),
         },
+    }
+}
+
+choice! {
+    /// What absorbed power is told of.
+    pub enum Per ("`Instance` or `Triangle`") {
+        /// Each instance.
+        Instance,
+        /// Each instance, and each of its triangles and discs.
+        Triangle,
     }
 }
 

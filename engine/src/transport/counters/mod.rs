@@ -1,5 +1,6 @@
 //! What photon packets are counted for, one file a product.
 
+mod absorbed;
 mod albedo;
 mod cells;
 mod cones;
@@ -14,6 +15,7 @@ use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 
+pub use absorbed::AbsorbedCounter;
 pub use albedo::AlbedoCounter;
 pub use cells::CellCounter;
 pub use cones::ConeCounter;

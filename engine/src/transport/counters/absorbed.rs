@@ -1,0 +1,64 @@
+use super::{Counter, Event};
+use crate::components::Per;
+use crate::extract::{Inventory, Stage};
+use crate::film::Sums;
+use crate::transport::ReferencePlane;
+
+/// Power that each instance absorbs below the reference plane, and each of its triangles and discs.
+///
+/// Cells: the instances; then the sum of all; then, of triangles, those of one instance after the
+/// other.
+#[derive(Clone, Debug)]
+pub struct AbsorbedCounter {
+    /// What it counts lies below this.
+    pub plane: ReferencePlane,
+    /// Number of instances.
+    pub instances: usize,
+    /// Where the triangles of each instance start among all, and where the last one's end; empty if
+    /// they are not counted.
+    starts: Vec<usize>,
+}
+
+impl AbsorbedCounter {
+    /// For the instances of a stage.
+    #[must_use]
+    pub fn of(inventory: &Inventory, per: Per, plane: ReferencePlane) -> Self {
+        let starts = if per == Per::Triangle { inventory.starts() } else { Vec::new() };
+        Self { plane, instances: inventory.instances.len(), starts }
+    }
+
+    /// Whether triangles and discs are counted.
+    #[must_use]
+    pub const fn has_faces(&self) -> bool {
+        !self.starts.is_empty()
+    }
+
+    /// Cell of the sum over all; those of the triangles follow.
+    #[must_use]
+    pub const fn total(&self) -> usize {
+        self.instances
+    }
+}
+
+impl Counter for AbsorbedCounter {
+    fn cells(&self) -> usize {
+        self.total() + 1 + self.starts.last().copied().unwrap_or(0)
+    }
+
+    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+        let Event::Arrival { hit, wo, weight, .. } = event else { return 0 };
+        if !self.plane.is_above(hit.point) {
+            return 0;
+        }
+        let instance = hit.instance as usize;
+        let start = self.starts.get(instance);
+        let face = start.map(|start| self.total() + 1 + start + hit.primitive as usize);
+        let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);
+        for cell in [Some(instance), Some(self.total()), face].into_iter().flatten() {
+            sums.add_with(cell, |lane| {
+                f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])
+            });
+        }
+        0
+    }
+}
