@@ -82,7 +82,10 @@ impl Text {
         match value {
             Self::Leaf(leaf) => Self::Leaf(format!("{name}({leaf})")),
             Self::Group(group)
-                if group.open == "(" && group.items.iter().all(|item| item.key.is_empty()) =>
+                // `Some` holds one value, never several.
+                if name != "Some"
+                    && group.open == "("
+                    && group.items.iter().all(|item| item.key.is_empty()) =>
             {
                 Self::Group(Group { open: format!("{name}("), ..group })
             }

@@ -119,3 +119,10 @@ proptest! {
         prop_assert_eq!(&twice.expect("a text"), &once, "{}", text);
     }
 }
+
+#[test]
+fn an_optional_pair_keeps_its_own_brackets() {
+    let text = "Scene(\n    a: Some((1.0, 2.0)),\n    b: Uniform(1.0, 2.0),\n)\n";
+    assert_eq!(formatted(text), text);
+    assert_eq!(formatted("Scene(\n a: Some((1.0, 2.0)),\n b: Uniform((1.0, 2.0)),\n)\n"), text);
+}
