@@ -8,7 +8,7 @@ use sunfleck_tests::{Estimate, measure, product};
 const SCENE: &str = r#"Scene(
     format: 1,
     title: "Birch stand",
-    params: { "sza": 30.0, "lai_scale": 1.0 },
+    params: { "sza": 30.0 },
     bands: [(name: "red", center_nm: 660.0, width_nm: 10.0), (name: "nir", center_nm: 865.0, width_nm: 20.0)],
     spectra: { "soil": Table(file: "spectra/soil.csv") },
     materials: {
