@@ -19,7 +19,7 @@ pub struct PhotonOutcome {
     pub spreads: Vec<Spread>,
     /// That of [`EnergyCounter`], which always counts.
     pub energy: Spread,
-    /// See [`Ledger::imbalance`].
+    /// Largest share over all bands of what came that the other terms of the ledger do not account for.
     pub imbalance: f64,
     /// Packets traced.
     pub packets: u64,
