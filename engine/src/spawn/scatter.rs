@@ -38,7 +38,7 @@ impl Spawner<'_> {
             seed,
         } = scatter
         else {
-            unreachable!("called with a scatter")
+            return Vec::new();
         };
         let path = format!("instances[{index}]");
         let species = self.species(of, meshes, height_m.is_some(), &path);
