@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
+use sunfleck::document::{System, nearest};
 
 /// Where the light of a forest goes: images, BRF, albedo and absorbed light of scenes written as text.
 #[derive(Debug, Parser)]
@@ -22,6 +23,9 @@ pub(crate) enum Command {
     /// Run a scene at every point of its `sweep`, and write one table of all; goes on where an earlier
     /// run of the same sweep has stopped
     Sweep(Run),
+    /// Measure a scene with each transport system that can, and show their differences in standard
+    /// errors and what each costs
+    Compare(Compare),
     /// Say what is wrong with a scene, and trace nothing
     Check(Scene),
     /// Measure how fast this machine is on a scene
@@ -113,10 +117,90 @@ pub(crate) struct Run {
 impl Run {
     /// Folder for the results.
     pub(crate) fn folder(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| {
-            Path::new("out").join(self.scene.file.file_stem().unwrap_or_default())
-        })
+        self.out.clone().unwrap_or_else(|| self.scene.folder(""))
     }
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Compare {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+
+    /// Transport systems, the one that the others are compared with first
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = all_systems(), value_parser = system)]
+    systems: Vec<SystemName>,
+
+    /// The system that the others are compared with [default: the first]
+    #[arg(long, value_name = "NAME", value_parser = system)]
+    reference: Option<SystemName>,
+
+    /// Measure this sensor; may be repeated [default: all]
+    #[arg(long = "sensor", value_name = "NAME")]
+    pub(crate) sensors: Vec<String>,
+
+    /// Multiply the number of samples: 0.05 for a quick look
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
+    pub(crate) quality: f64,
+
+    /// Threads to use [default: all]; the results do not depend on it
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Folder for the tables and the picture [default: out/<name of the scene file>_compare]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Write each pixel of images into the table too
+    #[arg(long)]
+    pub(crate) pixels: bool,
+}
+
+impl Compare {
+    /// Folder for the results.
+    pub(crate) fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| self.scene.folder("_compare"))
+    }
+
+    /// Each system once, in the order in which they were named.
+    pub(crate) fn systems(&self) -> Vec<System> {
+        let mut systems = Vec::new();
+        for SystemName(system) in &self.systems {
+            if !systems.contains(system) {
+                systems.push(*system);
+            }
+        }
+        systems
+    }
+
+    /// The system that the others are compared with.
+    pub(crate) fn reference(&self) -> System {
+        self.reference.as_ref().unwrap_or(&self.systems[0]).0
+    }
+}
+
+/// A transport system by its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SystemName(pub(crate) System);
+
+impl std::fmt::Display for SystemName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0.name())
+    }
+}
+
+fn all_systems() -> Vec<SystemName> {
+    System::ALL.map(SystemName).to_vec()
+}
+
+fn system(text: &str) -> Result<SystemName, String> {
+    let names = System::ALL.map(System::name);
+    System::ALL.into_iter().find(|system| system.name() == text).map(SystemName).ok_or_else(|| {
+        let all = names.join(", ");
+        match nearest(text, names) {
+            Some(near) => format!("did you mean `{near}`? There are: {all}"),
+            None => format!("there are: {all}"),
+        }
+    })
 }
 
 #[derive(Args, Debug)]
@@ -132,6 +216,15 @@ pub(crate) struct Scene {
     /// Apply one of the scene's variants
     #[arg(long, value_name = "NAME")]
     pub(crate) variant: Option<String>,
+}
+
+impl Scene {
+    /// Folder named after the scene and what is done with it.
+    pub(crate) fn folder(&self, suffix: &str) -> PathBuf {
+        let mut name = self.file.file_stem().unwrap_or_default().to_owned();
+        name.push(suffix);
+        Path::new("out").join(name)
+    }
 }
 
 fn setting(text: &str) -> Result<(String, f64), String> {

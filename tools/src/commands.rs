@@ -8,7 +8,7 @@ use sunfleck::{document, output, run};
 
 use crate::arguments::{Bench, Command, Fmt, Run, Scene};
 use crate::progress::Bars;
-use crate::{bench, import_less};
+use crate::{bench, compare, import_less};
 
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
@@ -18,6 +18,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Run(arguments) => trace(arguments),
         Command::Sweep(arguments) => sweep(arguments),
+        Command::Compare(arguments) => print(&compare::compare(arguments)?),
         Command::Check(scene) => check(scene),
         Command::Expand(scene) => expand(scene),
         Command::Fmt(arguments) => fmt(arguments),
@@ -156,7 +157,7 @@ pub(crate) fn document_options(scene: &Scene) -> document::Options {
     }
 }
 
-fn warn(warnings: &[String]) {
+pub(crate) fn warn(warnings: &[String]) {
     let mut stderr = io::stderr().lock();
     for warning in warnings {
         let headed = ["warning: ", SKIPPED].iter().any(|heading| warning.starts_with(heading));

@@ -4,8 +4,11 @@
 
 mod arguments;
 mod bench;
+mod columns;
 mod commands;
+mod compare;
 mod import_less;
+mod plot;
 mod progress;
 
 use std::io::{self, Write as _};

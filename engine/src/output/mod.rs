@@ -21,7 +21,8 @@ use std::path::{Path, PathBuf};
 use crate::products::{Image, Product, Report};
 
 pub use picture::Picture;
-pub use sweep::{is_complete, write_point, write_sweep};
+pub use rows::number;
+pub use sweep::{is_complete, place, write_point, write_sweep};
 pub use table::table;
 
 /// Why a report is not on disk. Nothing of it is, then.

@@ -78,6 +78,7 @@ pub(super) fn point(axis: &Axis, index: usize) -> String {
 }
 
 /// The shortest text that reads back as the same number.
-pub(super) fn number(value: f64) -> String {
+#[must_use]
+pub fn number(value: f64) -> String {
     format!("{value:?}")
 }

@@ -106,8 +106,9 @@ fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Resu
     writer.flush()
 }
 
-/// `zenith_deg=30;azimuth_deg=90`, and the band.
-fn place(product: &Product, row: usize) -> (String, String) {
+/// Where a value stands in its product: `zenith_deg=30;azimuth_deg=90`, and the band.
+#[must_use]
+pub fn place(product: &Product, row: usize) -> (String, String) {
     let (mut at, mut band) = (Vec::new(), String::new());
     for (dimension, index) in product.dimensions.iter().zip(indices(&product.dimensions, row)) {
         for axis in dimension {

@@ -1,5 +1,6 @@
 //! The list of stages, one call a line: text to document to world to stage to films to report.
 
+mod again;
 mod failure;
 mod provenance;
 mod sensors;
@@ -17,6 +18,7 @@ use crate::products::{BandSources, Context, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
 
+pub use again::Runs;
 pub use failure::Failure;
 pub use sweep::Sweep;
 

@@ -40,7 +40,7 @@ impl Spawner<'_> {
             samples,
             measure: image_measures(measure),
             picture: self.picture(picture)?,
-            system: system_of(system),
+            system: system_of(*system),
         })
     }
 

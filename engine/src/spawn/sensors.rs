@@ -44,7 +44,7 @@ impl Spawner<'_> {
                     }],
                     measure: image_measures(measure),
                     plane: self.plane(virtual_plane.as_ref()),
-                    system: system_of(system),
+                    system: system_of(*system),
                 })
             }
             document::Sensor::Photons { per_m2, measure, virtual_plane } => {
@@ -193,7 +193,7 @@ pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMe
         .collect()
 }
 
-pub(super) fn system_of(system: &document::System) -> System {
+pub(super) fn system_of(system: document::System) -> System {
     match system {
         document::System::Backward => System::Backward,
         document::System::Forward => System::Forward,

@@ -109,7 +109,7 @@ pub(super) fn check_perspective(
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
-    check_system(path, system, report);
+    check_system(path, *system, report);
     check_position(path, *position_m, *above_ground, scene, report);
     let target = format!("{path}.target_m");
     if let Some(ahead) = check_target(&target, *position_m, *target_m, report) {
@@ -156,7 +156,7 @@ pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: 
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
-    check_system(path, system, report);
+    check_system(path, *system, report);
     check_position(path, *position_m, *above_ground, scene, report);
     let (ahead, usual_up) = match look {
         Look::Up => (Some((0.0, 0.0, 1.0)), (0.0, 1.0, 0.0)),
@@ -261,8 +261,8 @@ fn check_samples(path: &str, samples: u32, report: &mut Report<'_>) {
     }
 }
 
-fn check_system(path: &str, system: &System, report: &mut Report<'_>) {
-    if *system == System::Forward {
+fn check_system(path: &str, system: System, report: &mut Report<'_>) {
+    if system == System::Forward {
         let message = "photon packets never meet the one point that this camera looks from";
         let help = "take `system: Forward` out; only orthographic images can be drawn forward";
         report.error(&format!("{path}.system"), message, help);

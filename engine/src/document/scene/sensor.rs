@@ -133,6 +133,39 @@ impl Sensor {
             Self::Photons { .. } => None,
         }
     }
+
+    /// Transport systems that can measure it, or some of what it is to report.
+    #[must_use]
+    pub const fn systems(&self) -> &'static [System] {
+        match self {
+            Self::Orthographic { .. } | Self::Directions { .. } => {
+                &[System::Backward, System::Forward]
+            }
+            Self::Perspective { .. } | Self::Fisheye { .. } => &[System::Backward],
+            Self::Photons { .. } => &[System::Forward],
+        }
+    }
+
+    /// The same sensor, and of what it is to report as much as a system can measure; `None` if that is
+    /// nothing.
+    #[must_use]
+    pub fn measured_by(&self, by: System) -> Option<Self> {
+        let mut sensor = self.clone();
+        match &mut sensor {
+            Self::Orthographic { measure, system, .. }
+            | Self::Perspective { measure, system, .. }
+            | Self::Fisheye { measure, system, .. }
+            | Self::Directions { measure, system, .. } => {
+                measure.retain(|one| one.is_measured_by(by));
+                if measure.is_empty() {
+                    return None;
+                }
+                *system = by;
+            }
+            Self::Photons { .. } => {}
+        }
+        self.systems().contains(&by).then_some(sensor)
+    }
 }
 
 record! {
@@ -200,6 +233,16 @@ choice! {
         /// Share of the ground in what is seen, or of the sky in a camera that looks up; of directions,
         /// and of a fisheye that looks straight up or down, the leaf area index that it implies too.
         GapFraction,
+    }
+}
+
+impl ImageMeasure {
+    /// Whether a transport system estimates it; what is seen first is found backwards alone.
+    const fn is_measured_by(&self, system: System) -> bool {
+        match self {
+            Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature => true,
+            Self::FourComponents | Self::GapFraction => matches!(system, System::Backward),
+        }
     }
 }
 
@@ -311,6 +354,22 @@ choice! {
         Backward,
         /// Photon packets from sun and sky, or from what emits.
         Forward,
+    }
+}
+
+impl Copy for System {}
+
+impl System {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Backward, Self::Forward];
+
+    /// What a person calls it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Backward => "backward",
+            Self::Forward => "forward",
+        }
     }
 }
 

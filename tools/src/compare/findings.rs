@@ -1,0 +1,241 @@
+use sunfleck::document::System;
+use sunfleck::output::place;
+use sunfleck::products::{Product, Report, SensorReport};
+
+use super::plan::Plan;
+
+/// One quantity that one sensor measures, as each system finds it.
+#[derive(Debug)]
+pub(crate) struct Finding<'a> {
+    pub(crate) sensor: &'a str,
+    pub(crate) product: &'a str,
+    pub(crate) unit: &'a str,
+    /// In the order in which systems were named; never empty.
+    pub(crate) estimates: Vec<Estimate<'a>>,
+    /// Which of them the others are compared with.
+    pub(crate) reference: usize,
+}
+
+/// What one system finds.
+#[derive(Debug)]
+pub(crate) struct Estimate<'a> {
+    pub(crate) system: System,
+    pub(crate) product: &'a Product,
+    /// Wall time and rays of all that the sensor measures.
+    pub(crate) seconds: f64,
+    pub(crate) rays: u64,
+}
+
+/// Values of a product, or of the pixels of its image; shape of both alike.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Values {
+    pub(crate) values: Vec<f64>,
+    pub(crate) errors: Vec<f64>,
+}
+
+/// What many values of one estimate tell together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Statistics {
+    /// Values other than NaN.
+    pub(crate) values: usize,
+    pub(crate) mean: f64,
+    /// Median of standard error over value.
+    pub(crate) relative_error: f64,
+    /// `1 / (relative variance · seconds)` at that median, s⁻¹.
+    pub(crate) efficiency: f64,
+    /// Against the reference; of the reference itself, `None`.
+    pub(crate) z: Option<Scores>,
+}
+
+/// What many z-scores tell together; where all is as it should be they have the mean square 1 and
+/// 0.3 % of them lie beyond 3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scores {
+    /// How many there are.
+    pub(crate) count: usize,
+    pub(crate) rms: f64,
+    /// The largest |z|.
+    pub(crate) largest: f64,
+    /// Share of |z| > 3.
+    pub(crate) beyond_3: f64,
+}
+
+impl<'a> Finding<'a> {
+    /// Of all products that the systems measured, in the order in which they first occur.
+    pub(crate) fn all(plan: &'a Plan, report: &'a Report, reference: System) -> Vec<Self> {
+        let mut findings: Vec<Self> = Vec::new();
+        for (member, sensor) in plan.members.iter().zip(&report.sensors) {
+            for product in &sensor.products {
+                let estimate = Estimate::of(member.system, sensor, product);
+                let known = findings
+                    .iter_mut()
+                    .find(|one| one.sensor == member.sensor && one.product == product.name);
+                match known {
+                    Some(finding) => finding.estimates.push(estimate),
+                    None => findings.push(Self {
+                        sensor: &member.sensor,
+                        product: &product.name,
+                        unit: &product.unit,
+                        estimates: vec![estimate],
+                        reference: 0,
+                    }),
+                }
+            }
+        }
+        for finding in &mut findings {
+            let named = finding.estimates.iter().position(|one| one.system == reference);
+            finding.reference = named.unwrap_or(0);
+        }
+        // Sensors together: a system may measure what those before it did not.
+        let order = |name: &str| plan.members.iter().position(|member| member.sensor == name);
+        findings.sort_by_key(|finding| order(finding.sensor));
+        findings
+    }
+
+    /// z-scores of an estimate against the reference, NaN where either has no value; `None` for the
+    /// reference itself. Of the pixels if asked for.
+    pub(crate) fn scores(&self, index: usize, pixels: bool) -> Option<Vec<f64>> {
+        if index == self.reference {
+            return None;
+        }
+        let of = |index: usize| self.estimates[index].values(pixels);
+        let (this, other) = (of(index)?, of(self.reference)?);
+        let estimates =
+            |all: &Values| all.values.iter().copied().zip(all.errors.iter().copied()).collect();
+        let (this, other): (Vec<_>, Vec<_>) = (estimates(&this), estimates(&other));
+        // A pixel that few packets could reach and none did has a value of 0, and an unknown error.
+        let is_unknown = |(value, error): (f64, f64)| pixels && value == 0.0 && error == 0.0;
+        let score = |(&a, &b)| {
+            if is_unknown(a) || is_unknown(b) { f64::NAN } else { z_score(a, b) }
+        };
+        Some(this.iter().zip(&other).map(score).collect())
+    }
+
+    /// What an estimate's values, or pixels, tell together; `None` if there are no pixels.
+    pub(crate) fn statistics(&self, index: usize, pixels: bool) -> Option<Statistics> {
+        let estimate = &self.estimates[index];
+        let all = estimate.values(pixels)?;
+        let finite: Vec<f64> = all.values.iter().copied().filter(|v| v.is_finite()).collect();
+        let relative_error = all.relative_error();
+        Some(Statistics {
+            values: finite.len(),
+            mean: finite.iter().sum::<f64>() / finite.len() as f64,
+            relative_error,
+            efficiency: 1.0 / (relative_error.powi(2) * estimate.seconds),
+            z: self.scores(index, pixels).map(|scores| Scores::of(&scores)),
+        })
+    }
+}
+
+impl<'a> Estimate<'a> {
+    fn of(system: System, sensor: &SensorReport, product: &'a Product) -> Self {
+        Self { system, product, seconds: sensor.seconds, rays: sensor.rays }
+    }
+
+    /// Its values, or those of its pixels.
+    pub(crate) fn values(&self, pixels: bool) -> Option<Values> {
+        let product = self.product;
+        if !pixels {
+            let (values, errors) = (product.values.clone(), product.standard_error.clone());
+            return Some(Values { values, errors });
+        }
+        let wide = |values: &[f32]| values.iter().map(|&value| value.into()).collect();
+        product.image.as_ref().map(|image| Values {
+            values: wide(&image.values),
+            errors: wide(&image.standard_error),
+        })
+    }
+
+    /// Place and band of a value, or of a pixel's.
+    pub(crate) fn place(&self, index: usize, pixels: bool) -> (String, String) {
+        match &self.product.image {
+            Some(image) if pixels => {
+                let (pixel, band) = (index / image.bands.len(), index % image.bands.len());
+                let (row, column) = (pixel / image.width, pixel % image.width);
+                (format!("row={row};column={column}"), image.bands[band].clone())
+            }
+            Some(_) => {
+                let (_, band) = place(self.product, index);
+                ("mean".to_owned(), band)
+            }
+            None => place(self.product, index),
+        }
+    }
+}
+
+impl Values {
+    /// Median of the relative errors of all values other than 0; NaN if there is none.
+    fn relative_error(&self) -> f64 {
+        let pairs = self.values.iter().zip(&self.errors);
+        let relative = pairs
+            .filter(|(value, error)| value.abs() > 0.0 && error.is_finite())
+            .map(|(value, error)| error / value.abs());
+        median(relative.collect())
+    }
+}
+
+/// The middle one; NaN of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    match values.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => values[n / 2],
+        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
+
+impl Scores {
+    fn of(z: &[f64]) -> Self {
+        let z: Vec<f64> = z.iter().copied().filter(|z| !z.is_nan()).collect();
+        let count = z.len() as f64;
+        Self {
+            count: z.len(),
+            rms: (z.iter().map(|z| z * z).sum::<f64>() / count).sqrt(),
+            largest: z.iter().map(|z| z.abs()).fold(f64::NAN, f64::max),
+            beyond_3: z.iter().filter(|z| z.abs() > 3.0).count() as f64 / count,
+        }
+    }
+}
+
+/// Weights of light are f32: relative differences below this are their rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Difference of two independent estimates in standard errors of it; NaN if either is unknown.
+fn z_score((a, error_a): (f64, f64), (b, error_b): (f64, f64)) -> f64 {
+    let difference = a - b;
+    if difference == 0.0 {
+        return 0.0;
+    }
+    let known = |error: f64| if error.is_nan() { 0.0 } else { error };
+    difference / known(error_a).hypot(known(error_b)).hypot(ROUNDING * a.abs().max(b.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn z_scores_are_differences_over_the_errors_of_both() {
+        let z = z_score((1.5, 0.3), (1.0, 0.4));
+        assert!((z - 1.0).abs() < 1e-9, "{z}");
+        assert_eq!(z_score((0.0, 0.0), (0.0, 0.0)).to_bits(), 0.0_f64.to_bits());
+        assert!(z_score((f64::NAN, 0.1), (1.0, 0.1)).is_nan());
+        // Exact in both, but for f32.
+        assert!(z_score((1.0, 0.0), (1.0 + 1e-7, 0.0)).abs() < 0.2);
+        assert!(z_score((1.0, 0.0), (1.1, 0.0)).abs() > 1e4);
+    }
+
+    #[test]
+    fn scores_leave_out_what_has_no_value() {
+        let scores = Scores::of(&[1.0, -4.0, f64::NAN, 0.0, 2.0]);
+        assert_eq!(scores.count, 4);
+        assert!((scores.rms - (21.0_f64 / 4.0).sqrt()).abs() < 1e-12);
+        assert!((scores.largest - 4.0).abs() < 1e-12 && (scores.beyond_3 - 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_median_of_none_is_unknown() {
+        assert!(median(Vec::new()).is_nan());
+        assert!((median(vec![3.0, 1.0, 2.0, 10.0]) - 2.5).abs() < 1e-12);
+    }
+}

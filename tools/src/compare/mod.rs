@@ -1,0 +1,63 @@
+//! One world, measured by each transport system that can: values side by side, their differences in
+//! standard errors, and what they cost.
+
+mod curves;
+mod findings;
+mod picture;
+mod plan;
+mod tables;
+
+use std::fmt::Write as _;
+
+use anyhow::{Context as _, bail};
+use sunfleck::{output, run};
+
+use self::findings::Finding;
+use self::plan::Plan;
+use crate::arguments::Compare;
+use crate::commands::{document_options, warn};
+use crate::progress::Bars;
+
+/// Runs the scene, writes `compare.csv`, `compare_summary.csv` and `compare.svg`; returns the summary
+/// for a person.
+pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
+    let folder = arguments.folder();
+    output::probe(&folder)?;
+    let options = run::Options {
+        document: document_options(&arguments.scene),
+        threads: arguments.threads.map(Into::into),
+        quality: arguments.quality,
+    };
+    let mut runs = run::Runs::read(&arguments.scene.file, &options)?;
+    let (systems, reference) = (arguments.systems(), arguments.reference());
+    if !systems.contains(&reference) {
+        bail!("the reference `{}` is not among the systems: add it to --systems", reference.name());
+    }
+    let plan = Plan::of(runs.scene(), &arguments.sensors, &systems)?;
+    warn(&plan.warnings);
+    let bars = Bars::new();
+    let report = runs.run(&plan.scene, 1.0, &bars);
+    bars.clear();
+    let report = report?;
+    warn(&report.warnings);
+    let findings = Finding::all(&plan, &report, reference);
+    let files = [
+        ("compare.csv", tables::values(&findings, arguments.pixels)?),
+        ("compare_summary.csv", tables::summary_csv(&findings)?),
+        ("compare.svg", picture::draw(&findings, &report.scene)?),
+    ];
+    for (name, text) in &files {
+        output::replace(&folder.join(name), text)?;
+    }
+    let mut text = tables::summary(&findings);
+    writeln!(
+        text,
+        "\n{} files in {}: {:.3} million rays in {:.1} s",
+        files.len(),
+        folder.display(),
+        report.rays as f64 / 1e6,
+        report.seconds
+    )
+    .context("cannot lay out the summary")?;
+    Ok(text)
+}

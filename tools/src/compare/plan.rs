@@ -1,0 +1,62 @@
+use anyhow::bail;
+use sunfleck::document::{Map, Scene, Sensor, System, unknown_name};
+
+/// What is run: a scene with one sensor for each sensor and system.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    /// The scene.
+    pub(crate) scene: Scene,
+    /// Whose sensor and system its sensors are, in its order.
+    pub(crate) members: Vec<Member>,
+    /// What a person should know.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A sensor measured by a system.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Member {
+    pub(crate) sensor: String,
+    pub(crate) system: System,
+}
+
+impl Plan {
+    /// All sensors of a scene, or those named, by all systems that can.
+    ///
+    /// # Errors
+    /// If no sensor has a name that is asked for, or no system can measure any.
+    pub(crate) fn of(scene: &Scene, named: &[String], systems: &[System]) -> anyhow::Result<Self> {
+        if let Some(unknown) = named.iter().find(|name| !scene.sensors.contains_key(*name)) {
+            let known = scene.sensors.keys().map(String::as_str);
+            let problem = unknown_name("--sensor", "sensor", unknown, known);
+            bail!("{}; {}", problem.message, problem.help.unwrap_or_default());
+        }
+        let mut sensors: Map<Sensor> = Map::new();
+        let (mut members, mut warnings) = (Vec::new(), Vec::new());
+        let asked = |name: &String| named.is_empty() || named.contains(name);
+        for (name, sensor) in scene.sensors.iter().filter(|(name, _)| asked(name)) {
+            let before = members.len();
+            for &system in systems {
+                let Some(copy) = sensor.measured_by(system) else { continue };
+                // Streams have the sensor's name as their key: those of two systems are independent.
+                sensors.insert(format!("{name} [{}]", system.name()), copy);
+                members.push(Member { sensor: name.clone(), system });
+            }
+            if members.len() == before {
+                warnings.push(format!(
+                    "sensors.{name}: none of {} can measure it; {} can",
+                    names(systems),
+                    names(sensor.systems())
+                ));
+            }
+        }
+        if members.is_empty() {
+            bail!("{}", warnings.join("\n"));
+        }
+        Ok(Self { scene: Scene { sensors, ..scene.clone() }, members, warnings })
+    }
+}
+
+/// `backward, forward`.
+pub(crate) fn names(systems: &[System]) -> String {
+    systems.iter().map(|system| system.name()).collect::<Vec<_>>().join(", ")
+}
