@@ -1,14 +1,16 @@
 //! `GeoTIFF`: TIFF with where it lies. Source: OGC `GeoTIFF` 1.1 (OGC 19-008r4).
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Seek};
 
 use glam::DVec2;
 use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
-use super::{MOST_CELLS, Place, Projection, Raster, RasterError, Unit, cells, is_no_data, length};
+use super::{
+    MOST_CELLS, Place, Projection, Raster, RasterError, Unit, cells, directory, is_no_data, length,
+};
 
 type Tiff = Decoder<BufReader<File>>;
 
@@ -25,9 +27,12 @@ fn wrong(error: TiffError) -> RasterError {
 
 pub(super) fn read(file: File) -> Result<Raster, RasterError> {
     let bytes = length(&file);
+    let mut file = BufReader::new(file);
+    directory::check(&mut file, bytes)?;
+    file.rewind().map_err(|cause| RasterError::Tiff(cause.to_string()))?;
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MOST_CELLS as usize;
-    let mut tiff = Tiff::new(BufReader::new(file)).map_err(wrong)?.with_limits(limits);
+    let mut tiff = Tiff::new(file).map_err(wrong)?.with_limits(limits);
     let (columns, rows) = tiff.dimensions().map_err(wrong)?;
     let (columns, rows) = (u64::from(columns), u64::from(rows));
     let count = cells(columns, rows)?;

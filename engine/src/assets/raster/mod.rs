@@ -1,6 +1,7 @@
 //! Rasters: ESRI ASCII grids, ENVI files and `GeoTIFF`.
 
 mod ascii;
+mod directory;
 mod envi;
 mod error;
 mod geotiff;
