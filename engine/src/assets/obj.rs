@@ -12,7 +12,7 @@ use super::text::{Lines, number};
 use super::{AssetError, Loaded};
 use crate::components::Mesh;
 
-/// Most corners of a face: cutting a concave polygon takes more than the square of them.
+/// Most corners of a face: cutting a concave polygon takes the square of them.
 const MOST_CORNERS: usize = 2048;
 
 /// Most unknown keywords to speak of.

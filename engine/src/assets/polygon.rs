@@ -20,14 +20,13 @@ pub(super) fn triangulate(corners: &[DVec3], out: &mut Vec<[usize; 3]>) {
         out.extend(fan);
         return;
     }
-    let mut ring: Vec<usize> = (0..count).collect();
-    while ring.len() > 3 {
-        // A polygon that crosses itself may have no ear; then any corner goes.
-        let ear = (0..ring.len()).find(|&at| is_ear(&ring, at, &flat)).unwrap_or(1);
-        out.push(neighbours(&ring, ear));
+    let mut ring = Ring::new(flat);
+    for _ in 3..count {
+        let [before, ear, after] = ring.neighbours(ring.ear());
+        out.push([before, ear, after]);
         ring.remove(ear);
     }
-    out.extend(ring.first_chunk::<3>());
+    out.push(ring.neighbours(ring.first));
 }
 
 /// The polygon in the plane across its mean normal (Newell), counter-clockwise.
@@ -49,25 +48,80 @@ fn turn([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-fn neighbours(ring: &[usize], at: usize) -> [usize; 3] {
-    let count = ring.len();
-    [ring[(at + count - 1) % count], ring[at], ring[(at + 1) % count]]
+/// Corners that are not yet cut off.
+///
+/// Cutting an ear changes only whether its two neighbours are ears (`O'Rourke` 1998, Computational
+/// Geometry in C, 1.6.5), so that all cuts together take the square of the number of corners.
+struct Ring {
+    flat: Vec<DVec2>,
+    before: Vec<usize>,
+    after: Vec<usize>,
+    is_ear: Vec<bool>,
+    first: usize,
 }
 
-/// Whether the triangle at this corner lies in the polygon and holds no other corner of it.
-fn is_ear(ring: &[usize], at: usize, flat: &[DVec2]) -> bool {
-    let names = neighbours(ring, at);
-    let [a, b, c] = names.map(|i| flat[i]);
-    if turn([a, b, c]) <= 0.0 {
-        return false;
+impl Ring {
+    fn new(flat: Vec<DVec2>) -> Self {
+        let count = flat.len();
+        let before = (0..count).map(|at| (at + count - 1) % count).collect();
+        let after = (0..count).map(|at| (at + 1) % count).collect();
+        let mut ring = Self { flat, before, after, is_ear: vec![false; count], first: 0 };
+        for at in 0..count {
+            ring.is_ear[at] = ring.cuts_nothing(at);
+        }
+        ring
     }
-    let inside =
-        |p: DVec2| turn([a, b, p]) >= 0.0 && turn([b, c, p]) >= 0.0 && turn([c, a, p]) >= 0.0;
-    // A corner at the same place as one of the ear's own touches it without cutting it.
-    ring.iter()
-        .filter(|i| !names.contains(i))
-        .map(|&i| flat[i])
-        .all(|p| p == a || p == b || p == c || !inside(p))
+
+    fn neighbours(&self, at: usize) -> [usize; 3] {
+        [self.before[at], at, self.after[at]]
+    }
+
+    /// The first ear; of a polygon that crosses itself and has none, the second corner.
+    fn ear(&self) -> usize {
+        let mut at = self.first;
+        loop {
+            if self.is_ear[at] {
+                return at;
+            }
+            at = self.after[at];
+            if at == self.first {
+                return self.after[at];
+            }
+        }
+    }
+
+    fn remove(&mut self, at: usize) {
+        let [before, _, after] = self.neighbours(at);
+        self.after[before] = after;
+        self.before[after] = before;
+        if self.first == at {
+            self.first = after;
+        }
+        for at in [before, after] {
+            self.is_ear[at] = self.cuts_nothing(at);
+        }
+    }
+
+    /// Whether the triangle at this corner lies in the polygon and holds no other corner of it.
+    fn cuts_nothing(&self, at: usize) -> bool {
+        let [before, _, end] = self.neighbours(at);
+        let [a, b, c] = [before, at, end].map(|corner| self.flat[corner]);
+        if turn([a, b, c]) <= 0.0 {
+            return false;
+        }
+        let inside =
+            |p: DVec2| turn([a, b, p]) >= 0.0 && turn([b, c, p]) >= 0.0 && turn([c, a, p]) >= 0.0;
+        let mut other = self.after[end];
+        while other != before {
+            let p = self.flat[other];
+            // A corner at the same place as one of the ear's own touches it without cutting it.
+            if p != a && p != b && p != c && inside(p) {
+                return false;
+            }
+            other = self.after[other];
+        }
+        true
+    }
 }
 
 #[cfg(test)]
