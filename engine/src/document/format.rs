@@ -24,6 +24,9 @@ pub fn format(name: &str, text: &str) -> Result<String, ReadError> {
     let mut file: Vec<_> =
         headers.iter().map(|header| text[header.start..header.end].to_owned()).collect();
     layout.above(tree.span.start as usize, &mut file);
+    if file.first().is_some_and(String::is_empty) {
+        file.remove(0);
+    }
     let mut stray = Vec::new();
     let scene = layout.node(&tree, &mut stray).into_file();
     file.extend(stray);
