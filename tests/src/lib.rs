@@ -1,5 +1,7 @@
 //! What the validation tests share: scenes as text, numbers out of reports, z-scores.
 
+pub mod fuzz;
+
 use std::path::{Path, PathBuf};
 
 use sunfleck::document;
