@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use sunfleck::document::{System, nearest};
 
+use crate::verify::CHECKS;
+
 /// Where the light of a forest goes: images, BRF, albedo and absorbed light of scenes written as text.
 #[derive(Debug, Parser)]
 #[command(
@@ -31,6 +33,9 @@ pub(crate) enum Command {
     /// Measure how fast this machine is on a scene
     #[command(subcommand)]
     Bench(Bench),
+    /// Put this program to the test on this machine: physics whose answer is known, pass or fail with
+    /// numbers, in about a minute
+    Verify(Verify),
     /// Print a scene as it is after includes, variant and parameters, each value with its origin
     Expand(Scene),
     /// Lay scene files out evenly; values and comments stay as they are
@@ -39,6 +44,17 @@ pub(crate) enum Command {
     Schema,
     /// Turn a project folder of LESS 1.8.8 into a scene, and say what became of each setting
     ImportLess(ImportLess),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Verify {
+    /// Run this check alone; may be repeated
+    #[arg(long, value_name = "NAME", value_parser = CHECKS.map(|check| check.name))]
+    pub(crate) only: Vec<String>,
+
+    /// Print JSON, for machines
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]

@@ -6,9 +6,9 @@ use std::io::{self, Write as _};
 use anyhow::{Context as _, bail};
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Bench, Command, Fmt, Run, Scene};
+use crate::arguments::{Bench, Command, Fmt, Run, Scene, Verify};
 use crate::progress::Bars;
-use crate::{bench, compare, import_less};
+use crate::{bench, compare, import_less, verify};
 
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
@@ -26,6 +26,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::ImportLess(arguments) => {
             print(&import_less::import(&arguments.folder, &arguments.out())?)
         }
+        Command::Verify(arguments) => verify(arguments),
         Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
     }
 }
@@ -145,6 +146,13 @@ fn fmt(arguments: &Fmt) -> anyhow::Result<()> {
     print(&changed)?;
     if arguments.check && !changed.is_empty() {
         bail!("not in normal form: run `sunfleck fmt` on these files");
+    }
+    Ok(())
+}
+
+fn verify(arguments: &Verify) -> anyhow::Result<()> {
+    if !verify::verify(&arguments.only, arguments.json, print)? {
+        bail!("what this program measures here is not to be trusted");
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ mod compare;
 mod import_less;
 mod plot;
 mod progress;
+mod verify;
 
 use std::io::{self, Write as _};
 use std::process::ExitCode;

@@ -326,3 +326,22 @@ fn fmt_changes_what_is_not_in_normal_form_and_check_says_so() {
     assert!(stderr.contains("is closed"), "{stderr}");
     assert_eq!(fs::read_to_string(folder.path().join("soil.ron")).unwrap(), "Scene(format: 1");
 }
+
+#[test]
+fn verify_says_what_it_measured_and_whether_it_holds() {
+    let folder = tempdir().unwrap();
+    let arguments = ["verify", "--only", "energy", "--json"];
+    let (code, stdout, stderr) = outcome(folder.path(), &arguments);
+    assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
+    let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!(report["passes"], true);
+    let findings = report["checks"][0]["findings"].as_array().unwrap();
+    assert!(findings.len() > 10 && findings.iter().all(|finding| finding["holds"] == true));
+    let (code, stdout, _) = outcome(folder.path(), &["verify", "--only", "closed"]);
+    assert_eq!(code, 0, "{stdout}");
+    assert!(stdout.contains("pass slope: radiance under the sky"), "{stdout}");
+    let (code, _, stderr) = outcome(folder.path(), &["verify", "--only", "truth"]);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("reciprocity") && stderr.contains("turbid"), "{stderr}");
+    assert_eq!(names(folder.path()), Vec::<String>::new(), "it writes nothing");
+}

@@ -120,6 +120,10 @@ pub enum AssetError {
     Gltf { file: PathBuf, problem: GltfError },
     #[error("{}: {problem}", .file.display())]
     Raster { file: PathBuf, problem: RasterError },
+    #[error("face {face} has no area; its corners must not lie on a line")]
+    FlatFace { face: usize },
+    #[error("a corner of face {face} lies too far away to keep")]
+    FarFace { face: usize },
     #[error(transparent)]
     Crown(#[from] CrownError),
 }

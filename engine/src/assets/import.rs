@@ -84,10 +84,7 @@ impl Collector {
 
     /// Adds a vertex unless it lies beyond what f32 can hold; gives back the offending coordinate.
     pub(super) fn add_vertex(&mut self, vertex: DVec3) -> Result<(), f64> {
-        // A quarter of the range, so that differences and sums of two stay inside it.
-        let far = f64::from(f32::MAX) / 4.0;
-        let bad = |value: &f64| value.is_nan() || value.abs() > far;
-        if let Some(value) = vertex.to_array().into_iter().find(bad) {
+        if let Some(value) = too_far(vertex) {
             return Err(value);
         }
         self.vertices.push(vertex);
@@ -219,7 +216,14 @@ pub(super) fn coarse(file: &Path, mesh: &Mesh, origin: &Origin) -> Option<String
     })
 }
 
-fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+/// The first coordinate beyond what f32 can hold.
+pub(super) fn too_far(vertex: DVec3) -> Option<f64> {
+    // A quarter of the range, so that differences and sums of two stay inside it.
+    let far = f64::from(f32::MAX) / 4.0;
+    vertex.to_array().into_iter().find(|value| value.is_nan() || value.abs() > far)
+}
+
+pub(super) fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     // Scaled to its longest edge, so that the square of no lawful area underflows.
     let (ab, ac) = (b - a, c - a);
     let longest = ab.abs().max(ac.abs()).max_element();

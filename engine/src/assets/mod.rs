@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`read_obj`], [`read_gltf`] | Wavefront OBJ, glTF 2.0 and GLB | [`Mesh`](crate::components::Mesh) |
 //! | [`read_discs`] | CSV or RAMI text | [`Mesh`](crate::components::Mesh) |
+//! | [`mesh_of_faces`] | polygons in the scene | [`Mesh`](crate::components::Mesh) |
 //! | [`grow_crown`] | a [`CrownSpec`] | [`Mesh`](crate::components::Mesh) |
 //! | [`read_instances`] | a text table | [`Row`]s |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
@@ -14,6 +15,7 @@ mod areas;
 mod crown;
 mod discs;
 mod error;
+mod faces;
 mod gltf;
 mod import;
 mod instances;
@@ -28,6 +30,7 @@ pub use areas::{read_geojson, read_polygons};
 pub use crown::{CrownError, CrownSpec, grow_crown};
 pub use discs::read_discs;
 pub use error::AssetError;
+pub use faces::mesh_of_faces;
 pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
 pub use instances::{Row, read_instances};

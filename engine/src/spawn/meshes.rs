@@ -43,7 +43,11 @@ impl Spawner<'_> {
                     prototypes.insert(id, Prototype { name, mesh: value, materials });
                 }
                 Err(error) => {
-                    let key = if matches!(error, AssetError::Crown { .. }) { "" } else { ".file" };
+                    let key = match mesh {
+                        document::Mesh::Faces { .. } => ".faces_m",
+                        document::Mesh::Crown { .. } => "",
+                        _ => ".file",
+                    };
                     let problem = Diagnostic::error(format!("{path}{key}"), error.to_string());
                     self.problems.push(problem);
                 }
@@ -76,7 +80,7 @@ impl Spawner<'_> {
             | document::Mesh::Discs { file, .. } => {
                 self.file(file);
             }
-            document::Mesh::Crown { .. } => {}
+            document::Mesh::Faces { .. } | document::Mesh::Crown { .. } => {}
         }
     }
 
@@ -91,7 +95,9 @@ impl Spawner<'_> {
         let (named, rest) = match mesh {
             document::Mesh::Obj { parts, material, .. }
             | document::Mesh::Gltf { parts, material, .. } => (parts, material.as_ref()),
-            document::Mesh::Discs { material, .. } => (&none, Some(material)),
+            document::Mesh::Discs { material, .. } | document::Mesh::Faces { material, .. } => {
+                (&none, Some(material))
+            }
             document::Mesh::Crown { leaf_material, wood_material, .. } => {
                 return self.crown_materials(leaf_material, wood_material.as_deref(), loaded, path);
             }
@@ -162,6 +168,7 @@ pub(super) fn load(
             &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
         ),
         document::Mesh::Discs { file, .. } => assets::read_discs(&folder.join(file)),
+        document::Mesh::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),
         document::Mesh::Crown { .. } => {
             let spec = CrownSpec::from_document(mesh).expect("a crown is a crown");
             let value = assets::grow_crown(&spec)?;

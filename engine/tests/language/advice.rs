@@ -14,7 +14,7 @@ const EMPTY: &str = "Scene(
         \"bark\": Lambertian(temperature: Uniform),
     },
     meshes: {
-        \"a\": Obj, \"b\": Gltf, \"c\": Discs, \"d\": Crown,
+        \"a\": Obj, \"b\": Gltf, \"c\": Discs, \"d\": Crown, \"i\": Faces,
         \"e\": Crown(shape: Cone, leaf: Square, trunk: (), branches: ()),
         \"f\": Crown(shape: Cylinder, leaf: Rhombus),
         \"g\": Crown(shape: Box, leaf: Disc),

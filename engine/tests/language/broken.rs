@@ -33,6 +33,7 @@ broken! {
     crown
     crown_leaves
     directions
+    faces
     formulas
     fractions
     image

@@ -123,7 +123,10 @@ fn from_file() -> BoxedStrategy<Mesh> {
 
 fn mesh() -> BoxedStrategy<Mesh> {
     let discs = (text(), text()).prop_map(|(file, material)| Mesh::Discs { file, material });
-    prop_oneof![from_file(), discs, crown()].boxed()
+    let corner = (number(), number(), number());
+    let faces = (list(list(corner)), text())
+        .prop_map(|(faces_m, material)| Mesh::Faces { faces_m, material });
+    prop_oneof![from_file(), discs, faces, crown()].boxed()
 }
 
 fn distribution() -> BoxedStrategy<Distribution> {

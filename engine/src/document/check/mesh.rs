@@ -1,5 +1,6 @@
 //! Mesh prototypes.
 
+use super::super::diagnostic::Diagnostic;
 use super::super::scene::{Map, Mesh, Scene};
 use super::Report;
 use super::crown::check_crown;
@@ -17,6 +18,10 @@ pub(super) fn check_meshes(scene: &Scene, report: &mut Report<'_>) {
             Mesh::Discs { material, .. } => {
                 check_material(&path, "material", material, scene, report);
             }
+            Mesh::Faces { faces_m, material } => {
+                check_faces(&format!("{path}.faces_m"), faces_m, report);
+                check_material(&path, "material", material, scene, report);
+            }
             Mesh::Crown { .. } => check_crown(&path, mesh, scene, report),
         }
     }
@@ -30,6 +35,25 @@ pub(super) fn check_material(
     report: &mut Report<'_>,
 ) {
     report.name(&format!("{path}.{key}"), "material", material, &scene.materials, "materials");
+}
+
+/// Most corners of a polygon: cutting a concave one takes the square of them.
+const MOST_CORNERS: usize = 2048;
+
+fn check_faces(path: &str, faces: &[Vec<(f64, f64, f64)>], report: &mut Report<'_>) {
+    if faces.is_empty() {
+        report.error(path, "this mesh has no face", "write three or more corners of each");
+    }
+    for (index, face) in faces.iter().enumerate() {
+        let path = format!("{path}[{index}]");
+        if !(3..=MOST_CORNERS).contains(&face.len()) {
+            let message = format!("expected 3 to {MOST_CORNERS} corners, found {}", face.len());
+            report.push(Diagnostic::error(&path, message));
+        }
+        for (number, &(x, y, z)) in face.iter().enumerate() {
+            report.finite(&format!("{path}[{number}]"), &[x, y, z]);
+        }
+    }
 }
 
 fn check_parts(

@@ -49,6 +49,13 @@ choice! {
             /// Material of the discs.
             material: String => r#""leaf""#,
         },
+        /// Polygons written here: sheets, walls, boxes.
+        Faces {
+            /// Corners of each polygon, m, counter-clockwise seen from its front.
+            faces_m: Vec<Vec<(f64, f64, f64)>> => "[[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)]]",
+            /// Material of them all.
+            material: String => r#""leaf""#,
+        },
         /// A tree or shrub generated leaf by leaf.
         Crown {
             /// Outline of the crown.
