@@ -1,0 +1,194 @@
+//! Reported standard errors are right: estimates lie about the truth as their errors say.
+//!
+//! Each of many sensors, which differ in nothing but their name and so in their random numbers,
+//! measures the same values; z = (estimate - truth) / error of each must have a standard deviation of
+//! about 1, a mean of 0 and few values beyond 3. The truth is an independent measurement of far more
+//! samples, whose own error is added in quadrature.
+//!
+//! With n randomisations z follows Student's t with n - 1 degrees of freedom: of 32, standard
+//! deviation 1.034 and 0.53 % beyond 3; of 16, 1.074 and 0.90 %.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+use std::path::Path;
+
+use sunfleck::products::{Product, Report};
+use sunfleck::run::Options;
+use sunfleck_tests::{Estimate, measure, product};
+
+/// A tile of 1 m² with two small crowns over soil, without end, in red, near infrared and 10.5 µm.
+fn grove(sensors: &str) -> Report {
+    measure(
+        &format!(
+            r#"Scene(
+    format: 1,
+    bands: [
+        (name: "red", center_nm: 660.0),
+        (name: "nir", center_nm: 865.0),
+        (name: "tir", center_nm: 10500.0),
+    ],
+    materials: {{
+        "soil": Lambertian(
+            reflectance: Bands([0.127, 0.2, 0.06]), temperature: SunlitShaded(sunlit_k: 315.0, shaded_k: 300.0),
+        ),
+        "leaf": Leaf(
+            reflectance: Bands([0.05, 0.5, 0.02]), transmittance: Bands([0.03, 0.45, 0.0]),
+            temperature: SunlitShaded(sunlit_k: 300.0, shaded_k: 297.0),
+        ),
+    }},
+    meshes: {{ "crown": Crown(
+        shape: Ellipsoid(diameter_m: 0.5, height_m: 0.8), base_m: 0.1, leaf_area_m2: 0.8,
+        leaf: Square(side_m: 0.06), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (1.0, 1.0), material: "soil"),
+    instances: [List(of: "crown", at_m: [(0.3, 0.3, 0.0), (0.8, 0.7, 0.0)])],
+    sun: (zenith_deg: 40.0, azimuth_deg: 150.0),
+    sky: Fraction([0.2, 0.1, 0.0]),
+    thermal_sky: BlackBody(240.0),
+    boundary: Periodic,
+    sensors: {{ {sensors} }},
+)"#
+        ),
+        Path::new("."),
+        &Options::default(),
+    )
+}
+
+/// A sensor that measures the truth, and others, named by numbers; their random streams have these
+/// names.
+fn crowd(truth: &str, numbers: Range<usize>, other: &str) -> Report {
+    let mut sensors = format!("\"truth\": {truth},\n");
+    for number in numbers {
+        writeln!(sensors, "\"{number}\": {other},").expect("memory");
+    }
+    grove(&sensors)
+}
+
+/// Numbers of a product in one of the three bands.
+fn in_band(product: &Product, band: usize) -> Vec<Estimate> {
+    (band..product.values.len()).step_by(3).map(|at| Estimate::of(product, at)).collect()
+}
+
+/// Pixels of a product in one of its bands.
+fn pixels_in_band(product: &Product, band: usize) -> Vec<Estimate> {
+    let image = product.image.as_ref().expect("pixels");
+    let pairs = image.values.iter().zip(&image.standard_error);
+    let in_band = pairs.skip(band).step_by(image.bands.len());
+    in_band.map(|(&value, &error)| Estimate { value: value.into(), error: error.into() }).collect()
+}
+
+/// Deviations from the truth, in standard errors, of what `values` picks of a product of all sensors but
+/// the first, which measures the truth. Nothing is said of values that are 0 for certain.
+fn deviations(report: &Report, name: &str, values: impl Fn(&Product) -> Vec<Estimate>) -> Vec<f64> {
+    let found: Vec<_> =
+        report.sensors.iter().map(|one| values(product(report, &one.name, name))).collect();
+    let (truth, found) = found.split_first().expect("a truth");
+    let pairs = found.iter().flat_map(|found| found.iter().zip(truth));
+    let pairs = pairs.filter(|(_, truth)| truth.error > 0.0);
+    pairs.map(|(estimate, &truth)| estimate.z_against(truth)).collect()
+}
+
+/// Asserts that deviations in standard errors are spread as they should be: all together exactly so,
+/// each product's but for two standard errors of what is asserted.
+fn assert_calibrated(products: &[(String, Vec<f64>)]) {
+    let all: Vec<f64> = products.iter().flat_map(|(_, z)| z).copied().collect();
+    let together = ("together".to_owned(), all);
+    for (margin, (what, z)) in
+        products.iter().map(|product| (2.0, product)).chain([(0.0, &together)])
+    {
+        let n = z.len() as f64;
+        let mean = z.iter().sum::<f64>() / n;
+        let deviation = (z.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        let far = z.iter().filter(|z| z.abs() > 3.0).count() as f64 / n;
+        let found = format!(
+            "{what}: {n} values, mean {mean:.3}, standard deviation {deviation:.3}, {:.2} % beyond 3",
+            100.0 * far
+        );
+        println!("{found}");
+        assert!(n >= 1000.0, "{found}");
+        let more = margin / (2.0 * n).sqrt();
+        assert!(deviation > 0.9 - more && deviation < 1.1 + more, "{found}");
+        assert!(far < 0.01 + margin * (0.0053 / n).sqrt(), "{found}");
+        // Four standard errors of the mean of 1000 values: of more, bands and places in one run depend
+        // on each other.
+        assert!(mean.abs() < 4.0 / 1000_f64.sqrt(), "{found}");
+    }
+}
+
+/// *Scene*: 1000 times 1000 photon packets on the grove. *Expected*: calibrated albedo, absorption by
+/// layer and material, transmission, fluxes by pixel, and emitted exitance.
+#[test]
+fn errors_of_photons_are_right() {
+    let photons = |per_m2: u32| {
+        format!(
+            "Photons(per_m2: {per_m2}.0, measure: [Albedo, Fapar(layer_m: 0.3), Fluxes(pixel_m: 0.5), Exitance])"
+        )
+    };
+    let report = crowd(&photons(500_000), 0..1000, &photons(1000));
+    let mut z = Vec::new();
+    let mut add = |name: &str, band, of: fn(&Product, usize) -> Vec<Estimate>| {
+        let deviations = deviations(&report, name, |product| of(product, band));
+        z.push((format!("{name}, band {band}"), deviations));
+    };
+    for band in 0..2 {
+        for name in ["albedo", "fapar", "fapar_vegetation", "ftran"] {
+            add(name, band, in_band);
+        }
+    }
+    for band in 0..3 {
+        for name in ["downwelling_terrain", "upwelling_terrain", "upwelling_top"] {
+            add(name, band, pixels_in_band);
+        }
+    }
+    add("exitance", 2, in_band);
+    assert_calibrated(&z);
+}
+
+/// *Scene*: four views of the grove, 250 times each, of a fixed number of samples in both systems and
+/// until they are good enough. *Expected*: calibrated radiances, reflected and emitted.
+#[test]
+fn errors_of_directions_are_right() {
+    let mut products = Vec::new();
+    for (until, system) in
+        [("Samples(512)", "Backward"), ("RelError(0.03)", "Backward"), ("Samples(512)", "Forward")]
+    {
+        let mut z = [const { Vec::new() }; 3];
+        let all = ["(0.0, 0.0)", "(40.0, 150.0)", "(30.0, 330.0)", "(70.0, 60.0)"];
+        for (index, view) in all.iter().enumerate() {
+            // Views of one sensor see the same light, and would not be independent.
+            let views = |until: &str, system: &str| {
+                format!(
+                    "Directions(views: List([{view}]), until: {until}, system: {system}, measure: [Radiance])"
+                )
+            };
+            let truth = views("Samples(65536)", "Backward");
+            let report = crowd(&truth, 250 * index..250 * (index + 1), &views(until, system));
+            for (band, z) in z.iter_mut().enumerate() {
+                z.extend(deviations(&report, "radiance", |product| in_band(product, band)));
+            }
+        }
+        let named = |(band, z)| (format!("{system} until {until}, band {band}"), z);
+        products.extend(z.into_iter().enumerate().map(named));
+    }
+    assert_calibrated(&products);
+}
+
+/// *Scene*: an oblique image of the grove, measured again and again. *Expected*: calibrated radiances
+/// of pixels, reflected and emitted.
+#[test]
+fn errors_of_pixels_are_right() {
+    let image = |samples: u32| {
+        format!(
+            "Orthographic(size_px: (16, 16), cover: Some(WholeScene), zenith_deg: 30.0, azimuth_deg: 80.0, samples_per_px: {samples}, measure: [Radiance])"
+        )
+    };
+    let mut products = Vec::new();
+    for (samples, count) in [(128, 6), (256, 6)] {
+        let report = crowd(&image(2048), 0..count, &image(samples));
+        for band in 0..3 {
+            let z = deviations(&report, "radiance", |product| pixels_in_band(product, band));
+            products.push((format!("{samples} samples a pixel, band {band}"), z));
+        }
+    }
+    assert_calibrated(&products);
+}
