@@ -114,8 +114,8 @@ said below. `what_is_skipped_changes_no_result` in `tools/examples/skips` holds 
 fn table(rounds: usize) -> anyhow::Result<()> {
     let threads = std::thread::available_parallelism()?;
     println!(
-        "{HEAD}\nmakes this page: {rounds} runs of each in turn on {threads} threads, from the scene's text to \
-         its results; the medians, seconds with their range.\n"
+        "{HEAD}\nmakes this page. Rounds in turn: {rounds}; threads: {threads}. Times are \
+         from the scene's text to its results: medians, with their range.\n"
     );
     println!(
         "| skipped | s | s without the skip | MiB | without | million rays | without | results |"
