@@ -178,16 +178,17 @@ impl Including<'_> {
             }
         };
         tree.shift(start);
-        let inner = take_includes(&mut tree);
-        let folder = relative_folder(&self.chain[0].shown, &path);
-        names::qualify(&mut tree, namespace, &folder);
-        self.pass(&mut tree, include, passed, entry, namespace)?;
-        let Some(fields) = fields(&mut tree).map(std::mem::take) else {
+        if fields(&mut tree).is_none() {
             let message = format!("expected definitions, found {}", tree.describe());
             let help = "write, for example, `Library(materials: { .. }, meshes: { .. })`";
             self.error(tree.opening(), &at, message, help.to_owned());
             return None;
-        };
+        }
+        let inner = take_includes(&mut tree);
+        let folder = relative_folder(&self.chain[0].shown, &path);
+        names::qualify(&mut tree, namespace, &folder);
+        self.pass(&mut tree, include, passed, entry, namespace)?;
+        let fields = fields(&mut tree).map(std::mem::take)?;
         self.merge(fields, namespace, scene);
         if let Some(inner) = inner {
             self.chain.push(link);
@@ -212,7 +213,8 @@ impl Including<'_> {
             let Some((_, variant)) =
                 entries(key(tree, "variants")).find(|(variant, _)| *variant == full)
             else {
-                let own = entries(key(tree, "variants")).map(|(name, _)| &name[namespace.len()..]);
+                let own = entries(key(tree, "variants"));
+                let own = own.map(|(name, _)| bare(name, namespace));
                 let error = unknown_name(format!("{at}.variant"), "variant", name, own);
                 let error = error.at(self.source.place_of(entry.span));
                 self.included.diagnostics.push(Diagnostic {
@@ -226,14 +228,14 @@ impl Including<'_> {
                 let changes = changes.iter().filter(|(_, value)| plain_number(value).is_some());
                 passed.extend(changes.cloned().map(|(mut key, value)| {
                     if let Value::Text(name) = &mut key.value {
-                        *name = name[namespace.len()..].to_owned();
+                        *name = bare(name, namespace).to_owned();
                     }
                     (key, value)
                 }));
             }
         }
         let own: Vec<String> = entries(key(tree, "params"))
-            .map(|(name, _)| name[namespace.len()..].to_owned())
+            .map(|(name, _)| bare(name, namespace).to_owned())
             .collect();
         for (key, _) in &passed {
             let Value::Text(name) = &key.value else { continue };
@@ -251,7 +253,7 @@ impl Including<'_> {
         if let Some(Field { value: Node { value: Value::Map(params), .. }, .. }) = params {
             for (key, value) in params {
                 let Value::Text(name) = &key.value else { continue };
-                let given = |(key, _): &&(Node, Node)| matches!(&key.value, Value::Text(given) if *given == name[namespace.len()..]);
+                let given = |(key, _): &&(Node, Node)| matches!(&key.value, Value::Text(given) if given == bare(name, namespace));
                 if let Some((_, given)) = passed.iter().find(given) {
                     *value = given.clone();
                 }
@@ -322,6 +324,9 @@ fn fields(tree: &mut Node) -> Option<&mut Vec<Field>> {
     } else {
         tree
     };
+    if matches!(&body.value, Value::Tuple(items) if items.is_empty()) {
+        body.value = Value::Record(Vec::new());
+    }
     match &mut body.value {
         Value::Record(fields) => Some(fields),
         _ => None,
@@ -364,6 +369,11 @@ fn simplify(includes: &mut Node) -> Vec<(String, Node, Passed)> {
         found.push((name.clone(), place, passed));
     }
     found
+}
+
+/// A name as the file itself has it.
+fn bare<'a>(name: &'a str, namespace: &str) -> &'a str {
+    name.strip_prefix(namespace).unwrap_or(name)
 }
 
 /// What tells a file from all others, however it is called.
