@@ -80,15 +80,17 @@ impl Text {
     /// `Name(value)`; of a tuple `Name(value, value)`.
     pub(super) fn newtype(name: &str, value: Self) -> Self {
         match value {
-            Self::Leaf(leaf) => Self::Leaf(format!("{name}({leaf})")),
             Self::Group(group)
                 // `Some` holds one value, never several.
                 if name != "Some"
+                    // `Name(())` and `Name((1))` are not what `Name()` and `Name(1)` are.
+                    && group.items.len() > 1
                     && group.open == "("
                     && group.items.iter().all(|item| item.key.is_empty()) =>
             {
                 Self::Group(Group { open: format!("{name}("), ..group })
             }
+            Self::Leaf(leaf) => Self::Leaf(format!("{name}({leaf})")),
             Self::Group(group) => {
                 let (open, close) = (format!("{name}({}", group.open), format!("{})", group.close));
                 Self::Group(Group { open, close, ..group })
