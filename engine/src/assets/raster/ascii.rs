@@ -133,7 +133,11 @@ pub(super) fn read(path: &Path) -> Result<Raster, AssetError> {
         }
         let key = word.to_owned();
         if !key.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_') {
-            return Err(wrong(RasterError::AsciiKey { line, found: excerpt(&key) }));
+            let found = excerpt(&key);
+            return Err(wrong(match key.as_bytes() {
+                [b'0'..=b'9' | b'-' | b'.', ..] => RasterError::AsciiNumber { line, found },
+                _ => RasterError::AsciiKey { line, found },
+            }));
         }
         let value = words.next().map_err(unreadable)?.map_or_else(String::new, |w| w.1.to_owned());
         header.set(line, &key, &value).map_err(wrong)?;

@@ -97,6 +97,10 @@ fn sizes(reader: impl Read + Seek, length: u64) -> io::Result<Result<Sizes, Rast
         let kind = numbers.next(2)? as usize;
         let count = numbers.next(wide)?;
         let size = kind.checked_sub(1).and_then(|index| SIZES.get(index)).copied().unwrap_or(0);
+        if size == 0 && wide == 8 {
+            // Readers disagree about how long such an entry is.
+            return Ok(Err(RasterError::Tiff(format!("tag {tag} is of an unknown type, {kind}"))));
+        }
         let claimed = count.saturating_mul(size);
         if claimed > length {
             let problem =

@@ -59,8 +59,10 @@ impl Header {
         while let Some(line) = lines.next() {
             let Some((key, value)) = line.split_once('=') else { continue };
             let mut value = value.trim().to_owned();
-            while value.starts_with('{') && !value.contains('}') {
+            let mut is_open = value.starts_with('{') && !value.contains('}');
+            while is_open {
                 let Some(more) = lines.next() else { break };
+                is_open = !more.contains('}');
                 value.push(' ');
                 value.push_str(more.trim());
             }

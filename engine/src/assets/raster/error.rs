@@ -57,4 +57,6 @@ pub enum RasterError {
     Tiff(String),
     #[error("holds {0} values a pixel; write one band to a file of its own (gdal_translate -b 1)")]
     Bands(u16),
+    #[error("holds values of {0} bits; write whole bytes (gdal_translate -ot Byte -co NBITS=8)")]
+    Bits(u16),
 }

@@ -40,6 +40,10 @@ pub(super) fn read(file: File) -> Result<Raster, RasterError> {
     if samples != 1 {
         return Err(RasterError::Bands(samples));
     }
+    let bits = tiff.find_tag_unsigned::<u16>(Tag::BitsPerSample).map_err(wrong)?.unwrap_or(1);
+    if bits < 8 {
+        return Err(RasterError::Bits(bits));
+    }
     claimed_bytes(&mut tiff, columns, rows, bytes)?;
     let place = place(&mut tiff, columns as f64, rows as f64)?;
     let no_data = tiff
@@ -64,6 +68,13 @@ pub(super) fn read(file: File) -> Result<Raster, RasterError> {
 fn claimed_bytes(tiff: &mut Tiff, columns: u64, rows: u64, found: u64) -> Result<(), RasterError> {
     for tag in [Tag::StripByteCounts, Tag::TileByteCounts] {
         let Some(counts) = tiff.find_tag_unsigned_vec::<u64>(tag).map_err(wrong)? else { continue };
+        if counts.contains(&0) {
+            return Err(RasterError::Tiff(
+                "it leaves out empty tiles or strips; write it whole (gdal_translate -co \
+                 SPARSE_OK=FALSE)"
+                    .to_owned(),
+            ));
+        }
         let needed = counts.iter().fold(0_u64, |sum, &count| sum.saturating_add(count));
         if needed > found {
             return Err(RasterError::TooShort { columns, rows, needed, found });

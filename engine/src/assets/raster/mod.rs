@@ -18,6 +18,8 @@ use super::text::open;
 pub(crate) use envi::companion;
 pub use error::RasterError;
 
+pub use crate::components::Projection;
+
 /// Most cells of a raster: 512 MiB of values.
 const MOST_CELLS: u64 = 1 << 26;
 
@@ -47,15 +49,6 @@ pub struct Place {
     pub unit: Unit,
     /// How ENVI names the projection in its `map info`: name, and what follows the size of cells.
     pub projection: Option<Projection>,
-}
-
-/// A projection as ENVI's `map info` names it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Projection {
-    /// First item, such as `UTM`.
-    pub name: String,
-    /// Items between the size of a cell and the units, such as `13, North, WGS-84`.
-    pub rest: String,
 }
 
 /// What coordinates are.

@@ -151,3 +151,16 @@ proptest! {
         read(file(&content).path());
     }
 }
+
+/// A list in braces that a header of 1 MiB never closes: what each line costs must not grow with
+/// those before it.
+#[test]
+fn a_header_that_closes_no_brace_is_read_in_no_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.hdr");
+    let header = format!("ENVI\nsamples = 1\nlines = 1\nmap info = {{UTM{}", "\n,".repeat(1 << 19));
+    std::fs::write(&path, header).unwrap();
+    std::fs::write(folder.path().join("a.img"), [1]).unwrap();
+    let error = crate::assets::read_raster(&path).unwrap_err();
+    assert!(message(&error).contains("no `data type`"), "{error}");
+}
