@@ -246,3 +246,34 @@ fn trees_far_above_or_below_the_ground_are_told() {
     assert!(found.contains("2 of `crown` are sunken into the ground"), "{found}");
     assert!(found.contains("1 of `crown` float above the ground"), "{found}");
 }
+
+/// *Scene*: heights of an ENVI raster in UTM. *Expected*: so is the image from above, unless the
+/// scene lays the raster elsewhere.
+#[test]
+fn an_image_from_above_has_the_projection_of_the_ground() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path();
+    fs::write(path.join("dem.img"), [0; 4]).expect("a file");
+    let header = "ENVI\nsamples = 2\nlines = 2\ndata type = 1\nmap info = {UTM, 1, 1, 500000, \
+                  4000020, 10, 10, 33, North, WGS-84, units=Meters}\n";
+    fs::write(path.join("dem.hdr"), header).expect("a file");
+    let image = r#""image": Orthographic(size_px: (4, 4), cover: WholeScene, samples_per_px: 16, azimuth_deg: 180.0, measure: [Brf])"#;
+    let map_info = |rest: &str| {
+        let terrain = format!(r#"Raster(file: "dem.img", material: "soil"{rest})"#);
+        let text = scene(&terrain, "Isolated", image);
+        let text = text.replace("(1000.0, 500.0, 0.0)", "(499000.0, 4000000.0, 0.0)");
+        let out = path.join("out");
+        let files = sunfleck::output::write(&run(path, &text), &out).expect("files");
+        let header = files.iter().find(|file| file.extension().is_some_and(|e| e == "hdr"));
+        let text = fs::read_to_string(header.expect("a header")).expect("a text");
+        text.lines().find(|line| line.starts_with("map info")).expect("a place").to_owned()
+    };
+    assert_eq!(
+        map_info(""),
+        "map info = {UTM, 1, 1, 500000, 4000020, 5, 5, 33, North, WGS-84, units=Meters}"
+    );
+    assert_eq!(
+        map_info(", corner_m: (0.0, 0.0)"),
+        "map info = {Arbitrary, 1, 1, 499000, 4000020, 5, 5, 0, North, units=Meters}"
+    );
+}

@@ -34,5 +34,5 @@ pub use sensor::{
     Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, Per, PhotonMeasure, Photons,
     Sensor, Stop, System, View, VirtualPlane,
 };
-pub use terrain::TerrainPatch;
+pub use terrain::{Projection, TerrainPatch};
 pub use thermal::{BlackBody, Emission};

@@ -2,6 +2,15 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{Mesh, PartMaterials};
 
+/// A projection as ENVI's `map info` names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Projection {
+    /// First item, such as `UTM`.
+    pub name: String,
+    /// Items between the size of a cell and the units, such as `13, North, WGS-84`.
+    pub rest: String,
+}
+
 /// The ground over a rectangle, which is also the tile of a periodic scene and the reference area on
 /// which irradiance is counted.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +28,9 @@ pub struct TerrainPatch {
     pub mesh: Mesh,
     /// Material of each part of the mesh.
     pub materials: PartMaterials,
+    /// Projection of the coordinates that `corner` and the scene's anchor add up to, if its raster
+    /// tells.
+    pub projection: Option<Projection>,
     /// First of the triangles, up to the last one, that are no ground but the faces along which an
     /// isolated ground is cut out of the earth; light that arrives there is lost.
     pub first_cut: u32,

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::Source;
+use crate::components::Projection;
 use crate::products::Image;
 
 /// Stands for "nothing was seen". Readers disagree on NaN; no product of light is negative.
@@ -53,10 +54,16 @@ pub(super) fn write_header(
         writeln!(file, "wavelength = {{{}}}", numbers.join(", "))?;
     }
     if let Some(place) = image.georeference {
-        // Pixel (1, 1) is the outer corner of the first pixel. The scene names no projection.
+        let (name, rest) = match &source.report.projection {
+            Some(Projection { name, rest }) => {
+                (item(name), rest.split(',').map(item).collect::<Vec<_>>().join(", "))
+            }
+            None => ("Arbitrary".to_owned(), "0, North".to_owned()),
+        };
+        // Pixel (1, 1) is the outer corner of the first pixel.
         writeln!(
             file,
-            "map info = {{Arbitrary, 1, 1, {}, {}, {}, {}, 0, North, units=Meters}}",
+            "map info = {{{name}, 1, 1, {}, {}, {}, {}, {rest}, units=Meters}}",
             place.west, place.north, place.pixel_width, place.pixel_height
         )?;
     }

@@ -74,6 +74,7 @@ fn sensor(name: &str, product: Product) -> SensorReport {
 
 fn report(sensors: Vec<SensorReport>) -> Report {
     Report {
+        projection: None,
         scene: "Birch\n# stand \u{df}".to_owned(),
         hash: "c0ffee".to_owned(),
         version: "0.1.0".to_owned(),
@@ -226,6 +227,7 @@ fn envi_header_describes_the_pixels() {
     assert_eq!(list("wavelength"), ["660", "865.5"]);
     let place = list("map info");
     assert_eq!(place[1..7], ["1", "1", "679000.5", "5150000.25", "0.5", "0.25"]);
+    assert_eq!(place[0], "Arbitrary");
     let no_data: f32 = field("data ignore value").parse().unwrap();
     let image = image().image.unwrap();
     for band in 0..bands {

@@ -1,5 +1,5 @@
 use super::Faces;
-use crate::components::Channels;
+use crate::components::{Channels, Projection};
 
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,6 +132,8 @@ pub struct SensorReport {
 /// All that a run measured, and how it came about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
+    /// Projection of eastings and northings, if the terrain's raster tells.
+    pub projection: Option<Projection>,
     /// Title of the scene.
     pub scene: String,
     /// Hash of the resolved scene and of all files that it reads, hexadecimal.

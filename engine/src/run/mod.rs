@@ -12,6 +12,7 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::accel::Boundary;
+use crate::components::{Projection, TerrainPatch};
 use crate::document::{self, Diagnostic, Reading, Scene};
 use crate::extract::{Rules, Setting, Stage, extract};
 use crate::products::{BandSources, Context, Report, SensorReport};
@@ -188,6 +189,7 @@ fn run_kept(
     let reports = measure(&spawned.world, &stage, &context, options, progress);
     clock.lap("trace");
     let report = Report {
+        projection: projection(&spawned.world),
         scene: scene.title.clone(),
         hash,
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -208,6 +210,11 @@ fn run_kept(
     };
     *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
     Ok(report)
+}
+
+/// Projection of the coordinates of the ground.
+fn projection(world: &World) -> Option<Projection> {
+    world.query::<&TerrainPatch>().iter().find_map(|patch| patch.projection.clone())
 }
 
 /// Shares of the incident energy that may get lost in the rounding of f64.

@@ -6,6 +6,7 @@ use crate::components::{MaterialId, Mesh, Part, PartMaterials, TerrainPatch};
 #[must_use]
 pub fn plane(corner: DVec2, size: DVec2, height: f64, material: MaterialId) -> TerrainPatch {
     TerrainPatch {
+        projection: None,
         corner,
         size,
         base: height,

@@ -140,6 +140,7 @@ impl Surface {
             parts: named,
         };
         TerrainPatch {
+            projection: None,
             corner: self.corner,
             size: self.size,
             base: self.base,
