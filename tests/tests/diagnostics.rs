@@ -62,6 +62,40 @@ fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
 }
 
 #[test]
+fn ground_under_ground_is_told() {
+    let text = r#"Scene(
+    format: 1,
+    bands: [(name: "red", center_nm: 660.0)],
+    materials: { "soil": Lambertian(reflectance: Constant(0.5)) },
+    meshes: { "hill": Obj(file: "hill.obj", up: Z, unit_m: 1.0, material: "soil") },
+    terrain: Mesh(mesh: "hill", at_m: (100.0, 0.0, 0.0)),
+    sun: (zenith_deg: 20.0),
+    sensors: { "a": Photons },
+)
+"#;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("scene.ron");
+    fs::write(&path, text).expect("a file");
+    let warnings = |hill: &str| {
+        fs::write(folder.path().join("hill.obj"), hill).expect("a file");
+        let found = check_file(&path, &Options::default());
+        found.unwrap_or_else(|failure| panic!("{failure}")).join("\n")
+    };
+    // A slope of two triangles and a wall, which no place is under.
+    let slope = "v 0 0 0\nv 9 0 3\nv 9 9 3\nv 0 9 0\nv 0 0 5\nf 1 2 3 4\nf 1 4 5\n";
+    assert_eq!(warnings(slope), "");
+    // A roof of one triangle covers the middle of neither; it is the slope that covers a cellar.
+    let with =
+        |height: i32| format!("{slope}v 6 2 {height}\nv 7 2 {height}\nv 7 3 {height}\nf 6 7 8\n");
+    let told = warnings(&with(-4));
+    assert!(told.starts_with("warning: 1 triangles of `hill` lie under others\n"), "{told}");
+    assert!(told.contains("one lies at (106.67, 2.33, -4.00): what is placed there"), "{told}");
+    // The middle of one of the slope's triangles is (6, 3).
+    let roof = warnings(&with(9).replace("v 6 2", "v 5 3.5").replace("v 7 3", "v 7 4"));
+    assert!(roof.contains("one lies at (106.00, 3.00, 2.00)"), "{roof}");
+}
+
+#[test]
 fn what_is_most_likely_not_meant_is_told() {
     let text = r#"Scene(
     format: 1,

@@ -3,13 +3,16 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, Vec2Swizzles as _};
+use glam::{DVec2, Vec2Swizzles as _, Vec3};
 
 use super::Spawner;
 use super::meshes::Prototype;
-use crate::components::Placement;
-use crate::document::{Cover, Diagnostic, Mesh, Sensor};
+use crate::components::{Placement, TerrainPatch};
+use crate::document::{Cover, Diagnostic, Mesh, Sensor, Terrain};
 use crate::terrain::Ground;
+
+/// Ground that lies less below other ground is the same but for rounding, m.
+const OVERHANG: f64 = 1e-3;
 
 /// No plant is larger, m.
 const TALLEST: f32 = 200.0;
@@ -43,6 +46,26 @@ impl Spawner<'_> {
             );
             self.problems.push(Diagnostic::warning("instances", message).help(help));
         }
+    }
+
+    /// Warns of a mesh as ground of which triangles lie under others.
+    pub(super) fn doubt_overhangs(&mut self, patch: &TerrainPatch, ground: &Ground) {
+        let Terrain::Mesh { mesh, .. } = &self.scene.terrain else { return };
+        let mut under = (0..patch.first_cut as usize).filter_map(|index| {
+            let [a, b, c] = patch.mesh.corners(index).map(Vec3::as_dvec3);
+            let middle = patch.origin() + (a + b + c) / 3.0 * patch.size.extend(patch.unit);
+            let is_wall = (b - a).truncate().perp_dot((c - a).truncate()) == 0.0;
+            let above = ground.height(middle.truncate())? - middle.z;
+            (!is_wall && above > OVERHANG.max(1e-5 * patch.unit)).then_some(middle)
+        });
+        let Some(first) = under.next() else { return };
+        let message = format!("{} triangles of `{mesh}` lie under others", 1 + under.count());
+        let help = format!(
+            "one lies at ({:.2}, {:.2}, {:.2}): what is placed there stands on the highest; of \
+             overhangs that are not meant, or of closed bodies, keep the upper side alone",
+            first.x, first.y, first.z
+        );
+        self.problems.push(Diagnostic::warning("terrain.mesh", message).help(help));
     }
 
     /// Warns of meshes from files that are larger than any plant.

@@ -82,6 +82,9 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     let mut world = World::new();
     let patch = spawner.terrain();
     let ground = patch.as_ref().map(Ground::of);
+    if let (Some(patch), Some(ground)) = (&patch, &ground) {
+        spawner.doubt_overhangs(patch, ground);
+    }
     world.spawn_batch(patch.into_iter().map(|patch| (SceneId(0), patch)));
     let meshes = spawner.meshes();
     let placements = spawner.instances(&meshes, ground.as_ref());

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::Spawner;
 use super::lay::Georeference;
-use crate::assets::{Raster, Unit, read_raster};
+use crate::assets::{Projection, Raster, Unit, read_raster};
 use crate::components::TerrainPatch;
 use crate::document::{Coordinates, Diagnostic, LandCover, NoData, Terrain, unknown_name};
 use crate::geometry::Rectangle;
@@ -71,12 +71,24 @@ impl Spawner<'_> {
             (None, None) => return None,
         };
         let periodic = self.is_periodic();
-        let patch = terrain::raster(&heights, *tolerance_m, cover.as_ref(), parts, periodic);
+        let mut patch = terrain::raster(&heights, *tolerance_m, cover.as_ref(), parts, periodic);
+        if let Some(patch) = &mut patch {
+            patch.projection = self.projection(&raster);
+        }
         if patch.is_none() {
             let message = "none of its cells has data".to_owned();
             self.problems.push(Diagnostic::error("terrain.file", message));
         }
         patch
+    }
+
+    /// Projection of the raster's coordinates, if they are those of the scene beyond its anchor.
+    fn projection(&self, raster: &Raster) -> Option<Projection> {
+        let place = raster.place.as_ref()?;
+        let Georeference { from, to, scale, is_of_degrees } = self.georeference?;
+        let (x, y, _) = self.scene.frame.origin_m;
+        let is_kept = to == from - DVec2::new(x, y) && scale == DVec2::ONE && !is_of_degrees;
+        place.projection.clone().filter(|_| is_kept)
     }
 
     pub(super) fn read(&mut self, file: &str, path: &str) -> Option<Raster> {
@@ -276,11 +288,11 @@ fn grow(raster: &mut Raster) {
             (x.saturating_sub(1)..(x + 2).min(columns), y.saturating_sub(1)..(y + 2).min(rows));
         ys.flat_map(move |y| xs.clone().map(move |x| y * columns + x))
     };
-    let mut missing: Vec<usize> =
+    let mut candidates: Vec<usize> =
         (0..raster.values.len()).filter(|&cell| raster.values[cell].is_nan()).collect();
-    while !missing.is_empty() {
+    while !candidates.is_empty() {
         let mut ring = Vec::new();
-        for &cell in &missing {
+        for &cell in &candidates {
             let known = around(cell).map(|c| raster.values[c]).filter(|height| !height.is_nan());
             let (sum, count) =
                 known.fold((0.0, 0), |(sum, count), height| (sum + height, count + 1));
@@ -288,13 +300,14 @@ fn grow(raster: &mut Raster) {
                 ring.push((cell, sum / f64::from(count)));
             }
         }
-        if ring.is_empty() {
-            return;
-        }
         for &(cell, height) in &ring {
             raster.values[cell] = height;
         }
-        missing.retain(|&cell| raster.values[cell].is_nan());
+        // The next ring lies around this one: to ask all cells each time would never end.
+        let next = ring.iter().flat_map(|&(cell, _)| around(cell));
+        candidates = next.filter(|&cell| raster.values[cell].is_nan()).collect();
+        candidates.sort_unstable();
+        candidates.dedup();
     }
 }
 
@@ -317,5 +330,17 @@ mod tests {
             Raster { columns: 4, rows: 1, values, place: None, class_names: Vec::new() };
         grow(&mut raster);
         assert_eq!(raster.values, [1.0, 1.0, 4.0, 4.0]);
+        // Of one known cell among 2^20, a thousand rings: in no time.
+        let mut values = vec![nan; 1 << 20];
+        values[0] = 7.0;
+        let mut raster = Raster {
+            columns: 1 << 10,
+            rows: 1 << 10,
+            values,
+            place: None,
+            class_names: Vec::new(),
+        };
+        grow(&mut raster);
+        assert!(raster.values.iter().all(|&height| height == 7.0));
     }
 }

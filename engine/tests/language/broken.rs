@@ -39,7 +39,10 @@ broken! {
     image
     last_string_never_closed
     instances
+    land_cover_on_a_mesh
+    land_cover_on_a_plane
     leaf_as_light
+    loops
     missing_keys
     no_bands
     no_light
@@ -56,6 +59,10 @@ broken! {
     sky_without_sun
     spectra
     string_never_closed
+    sweep_of_nothing
+    sweep_too_large
+    sweep_unused
+    sweeps
     sun_below_the_horizon
     sun_in_no_month
     sun_nowhere

@@ -53,6 +53,12 @@ impl<'a> Fields<'a> {
                     "a `Lambertian(..)` surface is opaque: it has no transmittance".to_owned(),
                     "write `Leaf(..)` for one that light passes through".to_owned(),
                 ),
+                "`Plane(..)`" | "`Mesh(..)`" if name == "land_cover" => (
+                    format!("no land cover on {}: classes lie on a raster of heights", self.owner),
+                    "write `Raster(file: \"heights.asc\", land_cover: ..)`, where all heights may \
+                     be the same; the parts of a mesh have materials of their own"
+                        .to_owned(),
+                ),
                 _ if known.is_empty() => (
                     format!("no key `{name}` in {}", self.owner),
                     format!("{} has no keys", self.owner),
