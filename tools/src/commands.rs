@@ -93,8 +93,9 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     }
     let table = output::write_sweep(&points, &folder)?;
     print(&format!(
-        "{}: {ran} points run, {} kept; geometry built {}\n",
+        "{}: {ran} {} run, {} kept; geometry built {}\n",
         table.display(),
+        if ran == 1 { "point" } else { "points" },
         points.len() - ran,
         match sweep.builds() {
             1 => "once".to_owned(),

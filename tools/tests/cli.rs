@@ -263,7 +263,7 @@ fn a_sweep_writes_one_table_and_goes_on_where_it_stopped() {
     fs::remove_file(folder.path().join("out/soil/points/sza=60/point.csv")).unwrap();
     fs::remove_file(folder.path().join("out/soil/sweep.csv")).unwrap();
     let (_, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron"]);
-    assert!(stdout.contains("1 points run, 1 kept"), "{stdout}");
+    assert!(stdout.contains("1 point run, 1 kept"), "{stdout}");
     assert_eq!(table(), first, "the same numbers");
     // Another scene is another result.
     let (_, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1"]);
@@ -272,7 +272,7 @@ fn a_sweep_writes_one_table_and_goes_on_where_it_stopped() {
     fs::write(folder.path().join("soil.ron"), text).unwrap();
     let (_, stdout, _) =
         outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1", "--threads", "1"]);
-    assert!(stdout.contains("1 points run, 1 kept"), "{stdout}");
+    assert!(stdout.contains("1 point run, 1 kept"), "{stdout}");
     // What `--set` gives is not varied.
     let (_, stdout, _) =
         outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1", "--set", "sza=45"]);

@@ -14,6 +14,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use cpu_time::ProcessTime;
 use peak_alloc::PeakAlloc;
 use sunfleck_tests::fuzz::{
     Fault, Mutator, READERS, Reader, files_below, hush, judge, project, reader,
@@ -22,8 +23,11 @@ use sunfleck_tests::fuzz::{
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// A reader that has not answered by then hangs.
+/// A reader that has not answered after so many seconds of processor time hangs.
 const HANG: u64 = 60;
+
+/// Most files that are kept to start from.
+const MOST_SEEDS: usize = 4096;
 
 /// Longest time to make one finding small.
 const MINIMISING: Duration = Duration::from_secs(20);
@@ -70,7 +74,7 @@ struct Hunt {
     reader: &'static Reader,
     folder: PathBuf,
     file: PathBuf,
-    /// Seconds since the start when the present file was given to the reader.
+    /// Processor time, s, at which the present file was given to the reader.
     since: Arc<AtomicU64>,
     start: Instant,
 }
@@ -85,7 +89,7 @@ impl Hunt {
         std::thread::spawn(move || {
             loop {
                 std::thread::sleep(Duration::from_secs(1));
-                if start.elapsed().as_secs() > watched.load(Ordering::Relaxed) + HANG {
+                if processor_seconds() > watched.load(Ordering::Relaxed) + HANG {
                     println!("no answer in {HANG} s: {}", path.display());
                     std::process::exit(2);
                 }
@@ -97,7 +101,7 @@ impl Hunt {
     fn try_bytes(&self, bytes: &[u8]) -> Result<Vec<String>, Fault> {
         // What ends the process stays there to be looked at.
         fs::write(&self.file, bytes).expect("a file can be written");
-        self.since.store(self.start.elapsed().as_secs(), Ordering::Relaxed);
+        self.since.store(processor_seconds(), Ordering::Relaxed);
         judge(self.reader, &self.folder, &self.file).map(|answer| answer.kinds)
     }
 
@@ -121,7 +125,7 @@ impl Hunt {
                     for kind in kinds {
                         is_new |= known.insert(kind);
                     }
-                    if is_new && !is_seed {
+                    if is_new && !is_seed && pool.len() < MOST_SEEDS {
                         pool.push(bytes);
                     }
                 }
@@ -177,6 +181,11 @@ impl Hunt {
         fs::write(&path, bytes).expect("what is found can be saved");
         println!("{}: {} bytes: {fault:?}", path.display(), bytes.len());
     }
+}
+
+/// Processor time of this process, s: what others take of the machine does not count.
+fn processor_seconds() -> u64 {
+    ProcessTime::now().as_duration().as_secs()
 }
 
 /// Files to start from: the corpus, and what the project has.
