@@ -1,14 +1,15 @@
-//! Turbid layers of leaves against tables by adding and doubling (`../shared/reference`): all fluxes under
-//! sun and isotropic sky, and the BRF and its orders in three planes, away from the hot spot.
+//! Turbid layers of leaves against tables by adding and doubling (`../shared/reference`): all fluxes
+//! under sun and isotropic sky, and the BRF and its orders in three planes, away from the hot spot.
 //!
-//! A layer of discs of 1 cm that is 40 m high is turbid: by Kuusk's kernel the tail of its hot spot raises
-//! single scattering 5° off by 0.3 %, 20° off by less than 0.1 %. Its leaves are drawn anew 32 times; the spread between these is the error, that of the leaves' places included, so that z
+//! A layer of discs of 1 cm that is 40 m high is turbid: by Kuusk's kernel the tail of its hot spot
+//! raises single scattering 5° off by 0.3 %, 20° off by less than 0.1 %. Its leaves are drawn anew 32
+//! times; the spread between these is the error, that of the leaves' places included, so that z
 //! follows Student's t with 31 degrees of freedom: 4.66 of its errors are as rare as 4 of the normal
 //! distribution's.
 //!
 //! `SUNFLECK_FULL=1 cargo test --release -p sunfleck-tests --test references -- --nocapture` compares
-//! every row at a relative standard error of 0.2 % and prints the table; without it, in layers of 20 m, every 12th
-//! direction of six layers at 2 %.
+//! every row at a relative standard error of 0.2 % and prints the table; without it, every 12th
+//! direction of six layers of 20 m at 2 %.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
