@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use sunfleck::document::{System, nearest};
+use sunfleck::run::Share;
 
 use crate::verify::CHECKS;
 
@@ -21,13 +22,15 @@ use crate::verify::CHECKS;
 )]
 pub(crate) enum Command {
     /// Trace a scene and write what its sensors measure
-    Run(Run),
+    Run(Trace),
     /// Run a scene at every point of its `sweep`, and write one table of all; goes on where an earlier
     /// run of the same sweep has stopped
     Sweep(Run),
     /// Measure a scene with each transport system that can, and show their differences in standard
     /// errors and what each costs
     Compare(Compare),
+    /// Make results of the parts that `run --part` has traced
+    Merge(Merge),
     /// Say what is wrong with a scene, and trace nothing
     Check(Scene),
     /// Measure how fast this machine is on a scene
@@ -110,6 +113,50 @@ pub(crate) struct Rays {
     /// Times that each measurement is repeated
     #[arg(long, value_name = "N", default_value_t = 7)]
     pub(crate) rounds: usize,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Trace {
+    #[command(flatten)]
+    pub(crate) run: Run,
+
+    /// Write what is traced to this file every so often, and go on with it if it is there
+    #[arg(long, value_name = "FILE")]
+    pub(crate) checkpoint: Option<PathBuf>,
+
+    /// Seconds between two writings of the checkpoint
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "checkpoint", value_parser = seconds)]
+    pub(crate) every: f64,
+
+    /// Trace the second of four shares of the run alone, and write it to the checkpoint; `merge` makes
+    /// results of all shares
+    #[arg(long, value_name = "I/N", requires = "checkpoint", value_parser = part)]
+    pub(crate) part: Option<Share>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Merge {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+
+    /// Checkpoints of all parts
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Folder for the results [default: out/<name of the scene file>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Multiply the number of samples, as the parts did
+    #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
+    pub(crate) quality: f64,
+}
+
+impl Merge {
+    /// Folder for the results.
+    pub(crate) fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| self.scene.folder(""))
+    }
 }
 
 #[derive(Args, Debug)]
@@ -255,6 +302,28 @@ fn setting(text: &str) -> Result<(String, f64), String> {
     }
 }
 
+/// Parts that a run may be divided into: each randomisation belongs to one.
+const MOST_PARTS: u32 = 32;
+
+fn part(text: &str) -> Result<Share, String> {
+    let numbers = text.split_once('/').and_then(|(index, of)| {
+        Some((index.trim().parse::<u32>().ok()?, of.trim().parse::<u32>().ok()?))
+    });
+    match numbers {
+        Some((index, of)) if (1..=of).contains(&index) && of <= MOST_PARTS => {
+            Ok(Share { index: index - 1, of })
+        }
+        _ => Err(format!("write, for example, 2/4: the second of four, of at most {MOST_PARTS}")),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() && seconds > 0.0 => Ok(seconds),
+        _ => Err("write a number of seconds above 0, such as 60".to_owned()),
+    }
+}
+
 fn quality(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(factor) if factor.is_finite() && factor > 0.0 => Ok(factor),
@@ -276,7 +345,7 @@ mod tests {
     #[test]
     fn results_go_to_a_folder_named_after_the_scene() {
         let folder = |line: &[&str]| match Command::parse_from(line) {
-            Command::Run(run) => run.folder(),
+            Command::Run(trace) => trace.run.folder(),
             other => panic!("{other:?}"),
         };
         assert_eq!(folder(&["sunfleck", "run", "a/birch.ron"]), Path::new("out/birch"));

@@ -27,7 +27,7 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
     let options = run::Options {
         document: document_options(&arguments.scene),
         threads: Some(threads),
-        quality: 1.0,
+        ..run::Options::default()
     };
     let ready = run::stage_file(&arguments.scene.file, &options)?;
     let stage = &ready.stage;

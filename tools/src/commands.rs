@@ -2,11 +2,13 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
+use std::path::Path;
 
 use anyhow::{Context as _, bail};
+use sunfleck::run::Share;
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Bench, Command, Fmt, Run, Scene, Verify};
+use crate::arguments::{Bench, Command, Fmt, Merge, Run, Scene, Trace, Verify};
 use crate::progress::Bars;
 use crate::{bench, compare, import_less, verify};
 
@@ -17,6 +19,7 @@ const SKIPPED: &str = "skipped: ";
 pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Run(arguments) => trace(arguments),
+        Command::Merge(arguments) => merge(arguments),
         Command::Sweep(arguments) => sweep(arguments),
         Command::Compare(arguments) => print(&compare::compare(arguments)?),
         Command::Check(scene) => check(scene),
@@ -46,17 +49,54 @@ pub(crate) fn message(error: &anyhow::Error) -> String {
     if headed { text.trim_end().to_owned() } else { format!("error: {text}") }
 }
 
-fn trace(arguments: &Run) -> anyhow::Result<()> {
-    let folder = arguments.folder();
-    // Better now than after hours of tracing.
-    output::probe(&folder)?;
-    let options = run_options(arguments);
+fn trace(arguments: &Trace) -> anyhow::Result<()> {
+    let share = arguments.part.unwrap_or(Share::ALL);
+    let checkpoint = arguments.checkpoint.as_ref().map(|file| run::Checkpoint {
+        file: file.clone(),
+        every: arguments.every,
+        share,
+    });
+    let options = run::Options { checkpoint, ..run_options(&arguments.run) };
+    let scene = &arguments.run.scene;
+    if share == Share::ALL {
+        return results(scene, &options, &arguments.run.folder());
+    }
     let bars = Bars::new();
-    let report = run::run_file(&arguments.scene.file, &options, &bars);
+    let report = run::run_file(&scene.file, &options, &bars);
     bars.clear();
     let report = report?;
     warn(&report.warnings);
-    let files = output::write(&report, &folder)?;
+    let file = arguments.checkpoint.as_deref().unwrap_or(Path::new(""));
+    print(&format!(
+        "{}: part {} of {}: {:.3} million rays in {:.1} s; `sunfleck merge` makes results of all parts\n",
+        file.display(),
+        share.index + 1,
+        share.of,
+        report.rays as f64 / 1e6,
+        report.seconds
+    ))
+}
+
+fn merge(arguments: &Merge) -> anyhow::Result<()> {
+    let options = run::Options {
+        document: document_options(&arguments.scene),
+        quality: arguments.quality,
+        unite: arguments.files.clone(),
+        ..run::Options::default()
+    };
+    results(&arguments.scene, &options, &arguments.folder())
+}
+
+/// Runs a scene and writes what its sensors measure.
+fn results(scene: &Scene, options: &run::Options, folder: &Path) -> anyhow::Result<()> {
+    // Better now than after hours of tracing.
+    output::probe(folder)?;
+    let bars = Bars::new();
+    let report = run::run_file(&scene.file, options, &bars);
+    bars.clear();
+    let report = report?;
+    warn(&report.warnings);
+    let files = output::write(&report, folder)?;
     let mut text = output::table(&report);
     writeln!(
         text,
@@ -109,6 +149,7 @@ fn run_options(arguments: &Run) -> run::Options {
         document: document_options(&arguments.scene),
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
+        ..run::Options::default()
     }
 }
 

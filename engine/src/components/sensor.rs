@@ -82,8 +82,10 @@ pub struct ImageSensor {
     pub size: UVec2,
     /// How its points become rays.
     pub optics: Optics,
-    /// Paths traced for it.
+    /// Paths traced for it, unless `until` says more.
     pub samples: ImageSamples,
+    /// The first that holds ends the measurement; without any, `samples` do.
+    pub until: Vec<Stop>,
     /// What to report.
     pub measure: Vec<ImageMeasure>,
     /// How its picture is coloured.
@@ -93,13 +95,15 @@ pub struct ImageSensor {
 }
 
 /// When a measurement is good enough.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Stop {
-    /// The product's median relative standard error is at most this.
+    /// The median relative standard error of each product is at most this.
     RelError(f64),
+    /// That of each of these products is at most this.
+    RelErrors(Vec<(String, f64)>),
     /// This much time has passed, s.
     Seconds(f64),
-    /// This many samples a direction were drawn.
+    /// This many samples a pixel, samples a direction or photon packets were drawn.
     Samples(u64),
 }
 
@@ -182,6 +186,8 @@ impl PhotonMeasure {
 pub struct Photons {
     /// Packets a square metre of the terrain's rectangle; of emitted light, lines along which some start.
     pub per_area: f64,
+    /// The first that holds ends the measurement; without any, `per_area` does.
+    pub until: Vec<Stop>,
     /// What to report.
     pub measure: Vec<PhotonMeasure>,
     /// Only what leaves through it, or lies below it, counts.

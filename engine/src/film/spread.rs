@@ -45,6 +45,19 @@ impl Spread {
         }
     }
 
+    /// Spread of the values at these places, each times a factor.
+    ///
+    /// # Panics
+    /// If there is no such place.
+    #[must_use]
+    pub fn select(&self, places: impl IntoIterator<Item = (usize, f64)>) -> Self {
+        let scaled = |(place, scale): (usize, f64)| {
+            (self.mean[place] * scale, self.squares[place] * scale * scale)
+        };
+        let (mean, squares) = places.into_iter().map(scaled).unzip();
+        Self { count: self.count, mean, squares }
+    }
+
     /// Forgets all randomisations.
     pub fn clear(&mut self) {
         self.count = 0;

@@ -29,6 +29,11 @@ impl Sums {
         Self { bands, values: Vec::new(), touched: Some(IndexSet::new()) }
     }
 
+    /// Forgets all that was added.
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
     fn cell(&mut self, cell: usize) -> &mut [f64] {
         let row = self.touched.as_mut().map_or(cell, |touched| {
             let (row, is_new) = touched.insert_full(cell);
@@ -102,6 +107,11 @@ impl Sums {
     pub fn values(&self) -> &[f64] {
         assert!(self.touched.is_none(), "a block's sums are there to be merged");
         &self.values
+    }
+
+    /// The same, to be written.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
     }
 
     /// Bands of a cell.

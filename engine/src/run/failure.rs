@@ -24,6 +24,8 @@ pub enum Failure {
     Build(#[from] BuildError),
     #[error("{}: could not be read again: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
+    #[error("{}: {what}; {help}", file.display())]
+    Checkpoint { file: PathBuf, what: String, help: String },
     #[error("could not start {threads} threads: {reason}")]
     Threads { threads: usize, reason: String },
 }

@@ -1,26 +1,33 @@
 //! The list of stages, one call a line: text to document to world to stage to films to report.
 
 mod again;
+mod checkpoint;
 mod failure;
+mod growth;
+mod photons;
 mod provenance;
 mod sensors;
 mod sweep;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hecs::World;
 
 use crate::accel::Boundary;
-use crate::components::{Projection, TerrainPatch};
+use crate::components::{Projection, Sensor, TerrainPatch};
 use crate::document::{self, Diagnostic, Reading, Scene};
 use crate::extract::{Rules, Setting, Stage, extract};
 use crate::products::{BandSources, Context, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
 
+pub use crate::transport::Share;
 pub use again::Runs;
+pub use checkpoint::Checkpoint;
 pub use failure::Failure;
+
+use checkpoint::Keeper;
 pub use sweep::Sweep;
 
 use sweep::Kept;
@@ -35,11 +42,21 @@ pub struct Options {
     /// Factor on all numbers of samples, and its inverse root on relative errors: 1 is the scene as
     /// it is written.
     pub quality: f64,
+    /// Where to write down what is traced, to go on with it later.
+    pub checkpoint: Option<Checkpoint>,
+    /// Checkpoints of all shares of one run, whose films are united in place of tracing them.
+    pub unite: Vec<PathBuf>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { document: document::Options::default(), threads: None, quality: 1.0 }
+        Self {
+            document: document::Options::default(),
+            threads: None,
+            quality: 1.0,
+            checkpoint: None,
+            unite: Vec::new(),
+        }
     }
 }
 
@@ -174,6 +191,11 @@ fn run_kept(
         None => (spawn(scene, folder).map_err(Failure::Problems)?, None),
     };
     let hash = provenance::hash(scene, &spawned.files)?;
+    let mut keeper = match &options.checkpoint {
+        Some(to) => Keeper::open(to, provenance::stream_hash(scene, &spawned.files)?)?,
+        None if options.unite.is_empty() => Keeper::idle(),
+        None => Keeper::unite(&options.unite, provenance::stream_hash(scene, &spawned.files)?)?,
+    };
     clock.lap("spawn");
     progress.stage("building");
     let stage = extract(&spawned.world, &setting(scene), built)?;
@@ -186,7 +208,7 @@ fn run_kept(
         sources: scene.bands.iter().map(sources).collect(),
     };
     progress.stage("tracing");
-    let reports = measure(&spawned.world, &stage, &context, options, progress);
+    let reports = measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
     clock.lap("trace");
     let report = Report {
         projection: projection(&spawned.world),
@@ -241,18 +263,27 @@ fn sources(band: &document::Band) -> BandSources {
 /// Measures every sensor of the world in document order.
 fn measure(
     world: &World,
-    stage: &Stage,
-    context: &Context,
+    (stage, context): (&Stage, &Context),
     options: &Options,
+    keeper: &mut Keeper,
     progress: &dyn Progress,
-) -> Vec<SensorReport> {
-    sensors::in_order(world)
-        .iter()
-        .map(|(name, sensor)| {
-            let watch = |done| progress.sensor(name, done);
-            sensors::measure(name, sensor, stage, context, options.quality, &watch)
-        })
-        .collect()
+) -> Result<Vec<SensorReport>, Failure> {
+    let quality = options.quality;
+    let sensors = sensors::in_order(world);
+    let check = |(name, sensor): &(String, Sensor)| {
+        sensors::check(name, sensor, stage, context, quality, keeper)
+    };
+    let problems: Vec<Diagnostic> = sensors.iter().flat_map(check).collect();
+    if !problems.is_empty() {
+        return Err(Failure::Problems(problems));
+    }
+    let reports = sensors.iter().map(|(name, sensor)| {
+        let watch = |done| progress.sensor(name, done);
+        sensors::measure(name, sensor, stage, context, quality, keeper, &watch)
+    });
+    let reports = reports.collect::<Result<_, _>>()?;
+    keeper.write()?;
+    Ok(reports)
 }
 
 fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {

@@ -1,17 +1,41 @@
 use std::path::{Path, PathBuf};
 
 use super::Failure;
-use crate::document::Scene;
+use crate::document::{Ends, Scene, Sensor};
 
 /// Hash of a scene as it was resolved and of the content of each file that it reads, hexadecimal.
 /// Equal hashes, versions and seeds give equal results.
 pub(super) fn hash(scene: &Scene, files: &[PathBuf]) -> Result<String, Failure> {
+    Ok(of(scene, files)?.to_hex().to_string())
+}
+
+fn of(scene: &Scene, files: &[PathBuf]) -> Result<blake3::Hash, Failure> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene.resolved().to_ron().as_bytes());
     for path in files {
         hasher.update(content(path)?.as_bytes());
     }
-    Ok(hasher.finalize().to_hex().to_string())
+    Ok(hasher.finalize())
+}
+
+/// The same of a scene without what says how long its sensors measure: equal hashes have the same
+/// samples, as many as one likes.
+pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], Failure> {
+    let mut scene = scene.clone();
+    for sensor in scene.sensors.values_mut() {
+        match sensor {
+            Sensor::Orthographic { samples_per_px, samples_per_m2, until, .. } => {
+                (*samples_per_px, *samples_per_m2, *until) = (None, None, None);
+            }
+            Sensor::Perspective { samples_per_px, until, .. }
+            | Sensor::Fisheye { samples_per_px, until, .. } => {
+                (*samples_per_px, *until) = (2, None);
+            }
+            Sensor::Directions { until, .. } => *until = Ends(Vec::new()),
+            Sensor::Photons { per_m2, until, .. } => (*per_m2, *until) = (1.0, None),
+        }
+    }
+    Ok(*of(&scene, files)?.as_bytes())
 }
 
 /// Hash of what a file holds.

@@ -1,21 +1,19 @@
-use std::sync::Arc;
-use std::time::Instant;
-
 use hecs::World;
 
+use super::Failure;
+use super::checkpoint::Keeper;
+use super::growth::{Ending, Measurement, Paced, Plan, grow, is_ledger};
+use super::photons::PhotonRun;
 use crate::components::{
-    Directions, ImageMeasure, ImageSensor, Name, PhotonMeasure, Photons, SceneId, Sensor, Stop,
-    System,
+    Directions, ImageMeasure, ImageSensor, Name, Photons, SceneId, Sensor, Stop, System,
 };
-use crate::extract::{Inventory, Stage};
-use crate::film::Spread;
-use crate::products::{self, BandSources, Context, Product, SensorReport};
+use crate::document::{Diagnostic, unknown_name};
+use crate::extract::Stage;
+use crate::products::{self, Context, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    AbsorbedCounter, AlbedoCounter, Camera, CellCounter, ConeCounter, Counter, FluxCounter,
-    FluxLevel, Hemisphere, LayerCounter, Part, PartCounter, PhotonOutcome, Projection,
-    ReferencePlane, Source, ViewCounter, Watch, measure_directions, measure_directions_components,
-    measure_image, measure_image_components, measure_image_forward, trace_photons,
+    Camera, ComponentsFilm, DirectionsFilm, ImageFilm, RANDOMISATIONS, ReferencePlane, Schedule,
+    Share, Source, Tiles, Watch, image_components_film,
 };
 
 /// All sensors in document order.
@@ -26,26 +24,77 @@ pub(super) fn in_order(world: &World) -> Vec<(String, Sensor)> {
     sensors.into_iter().map(|(_, name, sensor)| (name.0.clone(), sensor.clone())).collect()
 }
 
-/// What a measurement gives.
-#[derive(Default)]
-struct Measured {
-    products: Vec<Product>,
-    rays: u64,
-    samples: u64,
-    ended_by: String,
-    imbalance: Option<f64>,
+/// A measurement before its first sample, and how far it goes.
+type Begun<'a> = (Box<dyn Measurement + 'a>, Plan);
+
+fn begin<'a>(
+    name: &str,
+    sensor: &'a Sensor,
+    (stage, context): (&'a Stage, &'a Context),
+    quality: f64,
+) -> Begun<'a> {
+    let key = Key::new(stage.rules.seed).path("sensors").path(name);
+    match sensor {
+        Sensor::Image(sensor) => image(sensor, (stage, context), (key, quality)),
+        Sensor::Directions(sensor) => directions(sensor, (stage, context), (key, quality)),
+        Sensor::Photons(sensor) => photons(sensor, (stage, context), (key, quality)),
+    }
 }
 
-impl Measured {
-    fn count(&mut self, rays: u64, samples: u64) {
-        self.rays += rays;
-        self.samples += samples;
+/// What no sensor can do, before anything is traced.
+pub(super) fn check(
+    name: &str,
+    sensor: &Sensor,
+    stage: &Stage,
+    context: &Context,
+    quality: f64,
+    keeper: &Keeper,
+) -> Vec<Diagnostic> {
+    let (mut measurement, plan) = begin(name, sensor, (stage, context), quality);
+    let path = format!("sensors.{name}.until");
+    let mut problems = Vec::new();
+    let films = measurement.films();
+    let fixed = films.iter().find_map(|paced| paced.film.can_grow().err());
+    if let Some(bytes) = fixed.filter(|_| !plan.is_fixed()) {
+        let gib = bytes as f64 / f64::from(1 << 30);
+        let message = format!(
+            "the sums of {RANDOMISATIONS} randomisations take {gib:.1} GiB: too many to grow until they are good enough"
+        );
+        let help = "write `until: Samples(n)`, or measure fewer cells, pixels or bands";
+        problems.push(Diagnostic::error(&path, message).help(help));
     }
-
-    fn balance(&mut self, imbalance: Option<f64>) {
-        let most = |off: f64| off.max(self.imbalance.unwrap_or(0.0));
-        self.imbalance = imbalance.map(most).or(self.imbalance);
+    if let Some(bytes) = fixed.filter(|_| keeper.keeps()) {
+        let gib = bytes as f64 / f64::from(1 << 30);
+        let message = format!(
+            "the sums of {RANDOMISATIONS} randomisations take {gib:.1} GiB: too many for a checkpoint"
+        );
+        let help = "measure fewer cells, pixels or bands, or run it without `--checkpoint`";
+        problems.push(Diagnostic::error(format!("sensors.{name}"), message).help(help));
     }
+    if keeper.share() != Share::ALL && !plan.is_fixed() {
+        let message = "a part of a run cannot tell when the whole is good enough";
+        let help = "write `until: Samples(n)` alone: all parts then end at the same place";
+        problems.push(Diagnostic::error(&path, message).help(help));
+    }
+    let named = plan.until.iter().enumerate().filter_map(|(index, stop)| match stop {
+        Stop::RelErrors(limits) => Some((index, limits)),
+        _ => None,
+    });
+    let mut known: Option<Vec<Product>> = None;
+    for (index, limits) in named {
+        let at = if plan.until.len() == 1 { path.clone() } else { format!("{path}[{index}]") };
+        let known = known.get_or_insert_with(|| measurement.products());
+        for (product, _) in limits {
+            if !known.iter().any(|one| one.name == *product) {
+                let names = known.iter().map(|one| one.name.as_str());
+                let problem = unknown_name(&at, "product", product, names.clone());
+                let list: Vec<&str> = names.filter(|name| !is_ledger(name)).collect();
+                let help = crate::document::suggestion(product, &list, "this sensor reports");
+                problems.push(problem.help(help));
+            }
+        }
+    }
+    problems
 }
 
 /// Measures one sensor.
@@ -55,134 +104,209 @@ pub(super) fn measure(
     stage: &Stage,
     context: &Context,
     quality: f64,
+    keeper: &mut Keeper,
     watch: Watch<'_>,
-) -> SensorReport {
-    let start = Instant::now();
-    let key = Key::new(stage.rules.seed).path("sensors").path(name);
-    let measured = match sensor {
-        Sensor::Image(sensor) => image(sensor, stage, context, (key, quality), watch),
-        Sensor::Directions(sensor) => directions(sensor, stage, context, (key, quality), watch),
-        Sensor::Photons(sensor) => photons(sensor, stage, context, (key, quality), watch),
-    };
-    SensorReport {
+) -> Result<SensorReport, Failure> {
+    let (mut measurement, plan) = begin(name, sensor, (stage, context), quality);
+    let ending = grow(name, measurement.as_mut(), &plan, keeper, watch)?;
+    let films = measurement.films();
+    let sum = |of: &dyn Fn(&Paced<'_>) -> u64| films.iter().map(of).sum();
+    let samples = sum(&|paced| paced.film.samples());
+    let noun = if matches!(sensor, Sensor::Photons(_)) { "packets" } else { "samples" };
+    Ok(SensorReport {
         name: name.to_owned(),
-        products: measured.products,
-        seconds: start.elapsed().as_secs_f64(),
-        rays: measured.rays,
-        samples: measured.samples,
-        ended_by: measured.ended_by,
-        energy_imbalance: measured.imbalance,
+        seconds: ending.seconds,
+        rays: sum(&|paced| paced.film.rays()),
+        samples,
+        ended_by: ended_by(&ending, &format!("{samples} {noun}")),
+        energy_imbalance: films.iter().filter_map(|paced| paced.film.imbalance()).reduce(f64::max),
+        products: ending.products,
+    })
+}
+
+/// What ended a measurement, for a person.
+fn ended_by(ending: &Ending, samples: &str) -> String {
+    let shown = |(name, error): &(String, f64), limit: f64| {
+        format!("{name}: median relative standard error {error:.2e} at most {limit:.2e}")
+    };
+    match &ending.stop {
+        Stop::RelError(limit) => {
+            let asked = ending.errors.iter().filter(|(name, _)| !is_ledger(name));
+            let worst = asked.max_by(|a, b| a.1.total_cmp(&b.1));
+            worst.map_or_else(|| samples.to_owned(), |worst| shown(worst, *limit))
+        }
+        Stop::RelErrors(limits) => {
+            let of = |(name, limit): &(String, f64)| {
+                let found = ending.errors.iter().find(|(known, _)| known == name);
+                found.map(|found| shown(found, *limit))
+            };
+            let texts: Vec<String> = limits.iter().filter_map(of).collect();
+            if texts.is_empty() { samples.to_owned() } else { texts.join("; ") }
+        }
+        Stop::Seconds(limit) => format!("{limit} s: {samples}"),
+        Stop::Samples(_) => samples.to_owned(),
     }
+}
+
+/// Conditions under another number of samples.
+fn at_quality(until: &[Stop], quality: f64) -> Vec<Stop> {
+    let error = |limit: f64| limit / quality.sqrt();
+    let stop = |stop: &Stop| match stop {
+        Stop::RelError(limit) => Stop::RelError(error(*limit)),
+        Stop::RelErrors(limits) => {
+            let limits = limits.iter().map(|(name, limit)| (name.clone(), error(*limit)));
+            Stop::RelErrors(limits.collect())
+        }
+        Stop::Seconds(limit) => Stop::Seconds(limit * quality),
+        Stop::Samples(limit) => Stop::Samples((*limit as f64 * quality).ceil() as u64),
+    };
+    until.iter().map(stop).collect()
+}
+
+/// Samples of each randomisation that make up so many.
+fn each_of(samples: u64) -> u64 {
+    samples.div_ceil(RANDOMISATIONS.into()).max(1)
 }
 
 /// Samples that a pixel may have.
 const MOST_SAMPLES: f64 = 16_777_216.0;
 
-fn image(
-    sensor: &ImageSensor,
-    stage: &Stage,
-    context: &Context,
-    (key, quality): (Key, f64),
-    watch: Watch<'_>,
-) -> Measured {
-    let camera = Camera::of(sensor, stage);
-    let samples = camera.samples(sensor.samples) * quality;
-    // Areas are rounded: what is a whole number but for that is one.
-    let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES) as u32;
-    let mut measured = Measured::default();
-    let orders = sensor.measure.contains(&ImageMeasure::Orders);
-    let measure = |source, orders, key| match (sensor.system, &camera) {
-        (System::Forward, Camera::Orthographic(projection)) => {
-            measure_image_forward(stage, projection, (samples, source, orders), key, watch)
-        }
-        _ => measure_image(stage, &camera, (samples, source, orders), key, watch),
-    };
-    let reflected =
-        needs_reflection(&sensor.measure, context).then(|| measure(Source::Reflected, orders, key));
-    let emitted = needs_emission(&sensor.measure, context)
-        .then(|| measure(Source::Emitted, false, key.path("emission")));
-    for outcome in reflected.iter().chain(&emitted) {
-        measured.balance(outcome.imbalance);
-        measured.count(outcome.rays, outcome.samples);
-    }
-    let setting = (stage, context);
-    measured.products = products::of_image(sensor, reflected.as_ref(), emitted.as_ref(), setting);
-    if !sensor.measure.iter().all(|measure| measure.is_light()) {
-        let key = key.path("components");
-        let outcome = measure_image_components(stage, &camera, samples, key, watch);
-        for &measure in &sensor.measure {
-            let products =
-                products::components_of_image(measure, sensor, &outcome, (stage, context));
-            measured.products.extend(products);
-        }
-        measured.count(outcome.rays, outcome.samples);
-    }
-    measured.ended_by = format!("{} samples", measured.samples);
-    measured
+/// Pixels of an image from which on the median of their errors is one from eight samples on.
+const MANY_PIXELS: u64 = 256;
+
+struct ImageRun<'a> {
+    sensor: &'a ImageSensor,
+    scene: (&'a Stage, &'a Context),
+    reflected: Option<ImageFilm<'a>>,
+    emitted: Option<ImageFilm<'a>>,
+    components: Option<Tiles<'a>>,
+    /// Samples of a pixel for each of the measurement.
+    pace: (u64, u64),
 }
 
-fn directions(
-    sensor: &Directions,
-    stage: &Stage,
-    context: &Context,
+fn image<'a>(
+    sensor: &'a ImageSensor,
+    (stage, context): (&'a Stage, &'a Context),
     (key, quality): (Key, f64),
-    watch: Watch<'_>,
-) -> Measured {
-    let until: Vec<Stop> = sensor
-        .until
-        .iter()
-        .map(|stop| match *stop {
-            Stop::RelError(limit) => Stop::RelError(limit / quality.sqrt()),
-            Stop::Seconds(limit) => Stop::Seconds(limit * quality),
-            Stop::Samples(limit) => Stop::Samples((limit as f64 * quality).ceil() as u64),
-        })
-        .collect();
-    let views = sensor.views.as_slice();
-    let plane = &ReferencePlane::of(sensor.plane.as_ref(), stage);
-    let mut measured = Measured::default();
+) -> Begun<'a> {
+    let camera = Camera::of(sensor, stage);
+    let until = if sensor.until.is_empty() {
+        let samples = camera.samples(sensor.samples) * quality;
+        // Areas are rounded: what is a whole number but for that is one.
+        let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES);
+        vec![Stop::Samples(samples as u64)]
+    } else {
+        at_quality(&sensor.until, quality)
+    };
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
-    let measure = |source, orders, key| {
-        let start = Instant::now();
-        let elapsed = || start.elapsed().as_secs_f64();
-        let system = (sensor.system, source, orders);
-        measure_directions(stage, (views, plane), system, &until, key, &elapsed, watch)
+    let film = |source, orders, key| {
+        ImageFilm::new((stage, &camera), (sensor.system, source, orders), key)
     };
     let reflected =
-        needs_reflection(&sensor.measure, context).then(|| measure(Source::Reflected, orders, key));
+        needs_reflection(&sensor.measure, context).then(|| film(Source::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
-        .then(|| measure(Source::Emitted, false, key.path("emission")));
-    for outcome in reflected.iter().chain(&emitted) {
-        measured.balance(outcome.imbalance);
-        let error = outcome.spread.median_relative_error();
-        if measured.ended_by.is_empty() {
-            measured.ended_by = match outcome.ended_by {
-                Stop::RelError(limit) => {
-                    format!("median relative standard error {error:.2e} at most {limit:.2e}")
-                }
-                other => ending(other, outcome.samples),
-            };
-        }
-        measured.count(outcome.rays, outcome.samples);
+        .then(|| film(Source::Emitted, false, key.path("emission")));
+    let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
+        .then(|| image_components_film(stage, &camera, key.path("components")));
+    let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
+    let scene = (stage, context);
+    let run = |pace| ImageRun { sensor, scene, reflected, emitted, components, pace };
+    if sensor.system == System::Forward {
+        let each = move |samples: u64| each_of(samples.saturating_mul(pixels));
+        let plan = Plan { until, schedule: Schedule::Blocks, each: Box::new(each) };
+        return (Box::new(run((RANDOMISATIONS.into(), pixels))), plan);
     }
-    let (relative, absolute) = (reflected.as_ref(), emitted.as_ref());
-    measured.products =
-        products::of_directions(views, &sensor.measure, relative, absolute, context);
-    if !sensor.measure.iter().all(|measure| measure.is_light()) {
-        let key = key.path("components");
-        let start = Instant::now();
-        let elapsed = || start.elapsed().as_secs_f64();
-        let views_of = (views, plane);
-        let outcome = measure_directions_components(stage, views_of, &until, key, &elapsed, watch);
-        for &measure in &sensor.measure {
-            let products = products::components_of_directions(measure, views, &outcome);
-            measured.products.extend(products);
-        }
-        measured.count(outcome.rays, outcome.samples);
-        if measured.ended_by.is_empty() {
-            measured.ended_by = ending(outcome.ended_by, outcome.samples);
-        }
+    let first = if pixels < MANY_PIXELS { u64::from(RANDOMISATIONS) } else { 8 };
+    let each = |samples: u64| samples.max(2);
+    let plan = Plan { until, schedule: Schedule::Samples(first), each: Box::new(each) };
+    (Box::new(run((1, 1))), plan)
+}
+
+impl Measurement for ImageRun<'_> {
+    fn films(&mut self) -> Vec<Paced<'_>> {
+        let pace = self.pace;
+        let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
+        let mut films: Vec<Paced<'_>> = light
+            .map(|image| match image {
+                ImageFilm::Packets(rows, ..) => Paced::evenly(rows),
+                ImageFilm::Paths(tiles) => Paced { film: tiles, pace },
+            })
+            .collect();
+        films.extend(self.components.iter_mut().map(|film| -> Paced<'_> { Paced { film, pace } }));
+        films
     }
-    measured
+
+    fn products(&self) -> Vec<Product> {
+        let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
+        let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
+        let mut products =
+            products::of_image(self.sensor, reflected.as_ref(), emitted.as_ref(), self.scene);
+        if let Some(components) = &self.components {
+            let outcome = components.outcome();
+            for &measure in &self.sensor.measure {
+                let of = products::components_of_image(measure, self.sensor, &outcome, self.scene);
+                products.extend(of);
+            }
+        }
+        products
+    }
+}
+
+struct DirectionsRun<'a> {
+    sensor: &'a Directions,
+    context: &'a Context,
+    reflected: Option<DirectionsFilm<'a>>,
+    emitted: Option<DirectionsFilm<'a>>,
+    components: Option<ComponentsFilm<'a>>,
+}
+
+fn directions<'a>(
+    sensor: &'a Directions,
+    (stage, context): (&'a Stage, &'a Context),
+    (key, quality): (Key, f64),
+) -> Begun<'a> {
+    let views = sensor.views.as_slice();
+    let plane = &ReferencePlane::of(sensor.plane.as_ref(), stage);
+    let orders = sensor.measure.contains(&ImageMeasure::Orders);
+    let film = |source, orders, key| {
+        DirectionsFilm::new(stage, (views, plane), (sensor.system, source, orders), key)
+    };
+    let reflected =
+        needs_reflection(&sensor.measure, context).then(|| film(Source::Reflected, orders, key));
+    let emitted = needs_emission(&sensor.measure, context)
+        .then(|| film(Source::Emitted, false, key.path("emission")));
+    let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
+        .then(|| ComponentsFilm::new(stage, (views, plane), key.path("components")));
+    let until = at_quality(&sensor.until, quality);
+    let plan = Plan { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
+    (Box::new(DirectionsRun { sensor, context, reflected, emitted, components }), plan)
+}
+
+impl Measurement for DirectionsRun<'_> {
+    fn films(&mut self) -> Vec<Paced<'_>> {
+        let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
+        let films = light.map(|one| &mut one.film);
+        films
+            .chain(self.components.iter_mut().map(|one| &mut one.film))
+            .map(|film| Paced::evenly(film))
+            .collect()
+    }
+
+    fn products(&self) -> Vec<Product> {
+        let Directions { views, measure, .. } = self.sensor;
+        let reflected = self.reflected.as_ref().map(DirectionsFilm::outcome);
+        let emitted = self.emitted.as_ref().map(DirectionsFilm::outcome);
+        let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
+        let mut products =
+            products::of_directions(views, measure, reflected, emitted, self.context);
+        if let Some(components) = &self.components {
+            let outcome = components.outcome();
+            for &one in measure {
+                products.extend(products::components_of_directions(one, views, &outcome));
+            }
+        }
+        products
+    }
 }
 
 /// Whether a measure takes what is reflected of sun and sky.
@@ -205,194 +329,16 @@ fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
     measures.iter().any(takes) && context.sources.iter().any(|source| source.emits)
 }
 
-/// What ended a measurement, for a person.
-fn ending(stop: Stop, samples: u64) -> String {
-    match stop {
-        Stop::RelError(limit) => format!("median relative standard error at most {limit:.2e}"),
-        Stop::Seconds(limit) => format!("{limit} s"),
-        Stop::Samples(_) => format!("{samples} samples"),
-    }
-}
-
-fn photons(
-    sensor: &Photons,
-    stage: &Stage,
-    context: &Context,
+fn photons<'a>(
+    sensor: &'a Photons,
+    (stage, context): (&'a Stage, &'a Context),
     (key, quality): (Key, f64),
-    watch: Watch<'_>,
-) -> Measured {
-    let plane = ReferencePlane::of(sensor.plane.as_ref(), stage);
-    let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
-        .measure
-        .iter()
-        .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
-        .collect();
-    let parts: &[Part] =
-        if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] };
-    let packets = (sensor.per_area * stage.area() * quality).ceil() as u64;
-    let trace = |source, asked: Vec<(usize, Option<Part>)>, key| {
-        (!asked.is_empty()).then(|| {
-            let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter + '_> {
-                let counter = kinds[index].1.counter();
-                match part {
-                    None => counter,
-                    Some(part) => Box::new(PartCounter { counter, part }),
-                }
-            });
-            let counters: Vec<_> = counters.collect();
-            let plane = (source, plane.clone());
-            let outcome = trace_photons(stage, plane, &counters, packets, key, watch);
-            Counted { asked, outcome }
-        })
+) -> Begun<'a> {
+    let until = if sensor.until.is_empty() {
+        vec![Stop::Samples((sensor.per_area * stage.area() * quality).ceil() as u64)]
+    } else {
+        at_quality(&sensor.until, quality)
     };
-    let holds = |of: fn(&BandSources) -> bool| context.sources.iter().any(of);
-    let (reflects, emits) = (holds(|source| source.reflects), holds(|source| source.emits));
-    let numbered = || kinds.iter().enumerate();
-    let wholes = numbered().filter(|(_, (measure, _))| reflects || !measure.is_absolute());
-    let split =
-        numbered().filter(|(_, (measure, kind))| !measure.is_absolute() && kind.is_of_reflection());
-    let asked = wholes
-        .map(|(index, _)| (index, None))
-        .chain(split.flat_map(|(index, _)| parts.iter().map(move |&part| (index, Some(part)))));
-    let reflected = trace(Source::Reflected, asked.collect(), key);
-    let asked = numbered().filter(|(_, (measure, _))| emits && measure.is_absolute());
-    let asked = asked.map(|(index, _)| (index, None)).collect();
-    let emitted = trace(Source::Emitted, asked, key.path("emission"));
-
-    let mut measured = Measured::default();
-    let unit = context.of_unit_irradiance();
-    for (index, (measure, kind)) in numbered() {
-        let of = |counted: &Option<Counted>, part, context: &Context| -> Vec<Product> {
-            let spread = counted.as_ref().and_then(|counted| counted.spread(index, part));
-            spread.map_or_else(Vec::new, |spread| kind.products(spread, stage, context))
-        };
-        if !measure.is_absolute() {
-            measured.products.extend(of(&reflected, None, context));
-            for &part in parts {
-                let products = of(&reflected, Some(part), context).into_iter();
-                measured.products.extend(products.map(|product| Product {
-                    name: format!("{}_{}", product.name, part.suffix()),
-                    ..product
-                }));
-            }
-            continue;
-        }
-        let (mut reflected, mut emitted) =
-            (of(&reflected, None, &unit).into_iter(), of(&emitted, None, &unit).into_iter());
-        for _ in 0..reflected.len().max(emitted.len()) {
-            let product =
-                products::of_sources(reflected.next().as_ref(), emitted.next().as_ref(), context);
-            let kelvin = sensor.measure.contains(&PhotonMeasure::BrightnessTemperature);
-            let kelvin = kelvin.then(|| products::brightness_of(&product, context)).flatten();
-            measured.products.extend(std::iter::once(product).chain(kelvin));
-        }
-    }
-    for (counted, context, name) in
-        [(&reflected, context, "energy"), (&emitted, &unit, "emitted_energy")]
-    {
-        let Some(Counted { outcome, .. }) = counted else { continue };
-        let energy = products::energy(&outcome.energy, stage, context);
-        let unit = if name == "energy" { energy.unit.clone() } else { "W m-2 nm-1".to_owned() };
-        measured.products.push(Product { name: name.to_owned(), unit, ..energy });
-        measured.count(outcome.rays, outcome.packets);
-        measured.balance(Some(outcome.imbalance));
-    }
-    measured.ended_by = format!("{} packets", measured.samples);
-    measured
-}
-
-/// What was asked for, kinds by number, and counted.
-struct Counted {
-    asked: Vec<(usize, Option<Part>)>,
-    outcome: PhotonOutcome,
-}
-
-impl Counted {
-    fn spread(&self, index: usize, part: Option<Part>) -> Option<&Spread> {
-        let at = self.asked.iter().position(|asked| *asked == (index, part))?;
-        self.outcome.spreads.get(at)
-    }
-}
-
-/// A counter with what its product needs.
-enum Kind {
-    Albedo(AlbedoCounter),
-    Cells(CellCounter),
-    Cones(ConeCounter),
-    Views(ViewCounter, Vec<crate::components::View>),
-    Layers(LayerCounter),
-    Absorbed(AbsorbedCounter, Arc<Inventory>),
-    Fluxes(FluxCounter),
-}
-
-impl Kind {
-    fn of(measure: &PhotonMeasure, plane: &ReferencePlane, stage: &Stage) -> Option<Self> {
-        let plane = plane.clone();
-        Some(match measure {
-            PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature => return None,
-            PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {
-                Self::Cones(ConeCounter::new(cones.clone(), plane))
-            }
-            PhotonMeasure::Albedo | PhotonMeasure::Exitance => {
-                Self::Albedo(AlbedoCounter { plane })
-            }
-            PhotonMeasure::BrfCells(cells) | PhotonMeasure::RadianceCells(cells) => {
-                Self::Cells(CellCounter { hemisphere: Hemisphere::new(*cells as usize), plane })
-            }
-            PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
-                let projections =
-                    views.iter().map(|&view| Projection::of_plane(view, &plane, stage)).collect();
-                Self::Views(ViewCounter::new(projections), views.clone())
-            }
-            PhotonMeasure::Absorbed(per) => {
-                let inventory = stage.inventory.clone()?;
-                Self::Absorbed(AbsorbedCounter::of(&inventory, *per, plane), inventory)
-            }
-            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers, plane)),
-            PhotonMeasure::Fluxes { pixel, heights } => {
-                let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
-                levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
-                Self::Fluxes(FluxCounter::new(plane, *pixel, levels))
-            }
-        })
-    }
-
-    /// Whether it counts light that leaves the scene, and nothing else.
-    const fn is_of_reflection(&self) -> bool {
-        match self {
-            Self::Albedo(_) | Self::Cells(_) | Self::Cones(_) | Self::Views(..) => true,
-            Self::Layers(_) | Self::Absorbed(..) | Self::Fluxes(_) => false,
-        }
-    }
-
-    /// What its spread tells.
-    fn products(&self, spread: &Spread, stage: &Stage, context: &Context) -> Vec<Product> {
-        match self {
-            Self::Albedo(albedo) => vec![products::albedo(spread, albedo, context)],
-            Self::Cells(cells) => {
-                vec![products::brf_cells(spread, (&cells.hemisphere, cells.plane.gain), context)]
-            }
-            Self::Cones(cones) => vec![products::brf_cones(spread, cones, context)],
-            Self::Views(counter, views) => {
-                vec![products::brf_views(spread, counter, views, stage, context)]
-            }
-            Self::Layers(layers) => products::fapar(spread, layers, stage, context),
-            Self::Absorbed(counter, inventory) => {
-                products::absorbed(spread, counter, (inventory, stage), context)
-            }
-            Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, context),
-        }
-    }
-
-    fn counter(&self) -> Box<dyn Counter + '_> {
-        match self {
-            Self::Albedo(counter) => Box::new(counter.clone()),
-            Self::Cells(counter) => Box::new(counter.clone()),
-            Self::Views(counter, _) => Box::new(counter.clone()),
-            Self::Layers(counter) => Box::new(counter.clone()),
-            Self::Cones(counter) => Box::new(counter.clone()),
-            Self::Absorbed(counter, _) => Box::new(counter.clone()),
-            Self::Fluxes(counter) => Box::new(counter.clone()),
-        }
-    }
+    let run = PhotonRun::new(sensor, (stage, context), key);
+    (Box::new(run), Plan { until, schedule: Schedule::Blocks, each: Box::new(each_of) })
 }

@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec3, UVec2};
 
 use super::Spawner;
-use super::sensors::{image_measures, system_of, view};
+use super::sensors::{image_measures, stops, system_of, view};
 use crate::components::{
     Channels, Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
     Perspective, Picture, Stand,
@@ -38,6 +38,7 @@ impl Spawner<'_> {
             size: UVec2::from(*size),
             optics: self.camera(sensor)?,
             samples,
+            until: stops(sensor),
             measure: image_measures(measure),
             picture: self.picture(picture)?,
             system: system_of(*system),

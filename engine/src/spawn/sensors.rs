@@ -34,20 +34,16 @@ impl Spawner<'_> {
             document::Sensor::Orthographic { .. }
             | document::Sensor::Perspective { .. }
             | document::Sensor::Fisheye { .. } => Sensor::Image(self.image(sensor)?),
-            document::Sensor::Directions { views, until, measure, virtual_plane, system } => {
+            document::Sensor::Directions { views, until: _, measure, virtual_plane, system } => {
                 Sensor::Directions(Directions {
                     views: self.views(views, &format!("{path}.views"))?,
-                    until: vec![match *until {
-                        Until::RelError(limit) => Stop::RelError(limit),
-                        Until::Seconds(limit) => Stop::Seconds(limit),
-                        Until::Samples(limit) => Stop::Samples(limit),
-                    }],
+                    until: stops(sensor),
                     measure: image_measures(measure),
                     plane: self.plane(virtual_plane.as_ref()),
                     system: system_of(*system),
                 })
             }
-            document::Sensor::Photons { per_m2, measure, virtual_plane } => {
+            document::Sensor::Photons { per_m2, until: _, measure, virtual_plane } => {
                 let mut measures = Vec::new();
                 for (index, measure) in measure.iter().enumerate() {
                     let at = format!("{path}.measure[{index}]");
@@ -94,7 +90,8 @@ impl Spawner<'_> {
                     });
                 }
                 let plane = self.plane(virtual_plane.as_ref());
-                Sensor::Photons(Photons { per_area: *per_m2, measure: measures, plane })
+                let until = stops(sensor);
+                Sensor::Photons(Photons { per_area: *per_m2, until, measure: measures, plane })
             }
         })
     }
@@ -165,6 +162,19 @@ impl Spawner<'_> {
                 .collect(),
         )
     }
+}
+
+/// What ends a measurement.
+pub(super) fn stops(sensor: &document::Sensor) -> Vec<Stop> {
+    let stop = |end: &Until| match end {
+        Until::RelError(limit) => Stop::RelError(*limit),
+        Until::RelErrors(limits) => {
+            Stop::RelErrors(limits.iter().map(|(name, limit)| (name.clone(), *limit)).collect())
+        }
+        Until::Seconds(limit) => Stop::Seconds(*limit),
+        Until::Samples(limit) => Stop::Samples(*limit),
+    };
+    sensor.until().iter().map(stop).collect()
 }
 
 pub(super) fn view(zenith_deg: f64, azimuth_deg: f64) -> View {

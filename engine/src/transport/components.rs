@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 
-use super::directions::{Means, Rounds, projections, walk_views};
-use super::image::walk_pixels;
-use super::{Camera, ImageOutcome, ReferencePlane, ViewsOutcome, Walk, Watch};
+use super::directions::{projections, view_film};
+use super::{Camera, ReferencePlane, Rows, Tiles, ViewsOutcome, Walk};
 use crate::accel::Ray;
-use crate::components::{Stop, View};
+use crate::components::View;
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
@@ -29,44 +28,37 @@ pub const GAP_RINGS: usize = 90;
 /// Of a fisheye that looks straight up or down, `zones` hold gaps and samples by rings of 1° about the
 /// vertical, shape `[randomisations, 90, 2]`.
 #[must_use]
-pub fn measure_image_components(
-    stage: &Stage,
-    camera: &Camera,
-    samples: u32,
-    key: Key,
-    watch: Watch<'_>,
-) -> ImageOutcome {
+pub fn image_components_film<'a>(stage: &'a Stage, camera: &Camera, key: Key) -> Tiles<'a> {
     let upright = match camera {
         Camera::Fisheye(camera) => camera.upright(),
         _ => None,
     };
-    let walk = || FirstHit { upright, ..FirstHit::default() };
-    walk_pixels(stage, (camera, samples), key, watch, COMPONENT_COLUMNS, walk)
+    let walk = move || FirstHit { upright, ..FirstHit::default() };
+    Tiles::new((stage, camera.clone()), key, COMPONENT_COLUMNS, walk)
 }
 
 /// Shares of what each view sees first, shape `[views, COMPONENT_COLUMNS]`, see
-/// [`measure_image_components`]; `elapsed` tells the seconds since the start.
-///
-/// # Panics
-/// If there is no condition to end.
-#[must_use]
-pub fn measure_directions_components(
-    stage: &Stage,
-    (views, plane): (&[View], &ReferencePlane),
-    until: &[Stop],
-    key: Key,
-    elapsed: &dyn Fn() -> f64,
-    watch: Watch<'_>,
-) -> ViewsOutcome {
-    let projections = projections(stage, views, plane);
-    Rounds::measure(
-        (views.len(), COMPONENT_COLUMNS + 1),
-        until,
-        (elapsed, watch),
-        |range, rows| walk_views(stage, &projections, range, key, rows, FirstHit::default),
-        |rows, _| Means::of_met(rows).median_relative_error(),
-    )
-    .of_met()
+/// [`image_components_film`].
+#[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
+pub struct ComponentsFilm<'a> {
+    /// The samples.
+    pub film: Rows<'a>,
+}
+
+impl<'a> ComponentsFilm<'a> {
+    /// No sample yet.
+    #[must_use]
+    pub fn new(stage: &'a Stage, (views, plane): (&[View], &ReferencePlane), key: Key) -> Self {
+        let projections = projections(stage, views, plane);
+        let film = view_film((stage, projections), COMPONENT_COLUMNS + 1, key, FirstHit::default);
+        Self { film }
+    }
+
+    /// What was found so far.
+    #[must_use]
+    pub fn outcome(&self) -> ViewsOutcome {
+        ViewsOutcome::of_met(&self.film)
+    }
 }
 
 /// A ray to the first surface and one from there to the sun.

@@ -12,31 +12,38 @@ mod directions;
 mod emission;
 mod forward;
 mod glow;
+mod growth;
 mod hemisphere;
 mod image;
 mod parts;
 mod plane;
 mod roulette;
+mod rows;
+mod share;
 mod thermal;
+mod tiles;
 mod walk;
 
 pub use backward::{Path, Traced};
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
 pub use components::{
-    COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS, measure_directions_components,
-    measure_image_components,
+    COMPONENT_COLUMNS, ComponentsFilm, GAP_COLUMN, GAP_RINGS, image_components_film,
 };
 pub use counters::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
     FluxLevel, GROUND_TERMS, LayerCounter, ViewCounter,
 };
-pub use directions::{DirectionsOutcome, ViewsOutcome, measure_directions};
-pub use forward::{PhotonOutcome, trace_photons};
+pub use directions::{DirectionsFilm, DirectionsOutcome, ViewsOutcome};
+pub use forward::photon_film;
+pub use growth::{Film, Schedule};
 pub use hemisphere::{Cell, Hemisphere};
-pub use image::{ImageOutcome, measure_image, measure_image_forward, path_rays};
+pub use image::{ImageFilm, ImageOutcome, path_rays};
 pub use parts::{Part, PartCounter, spectra};
 pub use plane::ReferencePlane;
+pub use rows::Rows;
+pub use share::Share;
 use thermal::ThermalPath;
+pub use tiles::Tiles;
 use walk::Walk;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread

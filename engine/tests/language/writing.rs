@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Area, Axis, Band, BandSource, Boundary, Cover, Distribution, FisheyeProjection, Frame,
+    Area, Axis, Band, BandSource, Boundary, Cover, Distribution, Ends, FisheyeProjection, Frame,
     ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, Per,
     PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky, Spectrum, Stems, Sun, SunPosition,
     Sweep, System, Temperature, Terrain, ThermalSky, Transport, Until, Views, VirtualPlane,
@@ -304,12 +304,20 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             (option(pair()), cover()),
             option(pair()),
             pair(),
-            samples(),
+            (samples(), option(ends())),
             list(image()),
             (picture(), virtual_plane(), system())
         )
             .prop_map(
-                |(size_px, (extent_m, cover), center_m, angles, samples, measure, last)| {
+                |(
+                    size_px,
+                    (extent_m, cover),
+                    center_m,
+                    angles,
+                    (samples, until),
+                    measure,
+                    last,
+                )| {
                     Sensor::Orthographic {
                         size_px,
                         extent_m,
@@ -319,6 +327,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         azimuth_deg: angles.1,
                         samples_per_px: samples.0,
                         samples_per_m2: samples.1,
+                        until,
                         measure,
                         picture: last.0,
                         virtual_plane: last.1,
@@ -330,11 +339,11 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             any::<(u32, u32)>(),
             (triple(), triple(), triple()),
             pair(),
-            flags(),
+            (flags(), option(ends())),
             list(image()),
             picture()
         )
-            .prop_map(|(size_px, points, fov_deg, flags, measure, picture)| {
+            .prop_map(|(size_px, points, fov_deg, (flags, until), measure, picture)| {
                 Sensor::Perspective {
                     size_px,
                     position_m: points.0,
@@ -344,6 +353,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                     above_ground: flags.0,
                     sees_sky: flags.1,
                     samples_per_px: flags.2,
+                    until,
                     measure,
                     picture,
                     system: System::Backward,
@@ -353,7 +363,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             any::<(u32, u32)>(),
             (triple(), look(), option(triple())),
             (number(), projection()),
-            flags(),
+            (flags(), option(ends())),
             (list(image()), picture())
         )
             .prop_map(
@@ -361,7 +371,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                     size_px,
                     (position_m, look, up),
                     (fov_deg, projection),
-                    flags,
+                    (flags, until),
                     (measure, picture),
                 )| {
                     Sensor::Fisheye {
@@ -374,6 +384,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         above_ground: flags.0,
                         sees_sky: flags.1,
                         samples_per_px: flags.2,
+                        until,
                         measure,
                         picture,
                         system: System::Backward,
@@ -382,6 +393,16 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             ),
     ]
     .boxed()
+}
+
+fn ends() -> impl Strategy<Value = Ends> {
+    let until = prop_oneof![
+        number().prop_map(Until::RelError),
+        map(number()).prop_map(Until::RelErrors),
+        number().prop_map(Until::Seconds),
+        any::<u64>().prop_map(Until::Samples),
+    ];
+    list(until).prop_map(Ends)
 }
 
 fn sensor() -> BoxedStrategy<Sensor> {
@@ -396,11 +417,6 @@ fn sensor() -> BoxedStrategy<Sensor> {
             ImageMeasure::GapFraction,
         ])
     };
-    let until = prop_oneof![
-        number().prop_map(Until::RelError),
-        number().prop_map(Until::Seconds),
-        any::<u64>().prop_map(Until::Samples),
-    ];
     let photon = prop_oneof![
         any::<u32>().prop_map(PhotonMeasure::BrfCells),
         views().prop_map(PhotonMeasure::BrfViews),
@@ -416,7 +432,7 @@ fn sensor() -> BoxedStrategy<Sensor> {
     ];
     prop_oneof![
         image_sensor(),
-        (views(), until, list(image()), virtual_plane(), system()).prop_map(
+        (views(), ends(), list(image()), virtual_plane(), system()).prop_map(
             |(views, until, measure, virtual_plane, system)| Sensor::Directions {
                 views,
                 until,
@@ -425,9 +441,14 @@ fn sensor() -> BoxedStrategy<Sensor> {
                 system
             }
         ),
-        (number(), list(photon), virtual_plane()).prop_map(|(per_m2, measure, virtual_plane)| {
-            Sensor::Photons { per_m2, measure, virtual_plane }
-        }),
+        (number(), option(ends()), list(photon), virtual_plane()).prop_map(
+            |(per_m2, until, measure, virtual_plane)| Sensor::Photons {
+                per_m2,
+                until,
+                measure,
+                virtual_plane
+            }
+        ),
     ]
     .boxed()
 }

@@ -27,6 +27,7 @@ pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
         document: document_options(&arguments.scene),
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
+        ..run::Options::default()
     };
     let mut runs = run::Runs::read(&arguments.scene.file, &options)?;
     let (systems, reference) = (arguments.systems(), arguments.reference());

@@ -17,6 +17,7 @@ pub(super) fn check_orthographic(
     report: &mut Report<'_>,
 ) {
     let Sensor::Orthographic {
+        until: _,
         size_px,
         extent_m,
         cover,
@@ -91,6 +92,7 @@ pub(super) fn check_perspective(
     report: &mut Report<'_>,
 ) {
     let Sensor::Perspective {
+        until: _,
         size_px,
         position_m,
         target_m,
@@ -137,6 +139,7 @@ pub(super) fn check_perspective(
 
 pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
     let Sensor::Fisheye {
+        until: _,
         size_px,
         position_m,
         look,

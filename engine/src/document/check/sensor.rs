@@ -29,6 +29,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
             check_components(&format!("{path}.measure"), measures, scene, report);
             check_emission(&path, measures, scene, report);
         }
+        check_until(&format!("{path}.until"), sensor, report);
         match sensor {
             Sensor::Orthographic { measure, .. } => {
                 check_orthographic(&path, sensor, scene, report);
@@ -42,13 +43,12 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
                 check_fisheye(&path, sensor, scene, report);
                 check_measures(&format!("{path}.measure"), measure, "Radiance", report);
             }
-            Sensor::Directions { views, until, measure, virtual_plane, system: _ } => {
+            Sensor::Directions { views, until: _, measure, virtual_plane, system: _ } => {
                 check_plane(&path, virtual_plane.as_ref(), scene, report);
                 check_views(&format!("{path}.views"), views, scene, report);
-                check_until(&format!("{path}.until"), until, report);
                 check_measures(&format!("{path}.measure"), measure, "Brf", report);
             }
-            Sensor::Photons { per_m2, measure, virtual_plane } => {
+            Sensor::Photons { per_m2, until: _, measure, virtual_plane } => {
                 check_plane(&path, virtual_plane.as_ref(), scene, report);
                 report.above_zero(&format!("{path}.per_m2"), *per_m2);
                 let path = format!("{path}.measure");
@@ -91,18 +91,49 @@ fn check_views(path: &str, views: &Views, scene: &Scene, report: &mut Report<'_>
     }
 }
 
-fn check_until(path: &str, until: &Until, report: &mut Report<'_>) {
-    match until {
-        Until::RelError(error) if !(*error > 0.0 && *error < 1.0) => {
-            let message = format!("expected a relative error above 0 and below 1, found {error}");
-            report.error(path, message, "half a percent is `RelError(0.005)`");
+fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
+    let ends = sensor.until();
+    let least = match sensor {
+        Sensor::Directions { .. } | Sensor::Photons { .. } => 32,
+        Sensor::Orthographic { .. } | Sensor::Perspective { .. } | Sensor::Fisheye { .. } => 2,
+    };
+    let is_written = match sensor {
+        Sensor::Directions { .. } => true,
+        Sensor::Orthographic { until, .. }
+        | Sensor::Perspective { until, .. }
+        | Sensor::Fisheye { until, .. }
+        | Sensor::Photons { until, .. } => until.is_some(),
+    };
+    if ends.is_empty() && is_written && report.is_readable(path) {
+        report.error(path, "nothing would end the measurement", "write `until: RelError(0.01)`");
+    }
+    for (index, end) in ends.iter().enumerate() {
+        let path = if ends.len() == 1 { path.to_owned() } else { format!("{path}[{index}]") };
+        match end {
+            Until::RelError(error) => check_rel_error(&path, *error, report),
+            Until::RelErrors(errors) => {
+                if errors.is_empty() && report.is_whole(&path) {
+                    let help = "write `RelErrors({ \"brf\": 0.01 })`, or `RelError(0.01)` for all";
+                    report.error(&path, "no product is named", help);
+                }
+                for (name, error) in errors {
+                    check_rel_error(&format!("{path}.{name}"), *error, report);
+                }
+            }
+            Until::Seconds(seconds) => report.above_zero(&path, *seconds),
+            Until::Samples(samples) if *samples < least => {
+                let message = format!("expected {least} samples or more, found {samples}");
+                report.error(&path, message, "fewer give no error estimate");
+            }
+            Until::Samples(_) => {}
         }
-        Until::Seconds(seconds) => report.above_zero(path, *seconds),
-        Until::Samples(samples) if *samples < 32 => {
-            let message = format!("expected 32 samples or more, found {samples}");
-            report.error(path, message, "fewer give no error estimate");
-        }
-        Until::RelError(_) | Until::Samples(_) => {}
+    }
+}
+
+fn check_rel_error(path: &str, error: f64, report: &mut Report<'_>) {
+    if !(error > 0.0 && error < 1.0) {
+        let message = format!("expected a relative error above 0 and below 1, found {error}");
+        report.error(path, message, "half a percent is `RelError(0.005)`");
     }
 }
 

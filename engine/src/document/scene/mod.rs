@@ -27,8 +27,8 @@ pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Mesh, Origin};
 pub use program::{Include, Sweep};
 pub use sensor::{
-    ImageMeasure, Layers, Per, PhotonMeasure, Roulette, Sensor, System, Transport, Until, Views,
-    VirtualPlane,
+    Ends, ImageMeasure, Layers, Per, PhotonMeasure, Roulette, Sensor, System, Transport, Until,
+    Views, VirtualPlane,
 };
 pub use spectrum::{Material, Spectrum};
 pub use thermal::{BandSource, Temperature, ThermalSky};

@@ -6,6 +6,7 @@ use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::describe::Book;
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::{Node, Value};
+use super::Map;
 use super::camera::{Cover, FisheyeProjection, Look, Picture};
 
 choice! {
@@ -29,6 +30,8 @@ choice! {
             samples_per_px: Option<u32> = None,
             /// Samples a square metre of the footprint, in place of `samples_per_px`.
             samples_per_m2: Option<f64> = None,
+            /// When it is good enough; the number of samples then is no limit.
+            until: Option<Ends> = None,
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
             /// How its PNG is coloured.
@@ -57,6 +60,8 @@ choice! {
             sees_sky: bool = false,
             /// Samples a pixel.
             samples_per_px: u32 = 64,
+            /// When it is good enough; `samples_per_px` then is no limit.
+            until: Option<Ends> = None,
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
             /// How its PNG is coloured.
@@ -87,6 +92,8 @@ choice! {
             sees_sky: bool = true,
             /// Samples a pixel.
             samples_per_px: u32 = 64,
+            /// When it is good enough; `samples_per_px` then is no limit.
+            until: Option<Ends> = None,
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
             /// How its PNG is coloured.
@@ -99,7 +106,7 @@ choice! {
             /// Where the sensors are.
             views: Views => "PrincipalPlane",
             /// When it is good enough.
-            until: Until = Until::RelError(0.005),
+            until: Ends = Ends::from(Until::RelError(0.005)),
             /// What to report.
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
             /// Only light that leaves through it counts; it is what is seen.
@@ -112,6 +119,8 @@ choice! {
             /// Packets a square metre of the terrain's rectangle; of emitted light, lines through the
             /// scene along each of which several start.
             per_m2: f64 = 1000.0,
+            /// When it is good enough; `per_m2` then is no limit.
+            until: Option<Ends> = None,
             /// What to count them for.
             measure: Vec<PhotonMeasure> = vec![PhotonMeasure::Albedo],
             /// Only light that leaves through it counts as reflected, and only what lies below it
@@ -166,6 +175,19 @@ impl Sensor {
         }
         self.systems().contains(&by).then_some(sensor)
     }
+
+    /// When it is good enough, if that is written.
+    #[must_use]
+    pub fn until(&self) -> &[Until] {
+        let ends = match self {
+            Self::Directions { until, .. } => Some(until),
+            Self::Orthographic { until, .. }
+            | Self::Perspective { until, .. }
+            | Self::Fisheye { until, .. }
+            | Self::Photons { until, .. } => until.as_ref(),
+        };
+        ends.map_or(&[], |ends| &ends.0)
+    }
 }
 
 record! {
@@ -205,12 +227,59 @@ choice! {
 choice! {
     /// When a measurement is good enough.
     pub enum Until ("an end of the measurement") {
-        /// Its median relative standard error is at most this.
+        /// The median relative standard error of each product that the sensor reports is at most this;
+        /// of an image it is that of its pixels.
         RelError(f64 => "0.005"),
+        /// That of each of these products is at most this: the names are those in `summary.json`.
+        RelErrors(Map<f64> => "{ \"brf\": 0.005 }"),
         /// It has run for so many seconds.
         Seconds(f64 => "60.0"),
-        /// So many samples a direction.
+        /// So many samples a pixel or a direction; of `Photons`, packets.
         Samples(u64 => "1000"),
+    }
+}
+
+/// Ends of a measurement, one or a list: the first that holds ends it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ends(pub Vec<Until>);
+
+impl From<Until> for Ends {
+    fn from(end: Until) -> Self {
+        Self(vec![end])
+    }
+}
+
+impl Decode for Ends {
+    fn expected() -> Cow<'static, str> {
+        "an end of the measurement or a list of them".into()
+    }
+
+    fn example() -> String {
+        Until::example()
+    }
+
+    fn schema(book: &mut Book) -> serde_json::Value {
+        serde_json::json!({ "anyOf": [Until::schema(book), Vec::<Until>::schema(book)] })
+    }
+
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+        match &node.value {
+            Value::List(_) => Self(Vec::decode(node, reader)),
+            _ => Until::decode(node, reader).into(),
+        }
+    }
+
+    fn placeholder() -> Self {
+        Until::placeholder().into()
+    }
+}
+
+impl Encode for Ends {
+    fn encode(&self) -> Text {
+        match self.0.as_slice() {
+            [end] => end.encode(),
+            _ => self.0.encode(),
+        }
     }
 }
 

@@ -1,0 +1,218 @@
+use std::sync::Arc;
+
+use super::growth::{Measurement, Paced};
+use crate::components::{PhotonMeasure, Photons, View};
+use crate::extract::{Inventory, Stage};
+use crate::film::Spread;
+use crate::products::{self, BandSources, Context, Product};
+use crate::sampling::Key;
+use crate::transport::{
+    AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, FluxCounter, FluxLevel,
+    Hemisphere, LayerCounter, Part, PartCounter, Projection, ReferencePlane, Rows, Source,
+    ViewCounter, photon_film,
+};
+
+/// Photon packets of sun and sky, and of what emits, and what they are counted for.
+pub(super) struct PhotonRun<'a> {
+    sensor: &'a Photons,
+    scene: (&'a Stage, &'a Context),
+    kinds: Vec<(&'a PhotonMeasure, Kind)>,
+    reflected: Option<Counted<'a>>,
+    emitted: Option<Counted<'a>>,
+}
+
+impl<'a> PhotonRun<'a> {
+    /// No packet yet.
+    pub(super) fn new(
+        sensor: &'a Photons,
+        (stage, context): (&'a Stage, &'a Context),
+        key: Key,
+    ) -> Self {
+        let plane = ReferencePlane::of(sensor.plane.as_ref(), stage);
+        let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
+            .measure
+            .iter()
+            .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
+            .collect();
+        let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
+            (!asked.is_empty()).then(|| {
+                let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter> {
+                    let counter = kinds[index].1.counter();
+                    match part {
+                        None => counter,
+                        Some(part) => Box::new(PartCounter { counter, part }),
+                    }
+                });
+                let film = photon_film(stage, (source, plane.clone()), counters, key);
+                Counted { asked, film }
+            })
+        };
+        let holds = |of: fn(&BandSources) -> bool| context.sources.iter().any(of);
+        let (reflects, emits) = (holds(|source| source.reflects), holds(|source| source.emits));
+        let numbered = || kinds.iter().enumerate();
+        let wholes = numbered().filter(|(_, (measure, _))| reflects || !measure.is_absolute());
+        let split = numbered()
+            .filter(|(_, (measure, kind))| !measure.is_absolute() && kind.is_of_reflection());
+        let parts = parts(sensor);
+        let asked = wholes
+            .map(|(index, _)| (index, None))
+            .chain(split.flat_map(|(index, _)| parts.iter().map(move |&part| (index, Some(part)))));
+        let reflected = film(Source::Reflected, asked.collect(), key);
+        let asked = numbered().filter(|(_, (measure, _))| emits && measure.is_absolute());
+        let asked = asked.map(|(index, _)| (index, None)).collect();
+        let emitted = film(Source::Emitted, asked, key.path("emission"));
+        Self { sensor, scene: (stage, context), kinds, reflected, emitted }
+    }
+}
+
+/// Parts of the light that are reported one by one.
+fn parts(sensor: &Photons) -> &'static [Part] {
+    if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] }
+}
+
+impl Measurement for PhotonRun<'_> {
+    fn films(&mut self) -> Vec<Paced<'_>> {
+        let both = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
+        both.map(|counted| Paced::evenly(&mut counted.film)).collect()
+    }
+
+    fn products(&self) -> Vec<Product> {
+        let (stage, context) = self.scene;
+        let Self { sensor, kinds, reflected, emitted, .. } = self;
+        let parts = parts(sensor);
+        let mut found = Vec::new();
+        let unit = context.of_unit_irradiance();
+        for (index, (measure, kind)) in kinds.iter().enumerate() {
+            let of = |counted: &Option<Counted<'_>>, part, context: &Context| -> Vec<Product> {
+                let spread = counted.as_ref().and_then(|counted| counted.spread(index, part));
+                spread.map_or_else(Vec::new, |spread| kind.products(&spread, stage, context))
+            };
+            if !measure.is_absolute() {
+                found.extend(of(reflected, None, context));
+                for &part in parts {
+                    let products = of(reflected, Some(part), context).into_iter();
+                    found.extend(products.map(|product| Product {
+                        name: format!("{}_{}", product.name, part.suffix()),
+                        ..product
+                    }));
+                }
+                continue;
+            }
+            let (mut reflected, mut emitted) =
+                (of(reflected, None, &unit).into_iter(), of(emitted, None, &unit).into_iter());
+            for _ in 0..reflected.len().max(emitted.len()) {
+                let (reflected, emitted) = (reflected.next(), emitted.next());
+                let product = products::of_sources(reflected.as_ref(), emitted.as_ref(), context);
+                let kelvin = sensor.measure.contains(&PhotonMeasure::BrightnessTemperature);
+                let kelvin = kelvin.then(|| products::brightness_of(&product, context)).flatten();
+                found.extend(std::iter::once(product).chain(kelvin));
+            }
+        }
+        for (counted, context, name) in
+            [(reflected, context, "energy"), (emitted, &unit, "emitted_energy")]
+        {
+            let Some(Counted { film, .. }) = counted else { continue };
+            let energy = products::energy(&film.spread(0), stage, context);
+            let unit = if name == "energy" { energy.unit.clone() } else { "W m-2 nm-1".to_owned() };
+            found.push(Product { name: name.to_owned(), unit, ..energy });
+        }
+        found
+    }
+}
+
+/// What was asked for, kinds by number, and counted.
+struct Counted<'a> {
+    asked: Vec<(usize, Option<Part>)>,
+    film: Rows<'a>,
+}
+
+impl Counted<'_> {
+    fn spread(&self, index: usize, part: Option<Part>) -> Option<Spread> {
+        let at = self.asked.iter().position(|asked| *asked == (index, part))?;
+        // The first sums are those of the energy.
+        Some(self.film.spread(at + 1))
+    }
+}
+
+/// A counter with what its product needs.
+enum Kind {
+    Albedo(AlbedoCounter),
+    Cells(CellCounter),
+    Cones(ConeCounter),
+    Views(ViewCounter, Vec<View>),
+    Layers(LayerCounter),
+    Absorbed(AbsorbedCounter, Arc<Inventory>),
+    Fluxes(FluxCounter),
+}
+
+impl Kind {
+    fn of(measure: &PhotonMeasure, plane: &ReferencePlane, stage: &Stage) -> Option<Self> {
+        let plane = plane.clone();
+        Some(match measure {
+            PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature => return None,
+            PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {
+                Self::Cones(ConeCounter::new(cones.clone(), plane))
+            }
+            PhotonMeasure::Albedo | PhotonMeasure::Exitance => {
+                Self::Albedo(AlbedoCounter { plane })
+            }
+            PhotonMeasure::BrfCells(cells) | PhotonMeasure::RadianceCells(cells) => {
+                Self::Cells(CellCounter { hemisphere: Hemisphere::new(*cells as usize), plane })
+            }
+            PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
+                let projections =
+                    views.iter().map(|&view| Projection::of_plane(view, &plane, stage)).collect();
+                Self::Views(ViewCounter::new(projections), views.clone())
+            }
+            PhotonMeasure::Absorbed(per) => {
+                let inventory = stage.inventory.clone()?;
+                Self::Absorbed(AbsorbedCounter::of(&inventory, *per, plane), inventory)
+            }
+            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers, plane)),
+            PhotonMeasure::Fluxes { pixel, heights } => {
+                let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
+                levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
+                Self::Fluxes(FluxCounter::new(plane, *pixel, levels))
+            }
+        })
+    }
+
+    /// Whether it counts light that leaves the scene, and nothing else.
+    const fn is_of_reflection(&self) -> bool {
+        match self {
+            Self::Albedo(_) | Self::Cells(_) | Self::Cones(_) | Self::Views(..) => true,
+            Self::Layers(_) | Self::Absorbed(..) | Self::Fluxes(_) => false,
+        }
+    }
+
+    /// What its spread tells.
+    fn products(&self, spread: &Spread, stage: &Stage, context: &Context) -> Vec<Product> {
+        match self {
+            Self::Albedo(albedo) => vec![products::albedo(spread, albedo, context)],
+            Self::Cells(cells) => {
+                vec![products::brf_cells(spread, (&cells.hemisphere, cells.plane.gain), context)]
+            }
+            Self::Cones(cones) => vec![products::brf_cones(spread, cones, context)],
+            Self::Views(counter, views) => {
+                vec![products::brf_views(spread, counter, views, stage, context)]
+            }
+            Self::Layers(layers) => products::fapar(spread, layers, stage, context),
+            Self::Absorbed(counter, inventory) => {
+                products::absorbed(spread, counter, (inventory, stage), context)
+            }
+            Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, context),
+        }
+    }
+
+    fn counter(&self) -> Box<dyn Counter> {
+        match self {
+            Self::Albedo(counter) => Box::new(counter.clone()),
+            Self::Cells(counter) => Box::new(counter.clone()),
+            Self::Views(counter, _) => Box::new(counter.clone()),
+            Self::Layers(counter) => Box::new(counter.clone()),
+            Self::Cones(counter) => Box::new(counter.clone()),
+            Self::Absorbed(counter, _) => Box::new(counter.clone()),
+            Self::Fluxes(counter) => Box::new(counter.clone()),
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! Pixels that paths from a sensor are averaged in.
+
+use std::io::{self, Read, Write};
+use std::ops::Range;
+
+use glam::{DVec2, UVec2};
+
+use super::share::{restore_f64, restore_u64, save_f64, save_u64};
+use super::{Camera, Film, ImageOutcome, RANDOMISATIONS, Share, Walk, Watch, blocks};
+use crate::extract::Stage;
+use crate::film::{Sums, ratio};
+use crate::sampling::{Key, Sampler};
+
+/// Side of the square of pixels that one block traces.
+const TILE: u32 = 16;
+
+/// Blocks whose results may wait in memory.
+const BATCH: usize = 256;
+
+/// What walks from a camera found, pixel by pixel. Sample `s` of all pixels is randomisation `s`; for
+/// the errors of sums over the whole image, [`RANDOMISATIONS`] of them are kept apart.
+#[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
+pub struct Tiles<'a> {
+    size: UVec2,
+    columns: usize,
+    trace: Box<TraceTile<'a>>,
+    tiles: Vec<Tile>,
+    /// What a walk sums over the whole image alone: whole numbers, so in any order.
+    zones: Sums,
+    /// Samples of each pixel.
+    done: u64,
+    rays: u64,
+    share: Share,
+}
+
+/// Adds samples to a tile and zones; returns the number of rays.
+type TraceTile<'a> = dyn Fn(&mut Tile, Range<u64>) -> (Sums, u64) + Sync + 'a;
+
+/// A square of pixels, row by row.
+struct Tile {
+    low: UVec2,
+    high: UVec2,
+    /// Samples of each pixel that met the scene.
+    hits: Vec<u64>,
+    /// Their mean, shape `[pixels, columns]`.
+    mean: Vec<f64>,
+    /// The sum of their squared deviations from it.
+    squares: Vec<f64>,
+    /// Sums over all pixels, shape `[randomisations, columns]`.
+    sums: Sums,
+    /// Samples that they are made of.
+    counts: Vec<u64>,
+}
+
+impl Tile {
+    fn new(low: UVec2, high: UVec2, columns: usize) -> Self {
+        let size = high - low;
+        let pixels = (size.x * size.y) as usize;
+        let zeros = || vec![0.0; pixels * columns];
+        let sums = Sums::new(RANDOMISATIONS as usize, columns);
+        let counts = vec![0; RANDOMISATIONS as usize];
+        Self { low, high, hits: vec![0; pixels], mean: zeros(), squares: zeros(), sums, counts }
+    }
+
+    fn pixels(&self) -> impl Iterator<Item = UVec2> + use<> {
+        let (low, high) = (self.low, self.high);
+        (low.y..high.y).flat_map(move |y| (low.x..high.x).map(move |x| UVec2::new(x, y)))
+    }
+
+    /// Takes one sample of a pixel in.
+    ///
+    /// Source: Welford (1962), "Note on a method for calculating corrected sums of squares and
+    /// products".
+    fn push(&mut self, pixel: usize, row: usize, values: &[f64]) {
+        self.hits[pixel] += 1;
+        self.counts[row] += 1;
+        let hits = self.hits[pixel] as f64;
+        let range = pixel * values.len()..(pixel + 1) * values.len();
+        let moments = self.mean[range.clone()].iter_mut().zip(&mut self.squares[range]);
+        for ((mean, squares), value) in moments.zip(values) {
+            let before = value - *mean;
+            *mean += before / hits;
+            *squares += before * (value - *mean);
+        }
+        self.sums.add_cell(row, values);
+    }
+}
+
+impl<'a> Tiles<'a> {
+    /// No sample yet, of walks whose first `columns` values count.
+    pub(super) fn new<W: Walk>(
+        (stage, camera): (&'a Stage, Camera),
+        key: Key,
+        columns: usize,
+        walk: impl Fn() -> W + Sync + 'a,
+    ) -> Self {
+        let size = camera.size();
+        let starts = |length: u32| (0..length).step_by(TILE as usize);
+        let tiles = starts(size.y).flat_map(|y| starts(size.x).map(move |x| UVec2::new(x, y)));
+        let tiles = tiles.map(|low| Tile::new(low, (low + TILE).min(size), columns)).collect();
+        let zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
+        let trace = move |tile: &mut Tile, samples: Range<u64>| {
+            trace_tile((stage, &camera), tile, samples, key, columns, walk())
+        };
+        Self {
+            size,
+            columns,
+            trace: Box::new(trace),
+            tiles,
+            zones,
+            done: 0,
+            rays: 0,
+            share: Share::ALL,
+        }
+    }
+
+    /// What was found so far.
+    #[must_use]
+    pub fn outcome(&self) -> ImageOutcome {
+        let size = self.size;
+        let (all, columns) = ((size.x * size.y) as usize, self.columns);
+        let n = self.done as f64;
+        let rows = self.done.clamp(1, RANDOMISATIONS.into()) as usize;
+        // Of fewer samples than there are rows, the others are no randomisations.
+        let mut zones = Sums::new(rows, self.zones.bands());
+        let of_rows = &self.zones.values()[..rows * self.zones.bands()];
+        zones.values_mut().copy_from_slice(of_rows);
+        let mut outcome = ImageOutcome {
+            pixels: vec![f32::NAN; all * columns],
+            errors: vec![f32::NAN; all * columns],
+            coverage: vec![0.0; all],
+            mean: Vec::new(),
+            mean_error: Vec::new(),
+            zones,
+        };
+        let mut sums = Sums::new(RANDOMISATIONS as usize, columns);
+        let mut counts = vec![0_u64; rows];
+        for tile in &self.tiles {
+            sums.merge(&tile.sums);
+            for (total, part) in counts.iter_mut().zip(&tile.counts) {
+                *total += part;
+            }
+            for (pixel, at) in tile.pixels().enumerate() {
+                let hits = tile.hits[pixel] as f64;
+                if hits == 0.0 {
+                    continue;
+                }
+                let to = (at.y * size.x + at.x) as usize;
+                outcome.coverage[to] = (hits / n) as f32;
+                // The error of a ratio whose counts are 0 or 1 (see `film::ratio`).
+                let of_squares = |squares: &f64| (squares * n / (n - 1.0)).sqrt() / hits;
+                let range = pixel * columns..(pixel + 1) * columns;
+                let values = tile.mean[range.clone()].iter().zip(&tile.squares[range]);
+                for (column, (mean, squares)) in values.enumerate() {
+                    outcome.pixels[to * columns + column] = *mean as f32;
+                    // One sample has no spread.
+                    if hits > 1.0 {
+                        outcome.errors[to * columns + column] = of_squares(squares) as f32;
+                    }
+                }
+            }
+        }
+        let counts: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
+        (outcome.mean, outcome.mean_error) = ratio(&sums.values()[..rows * columns], &counts);
+        outcome
+    }
+}
+
+impl Film for Tiles<'_> {
+    fn trace(&mut self, to: u64, watch: Watch<'_>) {
+        let samples = self.done..to;
+        let (tiles, mut traced) = (self.tiles.len(), 0);
+        let Self { trace, zones, rays, share, .. } = self;
+        blocks::in_order(
+            self.tiles.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile)),
+            BATCH,
+            |(_, tile)| trace(tile, samples.clone()),
+            |(of_zones, of_rays)| {
+                zones.merge(&of_zones);
+                *rays += of_rays;
+                traced += 1;
+                watch(f64::from(traced) / tiles as f64);
+            },
+        );
+        self.done = to;
+    }
+
+    fn restrict(&mut self, share: Share) {
+        self.share = share;
+    }
+
+    fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        save_u64(out, &[self.rays])?;
+        save_f64(out, self.zones.values())?;
+        let own = self.tiles.iter().enumerate().filter(|(tile, _)| self.share.owns(*tile));
+        for (_, tile) in own {
+            save_u64(out, &tile.hits)?;
+            save_u64(out, &tile.counts)?;
+            for values in [&tile.mean, &tile.squares, tile.sums.values()] {
+                save_f64(out, values)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, share: Share, done: u64, input: &mut dyn Read) -> io::Result<()> {
+        let mut rays = [0];
+        restore_u64(input, &mut rays)?;
+        self.rays += rays[0];
+        let mut zones = self.zones.clone();
+        restore_f64(input, zones.values_mut())?;
+        self.zones.merge(&zones);
+        self.done = done;
+        let own = self.tiles.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
+        for (_, tile) in own {
+            restore_u64(input, &mut tile.hits)?;
+            restore_u64(input, &mut tile.counts)?;
+            for values in [&mut tile.mean, &mut tile.squares, tile.sums.values_mut()] {
+                restore_f64(input, values)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn can_grow(&self) -> Result<(), u64> {
+        Ok(())
+    }
+
+    fn samples(&self) -> u64 {
+        let size = self.size;
+        u64::from(size.x) * u64::from(size.y) * self.done
+    }
+
+    fn bytes(&self) -> u64 {
+        let values = |tile: &Tile| 2 * tile.mean.len() + tile.sums.values().len();
+        self.tiles.iter().map(|tile| 8 * values(tile) as u64).sum()
+    }
+
+    fn rays(&self) -> u64 {
+        self.rays
+    }
+}
+
+/// Index of a pixel along the Z-order curve: pixels that are close have close indices, so that the
+/// points of one low-discrepancy sequence are even over each part of the image.
+///
+/// Source: Ahmed and Wonka (2020), "Screen-space blue-noise diffusion of Monte Carlo sampling error
+/// via hierarchical ordering of pixels".
+fn morton(at: UVec2) -> u64 {
+    let spread = |x: u32| {
+        let mut x = u64::from(x);
+        x = (x | (x << 16)) & 0x0000_ffff_0000_ffff;
+        x = (x | (x << 8)) & 0x00ff_00ff_00ff_00ff;
+        x = (x | (x << 4)) & 0x0f0f_0f0f_0f0f_0f0f;
+        x = (x | (x << 2)) & 0x3333_3333_3333_3333;
+        (x | (x << 1)) & 0x5555_5555_5555_5555
+    };
+    spread(at.x) | (spread(at.y) << 1)
+}
+
+fn trace_tile(
+    (stage, camera): (&Stage, &Camera),
+    tile: &mut Tile,
+    samples: Range<u64>,
+    key: Key,
+    columns: usize,
+    mut walk: impl Walk,
+) -> (Sums, u64) {
+    let scale = camera.size().as_dvec2().recip();
+    let mut zones = Sums::new(RANDOMISATIONS as usize, walk.zones());
+    let (mut rays, mut found) = (0, Sums::new(1, columns));
+    // Sample by sample, so that sums over the pixels are made in one order however rounds are cut.
+    for sample in samples {
+        let stream = key.index(sample);
+        let row = (sample % u64::from(RANDOMISATIONS)) as usize;
+        for (pixel, at) in tile.pixels().enumerate() {
+            let mut sampler = Sampler::new(stream, morton(at));
+            let [u, v, ..] = sampler.next_event();
+            let on_film = (at.as_dvec2() + DVec2::new(u, v)) * scale;
+            let Some(ray) = camera.ray(on_film) else { continue };
+            if !camera.admits(&ray, stage, &mut rays) {
+                continue;
+            }
+            let is_seen = walk.trace(stage, ray, &mut sampler)
+                || camera.sees_sky() && walk.see_sky(stage, ray.direction);
+            if is_seen {
+                found.clear();
+                walk.add_to(&mut found, 0);
+                tile.push(pixel, row, found.values());
+                walk.add_to_zones(&mut zones, row);
+            }
+        }
+    }
+    (zones, rays + walk.rays())
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::morton;
+
+    #[test]
+    fn pixels_of_a_square_are_consecutive_along_the_curve() {
+        let mut seen: Vec<u64> =
+            (0..16).map(|i| morton(UVec2::new(4 + i % 4, 8 + i / 4))).collect();
+        seen.sort_unstable();
+        assert!(seen.windows(2).all(|pair| pair[1] == pair[0] + 1), "{seen:?}");
+    }
+}
