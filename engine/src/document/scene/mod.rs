@@ -10,6 +10,8 @@ mod program;
 mod sensor;
 mod spectrum;
 mod thermal;
+mod transport;
+mod until;
 
 use std::borrow::Cow;
 
@@ -27,11 +29,12 @@ pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Mesh, Origin};
 pub use program::{Include, Sweep};
 pub use sensor::{
-    Ends, ImageMeasure, Layers, Per, PhotonMeasure, Roulette, Sensor, System, Transport, Until,
-    Views, VirtualPlane,
+    ImageMeasure, Layers, Per, PhotonMeasure, Sensor, System, Views, VirtualPlane,
 };
 pub use spectrum::{Material, Spectrum};
 pub use thermal::{BandSource, Temperature, ThermalSky};
+pub use transport::{Roulette, Transport};
+pub use until::{Ends, Until};
 
 /// Named values in document order.
 pub type Map<T> = IndexMap<String, T>;

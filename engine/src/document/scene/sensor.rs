@@ -6,8 +6,8 @@ use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::describe::Book;
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::{Node, Value};
-use super::Map;
 use super::camera::{Cover, FisheyeProjection, Look, Picture};
+use super::until::{Ends, Until};
 
 choice! {
     /// A sensor.
@@ -225,65 +225,6 @@ choice! {
 }
 
 choice! {
-    /// When a measurement is good enough.
-    pub enum Until ("an end of the measurement") {
-        /// The median relative standard error of each product that the sensor reports is at most this;
-        /// of an image it is that of its pixels.
-        RelError(f64 => "0.005"),
-        /// That of each of these products is at most this: the names are those in `summary.json`.
-        RelErrors(Map<f64> => "{ \"brf\": 0.005 }"),
-        /// It has run for so many seconds.
-        Seconds(f64 => "60.0"),
-        /// So many samples a pixel or a direction; of `Photons`, packets.
-        Samples(u64 => "1000"),
-    }
-}
-
-/// Ends of a measurement, one or a list: the first that holds ends it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ends(pub Vec<Until>);
-
-impl From<Until> for Ends {
-    fn from(end: Until) -> Self {
-        Self(vec![end])
-    }
-}
-
-impl Decode for Ends {
-    fn expected() -> Cow<'static, str> {
-        "an end of the measurement or a list of them".into()
-    }
-
-    fn example() -> String {
-        Until::example()
-    }
-
-    fn schema(book: &mut Book) -> serde_json::Value {
-        serde_json::json!({ "anyOf": [Until::schema(book), Vec::<Until>::schema(book)] })
-    }
-
-    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
-        match &node.value {
-            Value::List(_) => Self(Vec::decode(node, reader)),
-            _ => Until::decode(node, reader).into(),
-        }
-    }
-
-    fn placeholder() -> Self {
-        Until::placeholder().into()
-    }
-}
-
-impl Encode for Ends {
-    fn encode(&self) -> Text {
-        match self.0.as_slice() {
-            [end] => end.encode(),
-            _ => self.0.encode(),
-        }
-    }
-}
-
-choice! {
     /// What an image holds.
     pub enum ImageMeasure ("a measure of an image") {
         /// Radiance, W m⁻² sr⁻¹ nm⁻¹, from the sources that the band names.
@@ -439,42 +380,5 @@ impl System {
             Self::Backward => "backward",
             Self::Forward => "forward",
         }
-    }
-}
-
-record! {
-    /// How light is traced.
-    pub struct Transport ("`transport`") {
-        /// Another number is another, independent estimate.
-        seed: u64 = 1,
-        /// How weak paths end.
-        roulette: Roulette = Roulette::default(),
-        /// Count light that was scattered once, and no more.
-        first_order_only: bool = false,
-        /// Count light that was scattered so often at most.
-        max_order: Option<u32> = None,
-    }
-}
-
-impl Default for Transport {
-    fn default() -> Self {
-        Self { seed: 1, roulette: Roulette::default(), first_order_only: false, max_order: None }
-    }
-}
-
-record! {
-    /// Russian roulette: from some order on a path ends with some probability; those that survive
-    /// carry its power on.
-    pub struct Roulette ("the roulette") {
-        /// Orders of scattering before it starts.
-        after_order: u32 = 5,
-        /// Probability to end, below 1.
-        kill: f64 = 0.05,
-    }
-}
-
-impl Default for Roulette {
-    fn default() -> Self {
-        Self { after_order: 5, kill: 0.05 }
     }
 }

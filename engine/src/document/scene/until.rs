@@ -1,0 +1,68 @@
+//! When a measurement is good enough.
+
+use std::borrow::Cow;
+
+use super::super::decode::{Decode, Reader, Variant};
+use super::super::describe::Book;
+use super::super::encode::{Encode, Text};
+use super::super::syntax::{Node, Value};
+use super::Map;
+
+choice! {
+    /// When a measurement is good enough.
+    pub enum Until ("an end of the measurement") {
+        /// The median relative standard error of each product that the sensor reports is at most this;
+        /// of an image it is that of its pixels.
+        RelError(f64 => "0.005"),
+        /// That of each of these products is at most this: the names are those in `summary.json`.
+        RelErrors(Map<f64> => "{ \"brf\": 0.005 }"),
+        /// It has run for so many seconds.
+        Seconds(f64 => "60.0"),
+        /// So many samples a pixel or a direction; of `Photons`, packets.
+        Samples(u64 => "1000"),
+    }
+}
+
+/// Ends of a measurement, one or a list: the first that holds ends it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ends(pub Vec<Until>);
+
+impl From<Until> for Ends {
+    fn from(end: Until) -> Self {
+        Self(vec![end])
+    }
+}
+
+impl Decode for Ends {
+    fn expected() -> Cow<'static, str> {
+        "an end of the measurement or a list of them".into()
+    }
+
+    fn example() -> String {
+        Until::example()
+    }
+
+    fn schema(book: &mut Book) -> serde_json::Value {
+        serde_json::json!({ "anyOf": [Until::schema(book), Vec::<Until>::schema(book)] })
+    }
+
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+        match &node.value {
+            Value::List(_) => Self(Vec::decode(node, reader)),
+            _ => Until::decode(node, reader).into(),
+        }
+    }
+
+    fn placeholder() -> Self {
+        Until::placeholder().into()
+    }
+}
+
+impl Encode for Ends {
+    fn encode(&self) -> Text {
+        match self.0.as_slice() {
+            [end] => end.encode(),
+            _ => self.0.encode(),
+        }
+    }
+}
