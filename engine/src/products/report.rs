@@ -62,16 +62,12 @@ impl Product {
     /// Its values with their standard errors; of an image those of the pixels.
     fn estimates(&self) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
         let finite = |(value, _): &(f64, f64)| value.is_finite();
-        match &self.image {
-            Some(image) => {
-                let pairs = image.values.iter().zip(&image.standard_error);
-                Box::new(pairs.map(|(&v, &e)| (f64::from(v), f64::from(e))).filter(finite))
-            }
-            None => {
-                let pairs = self.values.iter().zip(&self.standard_error);
-                Box::new(pairs.map(|(&v, &e)| (v, e)).filter(finite))
-            }
-        }
+        let Some(image) = &self.image else {
+            let pairs = self.values.iter().zip(&self.standard_error);
+            return Box::new(pairs.map(|(&v, &e)| (v, e)).filter(finite));
+        };
+        let pairs = image.values.iter().zip(&image.standard_error);
+        Box::new(pairs.map(|(&v, &e)| (f64::from(v), f64::from(e))).filter(finite))
     }
 
     /// Whether it has values, and all of them are 0.

@@ -116,18 +116,18 @@ impl<'a> DirectionsFilm<'a> {
 }
 
 /// A counter and, with `orders`, the same for each part of the light.
-pub(super) fn in_parts<'a>(
+pub(super) fn in_parts(
     counter: ViewCounter,
     orders: bool,
-) -> impl Iterator<Item = Box<dyn Counter + 'a>> {
+) -> impl Iterator<Item = Box<dyn Counter>> {
     let parts: &[Part] = if orders { &Part::ALL } else { &[] };
     let of_part = {
         let counter = counter.clone();
-        move |&part: &Part| -> Box<dyn Counter + 'a> {
+        move |&part: &Part| -> Box<dyn Counter> {
             Box::new(PartCounter { counter: Box::new(counter.clone()), part })
         }
     };
-    let whole: Box<dyn Counter + 'a> = Box::new(counter);
+    let whole: Box<dyn Counter> = Box::new(counter);
     std::iter::once(whole).chain(parts.iter().map(of_part))
 }
 

@@ -19,7 +19,7 @@ struct Packets<'a> {
     stage: &'a Stage,
     source: Source,
     emission: Emission,
-    counters: Vec<Box<dyn Counter + 'a>>,
+    counters: Vec<Box<dyn Counter>>,
     key: Key,
 }
 
@@ -28,11 +28,11 @@ impl<'a> Packets<'a> {
     fn new(
         stage: &'a Stage,
         (source, plane): (Source, ReferencePlane),
-        counters: impl IntoIterator<Item = Box<dyn Counter + 'a>>,
+        counters: impl IntoIterator<Item = Box<dyn Counter>>,
         key: Key,
     ) -> Self {
         let energy = EnergyCounter { surfaces: stage.surfaces.len(), plane };
-        let energy: Box<dyn Counter + 'a> = Box::new(energy);
+        let energy: Box<dyn Counter> = Box::new(energy);
         let counters = std::iter::once(energy).chain(counters).collect();
         Self { stage, source, emission: Emission::of(stage), counters, key }
     }
@@ -69,12 +69,12 @@ impl Tracer for Packets<'_> {
 /// What photon packets are counted for; what leaves through the plane counts as reflected. The sums
 /// are those of [`EnergyCounter`], which always counts, and of each counter, shape `[cells, bands]`.
 #[must_use]
-pub fn photon_film<'a>(
-    stage: &'a Stage,
+pub fn photon_film(
+    stage: &Stage,
     of: (Source, ReferencePlane),
-    counters: impl IntoIterator<Item = Box<dyn Counter + 'a>>,
+    counters: impl IntoIterator<Item = Box<dyn Counter>>,
     key: Key,
-) -> Rows<'a> {
+) -> Rows<'_> {
     Rows::new(Packets::new(stage, of, counters, key))
 }
 
@@ -82,7 +82,7 @@ pub fn photon_film<'a>(
 /// many, so that a packet allocates nothing.
 pub(super) struct Packet<'a> {
     pub(super) stage: &'a Stage,
-    counters: &'a [Box<dyn Counter + 'a>],
+    counters: &'a [Box<dyn Counter>],
     sums: Vec<Sums>,
     /// Its weight when it starts, and then what is left of it; shape `[lanes]`.
     pub(super) weight: Vec<f32>,
@@ -93,10 +93,9 @@ pub(super) struct Packet<'a> {
 }
 
 impl<'a> Packet<'a> {
-    fn new(stage: &'a Stage, counters: &'a [Box<dyn Counter + 'a>], full: f32) -> Self {
+    fn new(stage: &'a Stage, counters: &'a [Box<dyn Counter>], full: f32) -> Self {
         let dark = vec![0.0; stage.lanes()];
-        let empty = |counter: &Box<dyn Counter + 'a>| Sums::of_block(counter.cells(), stage.bands);
-        let sums = counters.iter().map(empty).collect();
+        let sums = counters.iter().map(|one| Sums::of_block(one.cells(), stage.bands)).collect();
         Self { stage, counters, sums, weight: dark.clone(), before: dark, full, rays: 0 }
     }
 
@@ -170,7 +169,7 @@ impl<'a> Packet<'a> {
 
 /// Shows an event to every counter; returns the number of rays that this took.
 fn show(
-    (stage, counters, sums): (&Stage, &[Box<dyn Counter + '_>], &mut [Sums]),
+    (stage, counters, sums): (&Stage, &[Box<dyn Counter>], &mut [Sums]),
     event: &Event<'_>,
 ) -> u64 {
     counters.iter().zip(sums).map(|(counter, sums)| counter.count(stage, event, sums)).sum()

@@ -76,7 +76,9 @@ impl<'a> Rows<'a> {
         match &self.store {
             Store::All(rows) => {
                 let mut spread = Spread::new(rows[0][of].values().len());
-                rows.iter().for_each(|row| push(&mut spread, &row[of], self.done));
+                for row in rows {
+                    push(&mut spread, &row[of], self.done);
+                }
                 spread
             }
             Store::Folded(spreads, _) => spreads[of].clone(),

@@ -24,7 +24,7 @@ pub struct Tiles<'a> {
     size: UVec2,
     columns: usize,
     trace: Box<TraceTile<'a>>,
-    tiles: Vec<Tile>,
+    all: Vec<Tile>,
     /// What a walk sums over the whole image alone: whole numbers, so in any order.
     zones: Sums,
     /// Samples of each pixel.
@@ -106,7 +106,7 @@ impl<'a> Tiles<'a> {
             size,
             columns,
             trace: Box::new(trace),
-            tiles,
+            all: tiles,
             zones,
             done: 0,
             rays: 0,
@@ -135,7 +135,7 @@ impl<'a> Tiles<'a> {
         };
         let mut sums = Sums::new(RANDOMISATIONS as usize, columns);
         let mut counts = vec![0_u64; rows];
-        for tile in &self.tiles {
+        for tile in &self.all {
             sums.merge(&tile.sums);
             for (total, part) in counts.iter_mut().zip(&tile.counts) {
                 *total += part;
@@ -169,10 +169,10 @@ impl<'a> Tiles<'a> {
 impl Film for Tiles<'_> {
     fn trace(&mut self, to: u64, watch: Watch<'_>) {
         let samples = self.done..to;
-        let (tiles, mut traced) = (self.tiles.len(), 0);
+        let (tiles, mut traced) = (self.all.len(), 0);
         let Self { trace, zones, rays, share, .. } = self;
         blocks::in_order(
-            self.tiles.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile)),
+            self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile)),
             BATCH,
             |(_, tile)| trace(tile, samples.clone()),
             |(of_zones, of_rays)| {
@@ -192,7 +192,7 @@ impl Film for Tiles<'_> {
     fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         save_u64(out, &[self.rays])?;
         save_f64(out, self.zones.values())?;
-        let own = self.tiles.iter().enumerate().filter(|(tile, _)| self.share.owns(*tile));
+        let own = self.all.iter().enumerate().filter(|(tile, _)| self.share.owns(*tile));
         for (_, tile) in own {
             save_u64(out, &tile.hits)?;
             save_u64(out, &tile.counts)?;
@@ -211,7 +211,7 @@ impl Film for Tiles<'_> {
         restore_f64(input, zones.values_mut())?;
         self.zones.merge(&zones);
         self.done = done;
-        let own = self.tiles.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
+        let own = self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
         for (_, tile) in own {
             restore_u64(input, &mut tile.hits)?;
             restore_u64(input, &mut tile.counts)?;
@@ -233,7 +233,7 @@ impl Film for Tiles<'_> {
 
     fn bytes(&self) -> u64 {
         let values = |tile: &Tile| 2 * tile.mean.len() + tile.sums.values().len();
-        self.tiles.iter().map(|tile| 8 * values(tile) as u64).sum()
+        self.all.iter().map(|tile| 8 * values(tile) as u64).sum()
     }
 
     fn rays(&self) -> u64 {

@@ -28,9 +28,7 @@ pub use instances::{Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, Stems
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Mesh, Origin};
 pub use program::{Include, Sweep};
-pub use sensor::{
-    ImageMeasure, Layers, Per, PhotonMeasure, Sensor, System, Views, VirtualPlane,
-};
+pub use sensor::{ImageMeasure, Layers, Per, PhotonMeasure, Sensor, System, Views, VirtualPlane};
 pub use spectrum::{Material, Spectrum};
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
