@@ -77,13 +77,13 @@ mod tests {
 
     #[test]
     fn blocks_end_at_the_same_places_however_a_run_is_cut() {
-        let ends: Vec<u64> = of(0..100_000).map(|block| block.end).collect();
+        let ends: Vec<u64> = of(0..131_072).map(|block| block.end).collect();
         assert_eq!(ends[..8], [16, 32, 64, 128, 144, 160, 176, 192]);
         assert!(ends.windows(2).all(|pair| pair[1] - pair[0] <= LARGEST));
         for &cut in &ends {
             assert_eq!((last_end(cut), last_end(cut + 1)), (cut, cut));
             assert!(
-                of(cut..100_000)
+                of(cut..131_072)
                     .map(|block| block.end)
                     .eq(ends.iter().copied().filter(|&end| end > cut))
             );
