@@ -111,7 +111,7 @@ fn a_slope_takes_its_share_of_the_sun_and_of_the_sky() {
         meshes.push((text + "f 1 2 3 4\n", format!("({x:?}, 0.0, 2.0)")));
         write!(
             sensors,
-            "\"{index}\": Orthographic(size_px: (1, 1), extent_m: (0.2, 0.2), center_m: ({x:?}, 0.0), samples_per_px: 65536, measure: [Radiance]),"
+            "\"{index}\": Orthographic(size_px: (1, 1), extent_m: (0.2, 0.2), center_m: ({x:?}, 0.0), samples_per_px: 131072, measure: [Radiance]),"
         )
         .expect("a string");
     }
@@ -256,7 +256,7 @@ fn an_integrating_sphere_lights_its_wall_evenly() {
             ),
             "\"wall\": Lambertian(reflectance: Bands([0.5, 0.8])),",
             &[("wall", &wall, "(20.0, 20.0, 2.0)")],
-            "\"side\": Perspective(size_px: (2, 2), position_m: (20.0, 20.0, 2.0), target_m: (21.0, 20.0, 2.0), fov_deg: (4.0, 4.0), samples_per_px: 196608, measure: [Radiance])",
+            "\"side\": Perspective(size_px: (2, 2), position_m: (20.0, 20.0, 2.0), target_m: (21.0, 20.0, 2.0), fov_deg: (4.0, 4.0), samples_per_px: 393216, measure: [Radiance])",
         );
         for (band, rho) in rho.into_iter().enumerate() {
             let first = rho * opening.sin().powi(2) / 4.0;
@@ -288,7 +288,7 @@ fn a_sphere_of_small_discs_has_the_gaps_of_a_turbid_one() {
             sensors,
             "\"{view}\": Orthographic(size_px: (1, 1), extent_m: ({side}, {side}), \
              center_m: ({x:?}, {y:?}), zenith_deg: {zenith:?}, azimuth_deg: {azimuth:?}, \
-             samples_per_px: 24576, measure: [GapFraction]),"
+             samples_per_px: 40960, measure: [GapFraction]),"
         )
         .expect("a string");
     }
