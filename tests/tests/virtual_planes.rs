@@ -149,7 +149,9 @@ fn all_estimators_see_the_same_light_leave_through_a_plane() {
                     assert_eq!(image.values[index].is_nan(), black);
                     let share = f64::from(share);
                     let one = if black { 0.0 } else { share * f64::from(image.values[index]) };
-                    let error = if black { 0.0 } else { f64::from(image.standard_error[index]) };
+                    let known = if black { 0.0 } else { f64::from(image.standard_error[index]) };
+                    // A pixel that one sample met has no error: it may be off by all that it is.
+                    let error = if known.is_nan() { one } else { known };
                     // The share of a pixel is itself counted, in 512 samples.
                     let counted = f64::from(image.values[index]).max(0.0)
                         * (share * (1.0 - share) / 512.0).sqrt();
