@@ -111,7 +111,7 @@ fn a_slope_takes_its_share_of_the_sun_and_of_the_sky() {
         meshes.push((text + "f 1 2 3 4\n", format!("({x:?}, 0.0, 2.0)")));
         write!(
             sensors,
-            "\"{index}\": Orthographic(size_px: (1, 1), extent_m: (0.2, 0.2), center_m: ({x:?}, 0.0), samples_per_px: 262144, measure: [Radiance]),"
+            "\"{index}\": Orthographic(size_px: (1, 1), extent_m: (0.2, 0.2), center_m: ({x:?}, 0.0), samples_per_px: 1048576, measure: [Radiance]),"
         )
         .expect("a string");
     }
