@@ -73,7 +73,7 @@ fn a_sensor_goes_on_until_every_product_is_good_enough() {
             .products
             .iter()
             .filter(|product| product.name != "energy")
-            .filter_map(|product| product.median_relative_error())
+            .filter_map(sunfleck::products::Product::median_relative_error)
             .collect();
         let worst = errors.iter().copied().fold(0.0, f64::max);
         assert!(worst <= 0.15 && worst > 0.08, "{}: {errors:?}", sensor.name);

@@ -290,6 +290,7 @@ fn virtual_plane() -> impl Strategy<Value = Option<VirtualPlane>> {
     )
 }
 
+#[expect(clippy::too_many_lines, reason = "a line for each key")]
 fn image_sensor() -> BoxedStrategy<Sensor> {
     let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
     let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
