@@ -31,6 +31,7 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
         "forth": Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: Forward),
         "image": Orthographic(size_px: (8, 8), extent_m: (5.0, 5.0), samples_per_px: 16, measure: [Radiance, Brf]),
         "photons": Photons(per_m2: 500.0, measure: [Albedo, BrfCells(30), Fapar(layer_m: 1.0), Fluxes(pixel_m: 1.0)]),
+        "analog": Photons(per_m2: 5000.0, measure: [Albedo, BrfCells(30), Fluxes(pixel_m: 1.0)], system: Analog),
     }},
 )"#
             ));
@@ -50,12 +51,15 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
                     );
                 }
             }
-            let albedo = product(&report, "photons", "albedo");
             for (index, &rho) in rho.iter().enumerate() {
-                let albedo = Estimate::of(albedo, index);
-                // Without a sky every packet carries the same.
-                let allowed = 4.0 * albedo.error + 1e-6;
-                assert!((albedo.value - rho).abs() < allowed, "{boundary}, {sky}: {albedo:?}");
+                for photons in ["photons", "analog"] {
+                    let albedo = Estimate::of(product(&report, photons, "albedo"), index);
+                    // Without a sky every packet carries the same.
+                    let allowed = 4.0 * albedo.error + 1e-6;
+                    assert!((albedo.value - rho).abs() < allowed, "{boundary}, {sky}: {albedo:?}");
+                    let up = Estimate::of(product(&report, photons, "upwelling_terrain"), index);
+                    assert!((up.value - rho * sun).abs() < 4.0 * up.error + 1e-6, "{up:?}");
+                }
                 // L = ρ E / π with E the horizontal irradiance.
                 let radiance = product(&report, "image", "radiance").values[index];
                 let expected = rho * sun / std::f64::consts::PI;
@@ -67,11 +71,16 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
                 let up = Estimate::of(product(&report, "photons", "upwelling_top"), index);
                 assert!((up.value - rho * sun).abs() < 4.0 * up.error + 1e-6, "{up:?}");
             }
-            let cells = product(&report, "photons", &format!("{factor}_cells"));
-            // 240 cells in all: with 31 degrees of freedom one in 1000 such runs has |t| > 5.5.
-            for (index, value) in cells.values.iter().enumerate() {
-                let z = Estimate::of(cells, index).z(rho[index % 2]);
-                assert!(z.abs() < 5.5, "{boundary}, {sky}: cell value {index} is {value}, z = {z}");
+            for photons in ["photons", "analog"] {
+                let cells = product(&report, photons, &format!("{factor}_cells"));
+                // 480 cells in all: with 31 degrees of freedom one in 500 such runs has |t| > 5.5.
+                for (index, value) in cells.values.iter().enumerate() {
+                    let z = Estimate::of(cells, index).z(rho[index % 2]);
+                    assert!(
+                        z.abs() < 5.5,
+                        "{boundary}, {sky}: {photons} cell {index}: {value}, z = {z}"
+                    );
+                }
             }
         }
     }
@@ -109,9 +118,14 @@ fn a_white_furnace_has_albedo_1() {
     let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0),";
     let alike = "reflectance: Constant(0.6), transmittance: Constant(0.4)";
     let unlike = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
-    for (leaf, roulette, most) in [(alike, "0.0", 1e-4), (unlike, "0.05", 2e-3)] {
-        let photons = "Photons(per_m2: 10000.0, measure: [Albedo])";
-        let report = furnace(leaf, sun, roulette, photons);
+    for (leaf, roulette, system, most) in [
+        (alike, "0.0", "Forward", 1e-4),
+        (unlike, "0.05", "Forward", 2e-3),
+        // Nothing is absorbed: each photon leaves whole, and the bands share their number.
+        (unlike, "0.05", "Analog", 5e-3),
+    ] {
+        let photons = format!("Photons(per_m2: 10000.0, measure: [Albedo], system: {system})");
+        let report = furnace(leaf, sun, roulette, &photons);
         for band in 0..2 {
             let albedo = Estimate::of(product(&report, "sensor", "albedo"), band);
             assert!(albedo.error < most, "{albedo:?}");

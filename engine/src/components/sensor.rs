@@ -20,6 +20,8 @@ pub enum System {
     Backward,
     /// Photon packets from sun and sky, or from what emits.
     Forward,
+    /// The same as photons of one band, absorbed or scattered as a whole.
+    Analog,
 }
 
 /// A direction towards a sensor, as its angles.
@@ -192,6 +194,8 @@ pub struct Photons {
     pub measure: Vec<PhotonMeasure>,
     /// Only what leaves through it, or lies below it, counts.
     pub plane: Option<VirtualPlane>,
+    /// What they are followed as: packets or photons.
+    pub system: System,
 }
 
 /// A horizontal rectangle through which light is counted.

@@ -1,14 +1,14 @@
 use std::sync::Arc;
 
 use super::growth::{Measurement, Paced};
-use crate::components::{PhotonMeasure, Photons, View};
+use crate::components::{PhotonMeasure, Photons, System, View};
 use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
 use crate::products::{self, BandSources, Context, Product};
 use crate::sampling::Key;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, FluxCounter, FluxLevel,
-    Hemisphere, LayerCounter, Part, PartCounter, Projection, ReferencePlane, Rows, Source,
+    Grain, Hemisphere, LayerCounter, Part, PartCounter, Projection, ReferencePlane, Rows, Source,
     ViewCounter, photon_film,
 };
 
@@ -34,6 +34,7 @@ impl<'a> PhotonRun<'a> {
             .iter()
             .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
             .collect();
+        let grain = if sensor.system == System::Analog { Grain::Photon } else { Grain::Packet };
         let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
             (!asked.is_empty()).then(|| {
                 let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter> {
@@ -43,7 +44,7 @@ impl<'a> PhotonRun<'a> {
                         Some(part) => Box::new(PartCounter { counter, part }),
                     }
                 });
-                let film = photon_film(stage, (source, plane.clone()), counters, key);
+                let film = photon_film(stage, (source, grain, plane.clone()), counters, key);
                 Counted { asked, film }
             })
         };

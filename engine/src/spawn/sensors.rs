@@ -43,7 +43,7 @@ impl Spawner<'_> {
                     system: system_of(*system),
                 })
             }
-            document::Sensor::Photons { per_m2, until: _, measure, virtual_plane } => {
+            document::Sensor::Photons { per_m2, until: _, measure, virtual_plane, system } => {
                 let mut measures = Vec::new();
                 for (index, measure) in measure.iter().enumerate() {
                     let at = format!("{path}.measure[{index}]");
@@ -91,7 +91,9 @@ impl Spawner<'_> {
                 }
                 let plane = self.plane(virtual_plane.as_ref());
                 let until = stops(sensor);
-                Sensor::Photons(Photons { per_area: *per_m2, until, measure: measures, plane })
+                let system = system_of(*system);
+                let (per_area, measure) = (*per_m2, measures);
+                Sensor::Photons(Photons { per_area, until, measure, plane, system })
             }
         })
     }
@@ -207,5 +209,6 @@ pub(super) fn system_of(system: document::System) -> System {
     match system {
         document::System::Backward => System::Backward,
         document::System::Forward => System::Forward,
+        document::System::Analog => System::Analog,
     }
 }

@@ -3,8 +3,8 @@ use std::ops::Range;
 use super::forward::photon_film;
 use super::rows::{Rows, Tracer};
 use super::{
-    Counter, Part, PartCounter, Path, Projection, ReferencePlane, Source, ThermalPath, ViewCounter,
-    Walk, spectra,
+    Counter, Grain, Part, PartCounter, Path, Projection, ReferencePlane, Source, ThermalPath,
+    ViewCounter, Walk, spectra,
 };
 use crate::components::{System, View};
 use crate::extract::Stage;
@@ -84,7 +84,7 @@ impl<'a> DirectionsFilm<'a> {
             (System::Backward, Source::Emitted) => {
                 view_film((stage, projections), columns, key, || ThermalPath::new(stage))
             }
-            (System::Forward, _) => {
+            (System::Forward | System::Analog, _) => {
                 let counter = ViewCounter::new(projections);
                 let place = |(projection, cell): (&Projection, &usize)| {
                     (cell * bands..(cell + 1) * bands, projection.radiance_of_count(stage))
@@ -92,7 +92,8 @@ impl<'a> DirectionsFilm<'a> {
                 let cells = counter.projections().iter().zip(counter.first_cells());
                 let places = cells.map(place).collect();
                 let counters = in_parts(counter, orders);
-                let film = photon_film(stage, (source, plane.clone()), counters, key);
+                let film =
+                    photon_film(stage, (source, Grain::Packet, plane.clone()), counters, key);
                 return Self { film, places, apart: true, spectra };
             }
         };

@@ -4,7 +4,7 @@ use super::counters::Event;
 use super::emission::Emission;
 use super::glow::Glow;
 use super::rows::{Rows, Tracer};
-use super::{Counter, EnergyCounter, ReferencePlane, Source, roulette};
+use super::{Counter, EnergyCounter, Grain, ReferencePlane, Source, analog, roulette};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
@@ -18,6 +18,7 @@ use crate::sampling::{Key, Sampler};
 struct Packets<'a> {
     stage: &'a Stage,
     source: Source,
+    grain: Grain,
     emission: Emission,
     counters: Vec<Box<dyn Counter>>,
     key: Key,
@@ -27,14 +28,14 @@ impl<'a> Packets<'a> {
     /// What leaves through the plane counts as reflected.
     fn new(
         stage: &'a Stage,
-        (source, plane): (Source, ReferencePlane),
+        (source, grain, plane): (Source, Grain, ReferencePlane),
         counters: impl IntoIterator<Item = Box<dyn Counter>>,
         key: Key,
     ) -> Self {
         let energy = EnergyCounter { surfaces: stage.surfaces.len(), plane };
         let energy: Box<dyn Counter> = Box::new(energy);
         let counters = std::iter::once(energy).chain(counters).collect();
-        Self { stage, source, emission: Emission::of(stage), counters, key }
+        Self { stage, source, grain, emission: Emission::of(stage), counters, key }
     }
 }
 
@@ -47,7 +48,7 @@ impl Tracer for Packets<'_> {
         let is_emitted = self.source == Source::Emitted;
         let glow = is_emitted.then(|| Glow::of(self.stage, &self.emission)).flatten();
         let full = glow.as_ref().map_or(1.0, Glow::full_weight);
-        let mut packet = Packet::new(self.stage, &self.counters, full);
+        let mut packet = Packet::new(self.stage, &self.counters, (full, self.grain));
         let stream = self.key.index(randomisation);
         for index in samples {
             let mut sampler = Sampler::new(stream, index);
@@ -71,7 +72,7 @@ impl Tracer for Packets<'_> {
 #[must_use]
 pub fn photon_film(
     stage: &Stage,
-    of: (Source, ReferencePlane),
+    of: (Source, Grain, ReferencePlane),
     counters: impl IntoIterator<Item = Box<dyn Counter>>,
     key: Key,
 ) -> Rows<'_> {
@@ -82,25 +83,34 @@ pub fn photon_film(
 /// many, so that a packet allocates nothing.
 pub(super) struct Packet<'a> {
     pub(super) stage: &'a Stage,
-    counters: &'a [Box<dyn Counter>],
-    sums: Vec<Sums>,
+    pub(super) counters: &'a [Box<dyn Counter>],
+    pub(super) sums: Vec<Sums>,
     /// Its weight when it starts, and then what is left of it; shape `[lanes]`.
     pub(super) weight: Vec<f32>,
-    before: Vec<f32>,
+    pub(super) before: Vec<f32>,
+    /// Nothing at all.
+    pub(super) dark: Vec<f32>,
     /// What the strongest packets weigh when they start.
     full: f32,
+    grain: Grain,
     pub(super) rays: u64,
 }
 
 impl<'a> Packet<'a> {
-    fn new(stage: &'a Stage, counters: &'a [Box<dyn Counter>], full: f32) -> Self {
+    fn new(
+        stage: &'a Stage,
+        counters: &'a [Box<dyn Counter>],
+        (full, grain): (f32, Grain),
+    ) -> Self {
         let dark = vec![0.0; stage.lanes()];
         let sums = counters.iter().map(|one| Sums::of_block(one.cells(), stage.bands)).collect();
-        Self { stage, counters, sums, weight: dark.clone(), before: dark, full, rays: 0 }
+        let (weight, before) = (dark.clone(), dark.clone());
+        Self { stage, counters, sums, weight, before, dark, full, grain, rays: 0 }
     }
 
     /// Follows one of this weight that comes from outside.
     pub(super) fn arrive(&mut self, ray: Ray, sampler: &mut Sampler) {
+        self.take_grain(sampler);
         self.rays += show(
             (self.stage, self.counters, &mut self.sums),
             &Event::Start { ray: &ray, weight: &self.weight },
@@ -110,6 +120,7 @@ impl<'a> Packet<'a> {
 
     /// Follows one of this weight that a surface emits.
     pub(super) fn emerge(&mut self, hit: &Hit, ray: Ray, sampler: &mut Sampler) {
+        self.take_grain(sampler);
         self.rays += show(
             (self.stage, self.counters, &mut self.sums),
             &Event::Emission { hit, ray: &ray, weight: &self.weight },
@@ -118,9 +129,19 @@ impl<'a> Packet<'a> {
         self.follow(ray, (1, self.stage.is_ground(hit)), sampler);
     }
 
+    /// A photon takes all of the weight in one band.
+    fn take_grain(&mut self, sampler: &mut Sampler) {
+        if self.grain == Grain::Photon {
+            analog::take_one_band(&mut self.weight, sampler);
+        }
+    }
+
     /// Follows one that has left so many surfaces, until it ends.
     fn follow(&mut self, mut ray: Ray, (left, ground): (u32, bool), sampler: &mut Sampler) {
-        let Self { stage, counters, sums, weight, before, full, rays } = self;
+        if self.grain == Grain::Photon {
+            return self.follow_whole(ray, (left, ground), sampler);
+        }
+        let Self { stage, counters, sums, weight, before, full, rays, .. } = self;
         let (stage, full, most) = (*stage, *full, self.stage.rules.max_order.saturating_add(left));
         let mut show = |event: Event<'_>| show((stage, counters, sums), &event);
         let (mut order, mut met_ground) = (left, ground);
@@ -140,10 +161,20 @@ impl<'a> Packet<'a> {
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
             let is_last = order >= most;
-            *rays += show(Event::Arrival { hit: &hit, wo, order, met_ground, is_last, weight });
+            let scattered = bsdf.scattered(hit.normal, wo);
+            let reflected = bsdf.reflected(hit.normal, wo);
+            *rays += show(Event::Arrival {
+                hit: &hit,
+                wo,
+                order,
+                met_ground,
+                is_last,
+                weight,
+                scattered,
+                reflected,
+            });
             met_ground |= stage.is_ground(&hit);
             before.copy_from_slice(weight);
-            let scattered = bsdf.scattered(hit.normal, wo);
             for (weight, share) in before.iter_mut().zip(scattered) {
                 *weight *= share;
             }
@@ -168,8 +199,8 @@ impl<'a> Packet<'a> {
 }
 
 /// Shows an event to every counter; returns the number of rays that this took.
-fn show(
-    (stage, counters, sums): (&Stage, &[Box<dyn Counter>], &mut [Sums]),
+pub(super) fn show(
+    (stage, counters, sums): (&Stage, &[Box<dyn Counter + '_>], &mut [Sums]),
     event: &Event<'_>,
 ) -> u64 {
     counters.iter().zip(sums).map(|(counter, sums)| counter.count(stage, event, sums)).sum()

@@ -3,7 +3,7 @@ use glam::DVec2;
 use super::directions::in_parts;
 use super::forward::photon_film;
 use super::{
-    Camera, Path, Projection, ReferencePlane, Rows, Source, ThermalPath, Tiles, Traced,
+    Camera, Grain, Path, Projection, ReferencePlane, Rows, Source, ThermalPath, Tiles, Traced,
     ViewCounter, spectra,
 };
 use crate::components::System;
@@ -52,7 +52,7 @@ impl<'a> ImageFilm<'a> {
                 let counter = ViewCounter::new(vec![projection.clone()]);
                 let counters = in_parts(counter.clone(), orders);
                 let plane = ReferencePlane::of(None, stage);
-                let rows = photon_film(stage, (source, plane), counters, key);
+                let rows = photon_film(stage, (source, Grain::Packet, plane), counters, key);
                 Self::Packets(rows, stage, counter)
             }
             (_, _, Source::Reflected) => {

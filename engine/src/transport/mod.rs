@@ -3,6 +3,7 @@
 //! What is reflected is computed for a total horizontal irradiance of 1 in each band (see
 //! [`Light`](crate::extract::Light)), and products put the units back; what is emitted is absolute.
 
+mod analog;
 mod backward;
 mod blocks;
 mod camera;
@@ -57,6 +58,15 @@ pub enum Source {
     Reflected,
     /// Emitted by surfaces and the sky, and reflected of that, W m⁻² sr⁻¹ nm⁻¹.
     Emitted,
+}
+
+/// What light is followed as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grain {
+    /// Packets with power in every band, which lose a part of it wherever they are scattered.
+    Packet,
+    /// Photons of one band, which are absorbed or scattered as a whole.
+    Photon,
 }
 
 /// Watches a measurement: receives the part that is done, 0 to 1.

@@ -63,6 +63,7 @@ broken! {
     sweep_too_large
     sweep_unused
     sweeps
+    systems
     sun_below_the_horizon
     sun_in_no_month
     sun_nowhere

@@ -442,12 +442,13 @@ fn sensor() -> BoxedStrategy<Sensor> {
                 system
             }
         ),
-        (number(), option(ends()), list(photon), virtual_plane()).prop_map(
-            |(per_m2, until, measure, virtual_plane)| Sensor::Photons {
+        (number(), option(ends()), list(photon), virtual_plane(), system()).prop_map(
+            |(per_m2, until, measure, virtual_plane, system)| Sensor::Photons {
                 per_m2,
                 until,
                 measure,
-                virtual_plane
+                virtual_plane,
+                system
             }
         ),
     ]

@@ -1,9 +1,7 @@
 //! Sensors that take images.
 
 use super::super::diagnostic::unknown_name;
-use super::super::scene::{
-    Cover, FisheyeProjection, Look, Picture, Scene, Sensor, System, Terrain,
-};
+use super::super::scene::{Cover, FisheyeProjection, Look, Picture, Scene, Sensor, Terrain};
 use super::Report;
 use super::plane::check_plane;
 use super::sensor::VALUES;
@@ -103,7 +101,7 @@ pub(super) fn check_perspective(
         samples_per_px,
         measure: _,
         picture,
-        system,
+        system: _,
     } = sensor
     else {
         return;
@@ -111,7 +109,6 @@ pub(super) fn check_perspective(
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
-    check_system(path, *system, report);
     check_position(path, *position_m, *above_ground, scene, report);
     let target = format!("{path}.target_m");
     if let Some(ahead) = check_target(&target, *position_m, *target_m, report) {
@@ -151,7 +148,7 @@ pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: 
         samples_per_px,
         measure: _,
         picture,
-        system,
+        system: _,
     } = sensor
     else {
         return;
@@ -159,7 +156,6 @@ pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: 
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
-    check_system(path, *system, report);
     check_position(path, *position_m, *above_ground, scene, report);
     let (ahead, usual_up) = match look {
         Look::Up => (Some((0.0, 0.0, 1.0)), (0.0, 1.0, 0.0)),
@@ -261,14 +257,6 @@ fn check_samples(path: &str, samples: u32, report: &mut Report<'_>) {
             _ => "write fewer samples, or average runs of several seeds",
         };
         report.error(&format!("{path}.samples_per_px"), message, help);
-    }
-}
-
-fn check_system(path: &str, system: System, report: &mut Report<'_>) {
-    if system == System::Forward {
-        let message = "photon packets never meet the one point that this camera looks from";
-        let help = "take `system: Forward` out; only orthographic images can be drawn forward";
-        report.error(&format!("{path}.system"), message, help);
     }
 }
 

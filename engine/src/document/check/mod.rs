@@ -10,6 +10,7 @@ mod plane;
 mod program;
 mod sensor;
 mod spectrum;
+mod system;
 mod thermal;
 
 use super::diagnostic::{Diagnostic, unknown_name};

@@ -9,6 +9,7 @@ use super::super::scene::{
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
 use super::plane::check_plane;
+use super::system::check_system;
 use super::thermal::{check_emission, check_photon_emission};
 
 /// An image or a map may hold so many values, bands included: 16 GiB as f64.
@@ -30,6 +31,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
             check_emission(&path, measures, scene, report);
         }
         check_until(&format!("{path}.until"), sensor, report);
+        check_system(&path, sensor, report);
         match sensor {
             Sensor::Orthographic { measure, .. } => {
                 check_orthographic(&path, sensor, scene, report);
@@ -48,7 +50,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
                 check_views(&format!("{path}.views"), views, scene, report);
                 check_measures(&format!("{path}.measure"), measure, "Brf", report);
             }
-            Sensor::Photons { per_m2, until: _, measure, virtual_plane } => {
+            Sensor::Photons { per_m2, until: _, measure, virtual_plane, system: _ } => {
                 check_plane(&path, virtual_plane.as_ref(), scene, report);
                 report.above_zero(&format!("{path}.per_m2"), *per_m2);
                 let path = format!("{path}.measure");

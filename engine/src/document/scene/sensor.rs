@@ -126,6 +126,8 @@ choice! {
             /// Only light that leaves through it counts as reflected, and only what lies below it
             /// absorbs; all is normalised to its area.
             virtual_plane: Option<VirtualPlane> = None,
+            /// Whether packets are followed (`Forward`) or photons (`Analog`).
+            system: System = System::Forward,
         },
     }
 }
@@ -151,7 +153,7 @@ impl Sensor {
                 &[System::Backward, System::Forward]
             }
             Self::Perspective { .. } | Self::Fisheye { .. } => &[System::Backward],
-            Self::Photons { .. } => &[System::Forward],
+            Self::Photons { .. } => &[System::Forward, System::Analog],
         }
     }
 
@@ -171,7 +173,16 @@ impl Sensor {
                 }
                 *system = by;
             }
-            Self::Photons { .. } => {}
+            Self::Photons { measure, system, .. } => {
+                measure.retain(|one| one.is_measured_by(by));
+                if !measure.iter().any(PhotonMeasure::is_radiance) {
+                    measure.retain(|one| *one != PhotonMeasure::BrightnessTemperature);
+                }
+                if measure.is_empty() {
+                    return None;
+                }
+                *system = by;
+            }
         }
         self.systems().contains(&by).then_some(sensor)
     }
@@ -304,6 +315,28 @@ choice! {
     }
 }
 
+impl PhotonMeasure {
+    /// Whether a transport system estimates it: photons that are followed as a whole never leave in
+    /// the very direction of a view.
+    #[must_use]
+    pub const fn is_measured_by(&self, system: System) -> bool {
+        match self {
+            Self::BrfViews(_) | Self::RadianceViews(_) => matches!(system, System::Forward),
+            Self::BrfCells(_)
+            | Self::BrfCones(_)
+            | Self::Albedo
+            | Self::RadianceCells(_)
+            | Self::RadianceCones(_)
+            | Self::Exitance
+            | Self::BrightnessTemperature
+            | Self::Orders
+            | Self::Fapar { .. }
+            | Self::Absorbed { .. }
+            | Self::Fluxes { .. } => matches!(system, System::Forward | System::Analog),
+        }
+    }
+}
+
 choice! {
     /// What absorbed power is told of.
     pub enum Per ("`Instance` or `Triangle`") {
@@ -364,6 +397,9 @@ choice! {
         Backward,
         /// Photon packets from sun and sky, or from what emits.
         Forward,
+        /// Photons of one band each, absorbed, reflected or transmitted as a whole: slow, and free of
+        /// all that could be wrong with packets. For `Photons`, without views.
+        Analog,
     }
 }
 
@@ -371,7 +407,7 @@ impl Copy for System {}
 
 impl System {
     /// All there are.
-    pub const ALL: [Self; 2] = [Self::Backward, Self::Forward];
+    pub const ALL: [Self; 3] = [Self::Backward, Self::Forward, Self::Analog];
 
     /// What a person calls it.
     #[must_use]
@@ -379,6 +415,7 @@ impl System {
         match self {
             Self::Backward => "backward",
             Self::Forward => "forward",
+            Self::Analog => "analog",
         }
     }
 }

@@ -45,15 +45,14 @@ impl Counter for AbsorbedCounter {
         self.total() + 1 + self.starts.last().copied().unwrap_or(0)
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, wo, weight, .. } = event else { return 0 };
+    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+        let Event::Arrival { hit, weight, scattered, .. } = event else { return 0 };
         if !self.plane.is_above(hit.point) {
             return 0;
         }
         let instance = hit.instance as usize;
         let start = self.starts.get(instance);
         let face = start.map(|start| self.total() + 1 + start + hit.primitive as usize);
-        let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);
         for cell in [Some(instance), Some(self.total()), face].into_iter().flatten() {
             sums.add_with(cell, |lane| {
                 f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])

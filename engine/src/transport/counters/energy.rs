@@ -46,13 +46,12 @@ impl Counter for EnergyCounter {
         Self::ABSORBED + self.surfaces
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
         match event {
             Event::Start { weight, .. } | Event::Emission { weight, .. } => {
                 sums.add(Self::INCIDENT, weight, 1.0);
             }
-            Event::Arrival { hit, wo, weight, .. } => {
-                let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);
+            Event::Arrival { hit, weight, scattered, .. } => {
                 sums.add_with(Self::ABSORBED + hit.surface as usize, |lane| {
                     // The same product that goes on, so that the two sum to what came.
                     f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])

@@ -71,12 +71,11 @@ impl Counter for FluxCounter {
                 }
             };
             match (level, event) {
-                (FluxLevel::Terrain, Event::Arrival { hit, wo, weight, .. })
+                (FluxLevel::Terrain, Event::Arrival { hit, wo, weight, reflected, .. })
                     if stage.is_ground(hit) && hit.normal.dot(*wo) > 0.0 =>
                 {
                     add(hit.point, false, &|lane| weight[lane].into());
-                    let up = stage.surface(hit).bsdf.reflected(hit.normal, *wo);
-                    add(hit.point, true, &|lane| (weight[lane] * up[lane]).into());
+                    add(hit.point, true, &|lane| (weight[lane] * reflected[lane]).into());
                 }
                 (FluxLevel::Terrain, Event::Emission { hit, weight, .. })
                     if stage.is_ground(hit) =>

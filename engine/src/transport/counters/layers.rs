@@ -79,13 +79,14 @@ impl Counter for LayerCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, wo, order, met_ground, weight, .. } = event else { return 0 };
+        let Event::Arrival { hit, wo, order, met_ground, weight, scattered, .. } = event else {
+            return 0;
+        };
         if !self.plane.is_above(hit.point) {
             return 0;
         }
         let surface = hit.surface as usize;
         let is_ground = stage.is_ground(hit);
-        let scattered = stage.surface(hit).bsdf.scattered(hit.normal, *wo);
         let layer = self.layer(hit.point.z).map(|layer| layer * self.surfaces + surface);
         let canopy = (!is_ground).then(|| self.vegetation());
         for cell in [layer, Some(self.totals() + surface), canopy].into_iter().flatten() {

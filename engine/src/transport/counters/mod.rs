@@ -68,6 +68,11 @@ pub enum Event<'a> {
         is_last: bool,
         /// Its weight.
         weight: &'a [f32],
+        /// Share of it that is scattered, and the part of that which stays on the side that it
+        /// arrives at: of a packet expected values, of a photon all or nothing.
+        scattered: &'a [f32],
+        /// See above.
+        reflected: &'a [f32],
     },
     /// It goes on after being scattered, or does not.
     Roulette {

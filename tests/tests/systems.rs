@@ -1,0 +1,124 @@
+//! Transport systems that share as little as can be find the same values.
+
+use std::path::Path;
+
+use sunfleck::products::{Product, Report};
+use sunfleck::run::Options;
+use sunfleck_tests::{Estimate, measure, product};
+
+/// Two trees of two bands on soil; `light` and further keys, then sensors.
+fn grove(light: &str, sensors: &str) -> Report {
+    let text = format!(
+        r#"Scene(
+    format: 1,
+    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0), (name: "tir", center_nm: 10000.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Bands([0.1, 0.3, 0.1]), temperature: Uniform(310.0)),
+        "leaf": Leaf(
+            reflectance: Bands([0.05, 0.5, 0.02]), transmittance: Bands([0.03, 0.4, 0.01]),
+            temperature: Uniform(295.0),
+        ),
+    }},
+    meshes: {{ "tree": Crown(
+        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+        leaf: Square(side_m: 0.1), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.0, 1.0, 0.0])),
+    {light}
+    sensors: {{ {sensors} }},
+)"#
+    );
+    measure(&text, Path::new("."), &Options::default())
+}
+
+/// Compares all values of two products of the same shape; returns how many of them are known well in
+/// both, to 3 %. What has no noise in either must be equal.
+///
+/// Values of one sensor are correlated: bands, cells and parts ride on the same paths. So no mean of
+/// scores is looked at, only the largest: the chance that any of some hundred is beyond 5.5 is at most the
+/// sum of theirs, however they hang together: 5e-6 each (t with 31 degrees of freedom, Bonferroni).
+fn agreeing(a: &Product, b: &Product) -> usize {
+    assert_eq!((&a.name, &a.dimensions), (&b.name, &b.dimensions));
+    let mut known = 0;
+    for index in 0..a.values.len() {
+        let (one, other) = (Estimate::of(a, index), Estimate::of(b, index));
+        let scale = one.value.abs().max(other.value.abs());
+        let error = one.error.hypot(other.error) / scale;
+        let is_known = |one: Estimate| one.error < 0.2 * one.value.abs();
+        if one.value.is_nan() {
+            assert!(other.value.is_nan(), "{}[{index}]: {one:?} {other:?}", a.name);
+        } else if scale == 0.0 || error <= 1e-6 {
+            let off = (one.value - other.value).abs();
+            assert!(off <= 4e-6 * scale, "{}[{index}]: {one:?} {other:?}", a.name);
+        } else if is_known(one) && is_known(other) {
+            // Of fewer photons the error itself is not known well enough.
+            let z = one.z_against(other);
+            assert!(z.abs() < 5.5, "{}[{index}]: {one:?} {other:?}, z = {z:.2}", a.name);
+            known += usize::from(error < 0.03);
+        }
+    }
+    known
+}
+
+/// *Scene*: the grove, periodic under sun and sky, or isolated under the sun; light of sun and sky and,
+/// in the thermal band, of surfaces and sky. *Expected*: photons that are absorbed or scattered as a
+/// whole and packets that count expected values find the same albedo, cells, cones, orders, fAPAR,
+/// absorbed power, fluxes and emitted light.
+#[test]
+fn photons_followed_as_a_whole_find_what_packets_find() {
+    let photons = |per_m2: f64, system: &str| {
+        format!(
+            "Photons(per_m2: {per_m2:?}, system: {system}, measure: [
+                Albedo, BrfCells(20), BrfCones([(40.0, 100.0, 20.0)]), Orders, Fapar(layer_m: 1.0),
+                Absorbed(per: Instance), Fluxes(pixel_m: 5.0, heights_m: [1.5]), Exitance,
+                RadianceCells(12), RadianceCones([(40.0, 100.0, 20.0)]), BrightnessTemperature,
+            ])"
+        )
+    };
+    for light in [
+        "sky: Isotropic(irradiance: Bands([0.2, 0.1, 0.0])), thermal_sky: BlackBody(260.0), boundary: Periodic,",
+        "boundary: Isolated, transport: (max_order: 4),",
+    ] {
+        let sensors = format!(
+            "\"packets\": {}, \"photons\": {}",
+            photons(4e3, "Forward"),
+            photons(4e4, "Analog")
+        );
+        let report = grove(light, &sensors);
+        assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+        let [packets, photons] = report.sensors.as_slice() else { panic!("two sensors") };
+        assert!(photons.energy_imbalance.is_some_and(|off| off < 1e-9), "{photons:?}");
+        let mut known = 0;
+        for one in &packets.products {
+            // What roulette takes is no physics.
+            if one.name.ends_with("energy") {
+                continue;
+            }
+            known += agreeing(one, product(&report, "photons", &one.name));
+        }
+        assert!(known >= 70, "{light}: {known} values");
+    }
+}
+
+/// *Scene*: as above. *Expected*: a photon carries the whole power of all bands in one of them, so
+/// whatever it does is counted in units of that: no two values that one photon brings differ.
+#[test]
+fn a_photon_is_counted_whole_or_not_at_all() {
+    let measure = "Albedo, Absorbed(per: Instance)";
+    let light = "boundary: Periodic,";
+    let sensor = format!("\"few\": Photons(per_m2: 5.12, system: Analog, measure: [{measure}])");
+    let report = grove(light, &sensor);
+    // 128 photons: each is three shares, its band one in three, of which two hold light.
+    let packets = 128.0;
+    for name in ["albedo", "energy"] {
+        for value in &product(&report, "few", name).values {
+            let photons = value * packets / 2.0;
+            assert!(
+                value.is_nan() || (photons - photons.round()).abs() < 1e-4,
+                "{name}: {photons}"
+            );
+        }
+    }
+}
