@@ -30,6 +30,7 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
         "back": Directions(views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048)),
         "forth": Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: Forward),
         "image": Orthographic(size_px: (8, 8), extent_m: (5.0, 5.0), samples_per_px: 16, measure: [Radiance, Brf]),
+        "once": Directions(views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: FirstOrder, measure: [Orders]),
         "photons": Photons(per_m2: 500.0, measure: [Albedo, BrfCells(30), Fapar(layer_m: 1.0), Fluxes(pixel_m: 1.0)]),
         "analog": Photons(per_m2: 5000.0, measure: [Albedo, BrfCells(30), Fluxes(pixel_m: 1.0)], system: Analog),
     }},
@@ -38,7 +39,10 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
             let factor = if sky == "None" { "brf" } else { "hdrf" };
             let rho = [0.127_f64, 0.7];
             let sun = 40_f64.to_radians().cos();
-            for (sensor, name) in [("back", factor), ("forth", factor), ("image", factor)] {
+            let ground = format!("{factor}_uc");
+            for (sensor, name) in
+                [("back", factor), ("forth", factor), ("image", factor), ("once", &ground)]
+            {
                 let product = product(&report, sensor, name);
                 for (index, value) in product.values.iter().enumerate() {
                     let deviation = value / rho[index % 2] - 1.0;

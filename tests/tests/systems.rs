@@ -25,7 +25,7 @@ fn grove(light: &str, sensors: &str) -> Report {
     ) }},
     terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.0, 1.0, 0.0])),
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, disc_deg: 3.0, irradiance: Bands([1.0, 1.0, 0.0])),
     {light}
     sensors: {{ {sensors} }},
 )"#
@@ -100,6 +100,69 @@ fn photons_followed_as_a_whole_find_what_packets_find() {
         }
         assert!(known >= 70, "{light}: {known} values");
     }
+}
+
+/// *Scene*: the grove under a sun with a disc and a sky; images and directions, a camera in the scene
+/// and a virtual plane. *Expected*: what is integrated is what random walks and packets find of light
+/// that was scattered once, by the ground or by the canopy; where no other counts, it is all there is.
+#[test]
+fn light_of_the_first_order_is_what_walks_and_packets_find_of_it() {
+    let once = "boundary: Periodic, transport: (first_order_only: true),";
+    for (light, measure, products) in [
+        (once, "Brf, Orders", &["hdrf", "hdrf_uc", "hdrf_co_sgl"][..]),
+        ("boundary: Isolated,", "Orders", &["hdrf_uc", "hdrf_co_sgl"]),
+    ] {
+        let light = format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.2])), {light}");
+        let views = "views: List([(0.0, 0.0), (40.0, 100.0), (60.0, 190.0)])";
+        let sensors = |(system, more): (&str, u32)| {
+            let keys = format!("measure: [{measure}], system: {system}");
+            let until = format!("until: Samples({}), {keys}", 20_000 * more);
+            let per_px = format!("samples_per_px: {}, {keys}", 512 * more);
+            let camera = format!(
+                r#""camera {system}": Perspective(size_px: (8, 6), position_m: (2.0, 0.0, 3.0), target_m: (2.5, 2.5, 1.0),
+            fov_deg: (50.0, 40.0), sees_sky: true, {per_px}),"#
+            );
+            format!(
+                r#"
+        "views {system}": Directions({views}, {until}),
+        "plane {system}": Directions({views}, {until},
+            virtual_plane: (center_m: (2.0, 2.0), size_m: (2.0, 3.0), height_m: 2.0)),
+        "image {system}": Orthographic(size_px: (4, 4), extent_m: (4.0, 4.0), {per_px}),
+        {}"#,
+                if system == "Forward" { "" } else { &camera }
+            )
+        };
+        let systems = [("FirstOrder", 1), ("Backward", 2), ("Forward", 8)];
+        let report = grove(&light, &systems.map(sensors).concat());
+        let of = |sensor: &str, name: &str| whole(product(&report, sensor, name));
+        let mut known = 0;
+        for sensor in ["views", "plane", "image", "camera"] {
+            let once = format!("{sensor} FirstOrder");
+            let names = report.sensors.iter().find(|one| one.name == once).expect("a sensor");
+            let names = names.products.iter().map(|one| one.name.as_str());
+            assert_eq!(names.collect::<Vec<_>>(), products);
+            for system in ["Backward", "Forward"] {
+                if (sensor, system) == ("camera", "Forward") {
+                    continue;
+                }
+                for name in products {
+                    let other = of(&format!("{sensor} {system}"), name);
+                    known += agreeing(&of(&once, name), &other);
+                }
+            }
+        }
+        assert!(known >= 70, "{light}: {known} values");
+    }
+}
+
+/// The values of a product and, of an image, those of its pixels.
+fn whole(product: &Product) -> Product {
+    let mut product = product.clone();
+    if let Some(image) = product.image.take() {
+        product.values.extend(image.values.iter().map(|&value| f64::from(value)));
+        product.standard_error.extend(image.standard_error.iter().map(|&error| f64::from(error)));
+    }
+    product
 }
 
 /// *Scene*: as above. *Expected*: a photon carries the whole power of all bands in one of them, so

@@ -21,6 +21,7 @@ pub(crate) const fn colour(system: System) -> RGBColor {
         System::Backward => RGBColor(0, 114, 178),
         System::Forward => RGBColor(213, 94, 0),
         System::Analog => RGBColor(0, 158, 115),
+        System::FirstOrder => RGBColor(204, 121, 167),
     }
 }
 

@@ -30,7 +30,7 @@ const LEAVES: &str = r#"Scene(
         "top": Orthographic(size_px: (4, 4), extent_m: (4.0, 4.0), samples_per_px: 256),
         "views": Directions(
             views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(8192),
-            measure: [Brf, GapFraction],
+            measure: [Brf, Orders, GapFraction],
         ),
         "eye": Fisheye(size_px: (8, 8), position_m: (2.0, 2.0, 0.2), samples_per_px: 4),
         "photons": Photons(per_m2: 500.0),
@@ -93,13 +93,11 @@ fn every_system_that_can_measures_the_same_world() {
         (0, 2)
     );
     let scores: Vec<f64> = rows.iter().filter_map(|row| row["z"].parse().ok()).collect();
-    assert_eq!(scores.len(), 2 + 2 * 16 + 10);
+    assert_eq!(scores.len(), 2 + 2 * 16 + 4 * 10);
+    // By Bonferroni one in 500 such runs has a score beyond 5, however they hang together.
     for (z, row) in scores.iter().zip(rows.iter().filter(|row| !row["z"].is_empty())) {
         assert!(z.abs() < 5.0, "{row:?}");
     }
-    // 44 scores: the mean square of independent ones is 1 with a standard deviation of 0.2.
-    let square = scores.iter().map(|z| z * z).sum::<f64>() / scores.len() as f64;
-    assert!((0.2..2.0).contains(&square), "{square}");
     for line in ["reference", "no other system measures it"] {
         assert!(stdout.contains(line), "{stdout}");
     }
@@ -123,6 +121,9 @@ fn the_reference_may_be_any_of_the_systems() {
         rows.iter().find(of).unwrap()["remark"].clone()
     };
     assert_eq!((remark("forward").as_str(), remark("backward").as_str()), ("reference", ""));
+    let once = rows.iter().filter(|row| row["system"] == "first_order");
+    let products: Vec<&str> = once.map(|row| row["product"].as_str()).collect();
+    assert_eq!(products, ["brf_uc", "brf_co_sgl"]);
 }
 
 #[test]
@@ -141,6 +142,9 @@ fn what_cannot_be_compared_is_said() {
     assert!(text.contains("sensors.photons: none of backward can measure it; forward"), "{text}");
     let text = message(&["--systems", "backward", "--reference", "forward"]);
     assert!(text.contains("`forward` is not among the systems"), "{text}");
+    let text = message(&["--systems", "first_order", "--sensor", "top"]);
+    assert!(text.contains("sensors.top: none of first_order can measure it; backward"), "{text}");
+    assert!(text.contains("first_order measures `Orders`; add it to `measure`"), "{text}");
     // With others that can be, it is a warning.
     let arguments =
         ["--systems", "forward", "--quality", "0.05", "--sensor", "eye", "--sensor", "photons"];

@@ -22,6 +22,8 @@ pub enum System {
     Forward,
     /// The same as photons of one band, absorbed or scattered as a whole.
     Analog,
+    /// Light that was scattered once, integrated.
+    FirstOrder,
 }
 
 /// A direction towards a sensor, as its angles.

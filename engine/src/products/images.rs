@@ -41,7 +41,8 @@ pub fn of_image(
                     let name = format!("{factor}_{}", part.suffix());
                     image((&name, "1"), (outcome, spectrum), brf)
                 };
-                Part::ALL.iter().zip(1..).map(of_part).collect()
+                let spectra = outcome.mean.len() / context.bands.len();
+                Part::ALL.iter().zip(1..spectra).map(of_part).collect()
             }
             ImageMeasure::BrightnessTemperature => {
                 vec![brightness_image(sensor, total.as_ref()?, (context, place))]

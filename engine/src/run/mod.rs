@@ -333,10 +333,7 @@ fn setting(scene: &Scene) -> Setting {
             seed: transport.seed,
             roulette_after: transport.roulette.after_order,
             roulette_kill: transport.roulette.kill,
-            max_order: match transport.max_order {
-                _ if transport.first_order_only => 1,
-                limit => limit.unwrap_or(u32::MAX),
-            },
+            max_order: transport.most_orders(),
         },
     }
 }

@@ -210,5 +210,6 @@ pub(super) fn system_of(system: document::System) -> System {
         document::System::Backward => System::Backward,
         document::System::Forward => System::Forward,
         document::System::Analog => System::Analog,
+        document::System::FirstOrder => System::FirstOrder,
     }
 }

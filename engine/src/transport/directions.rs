@@ -3,8 +3,8 @@ use std::ops::Range;
 use super::forward::photon_film;
 use super::rows::{Rows, Tracer};
 use super::{
-    Counter, Grain, Part, PartCounter, Path, Projection, ReferencePlane, Source, ThermalPath,
-    ViewCounter, Walk, spectra,
+    Counter, FirstOrder, Grain, Part, PartCounter, Path, Projection, ReferencePlane, Source,
+    ThermalPath, ViewCounter, Walk, spectra,
 };
 use crate::components::{System, View};
 use crate::extract::Stage;
@@ -72,7 +72,11 @@ impl<'a> DirectionsFilm<'a> {
         key: Key,
     ) -> Self {
         let projections = projections(stage, views, plane);
-        let (bands, spectra) = (stage.bands, spectra(orders));
+        let bands = stage.bands;
+        let spectra = match system {
+            System::FirstOrder => FirstOrder::spectra(orders),
+            _ => spectra(orders),
+        };
         let columns = bands * spectra;
         let each = |view: usize| (view * columns..view * columns + bands, 1.0);
         let places = (0..views.len()).map(each).collect();
@@ -83,6 +87,10 @@ impl<'a> DirectionsFilm<'a> {
             }
             (System::Backward, Source::Emitted) => {
                 view_film((stage, projections), columns, key, || ThermalPath::new(stage))
+            }
+            (System::FirstOrder, _) => {
+                let path = move || FirstOrder::new(stage.lanes(), orders);
+                view_film((stage, projections), columns, key, path)
             }
             (System::Forward | System::Analog, _) => {
                 let counter = ViewCounter::new(projections);

@@ -3,8 +3,8 @@ use glam::DVec2;
 use super::directions::in_parts;
 use super::forward::photon_film;
 use super::{
-    Camera, Grain, Path, Projection, ReferencePlane, Rows, Source, ThermalPath, Tiles, Traced,
-    ViewCounter, spectra,
+    Camera, FirstOrder, Grain, Path, Projection, ReferencePlane, Rows, Source, ThermalPath, Tiles,
+    Traced, ViewCounter, spectra,
 };
 use crate::components::System;
 use crate::extract::Stage;
@@ -54,6 +54,11 @@ impl<'a> ImageFilm<'a> {
                 let plane = ReferencePlane::of(None, stage);
                 let rows = photon_film(stage, (source, Grain::Packet, plane), counters, key);
                 Self::Packets(rows, stage, counter)
+            }
+            (System::FirstOrder, _, _) => {
+                let path = move || FirstOrder::new(stage.lanes(), orders);
+                let columns = stage.bands * FirstOrder::spectra(orders);
+                Self::Paths(Tiles::new((stage, camera.clone()), key, columns, path))
             }
             (_, _, Source::Reflected) => {
                 let path = move || Path::of_orders(stage.lanes(), orders);

@@ -11,6 +11,7 @@ mod components;
 mod counters;
 mod directions;
 mod emission;
+mod first_order;
 mod forward;
 mod glow;
 mod growth;
@@ -35,6 +36,7 @@ pub use counters::{
     FluxLevel, GROUND_TERMS, LayerCounter, ViewCounter,
 };
 pub use directions::{DirectionsFilm, DirectionsOutcome, ViewsOutcome};
+use first_order::FirstOrder;
 pub use forward::photon_film;
 pub use growth::{Film, Schedule};
 pub use hemisphere::{Cell, Hemisphere};

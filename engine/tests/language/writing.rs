@@ -292,7 +292,7 @@ fn virtual_plane() -> impl Strategy<Value = Option<VirtualPlane>> {
 
 #[expect(clippy::too_many_lines, reason = "a line for each key")]
 fn image_sensor() -> BoxedStrategy<Sensor> {
-    let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
+    let system = || prop::sample::select(System::ALL.to_vec());
     let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
     let pair = || (number(), number());
     let triple = || (number(), number(), number());
@@ -407,7 +407,7 @@ fn ends() -> impl Strategy<Value = Ends> {
 }
 
 fn sensor() -> BoxedStrategy<Sensor> {
-    let system = || prop_oneof![Just(System::Backward), Just(System::Forward)];
+    let system = || prop::sample::select(System::ALL.to_vec());
     let image = || {
         prop::sample::select(vec![
             ImageMeasure::Radiance,

@@ -36,16 +36,25 @@ impl Plan {
         for (name, sensor) in scene.sensors.iter().filter(|(name, _)| asked(name)) {
             let before = members.len();
             for &system in systems {
-                let Some(copy) = sensor.measured_by(system) else { continue };
+                let Some(copy) = sensor.measured_by(system, scene) else {
+                    if system == System::FirstOrder && sensor.systems().contains(&system) {
+                        warnings.push(format!(
+                            "sensors.{name}: first_order measures `Orders`; add it to `measure` to compare it"
+                        ));
+                    }
+                    continue;
+                };
                 // Streams have the sensor's name as their key: those of two systems are independent.
                 sensors.insert(format!("{name} [{}]", system.name()), copy);
                 members.push(Member { sensor: name.clone(), system });
             }
             if members.len() == before {
+                let can = |&system: &System| sensor.measured_by(system, scene).is_some();
+                let able: Vec<System> = System::ALL.into_iter().filter(can).collect();
                 warnings.push(format!(
                     "sensors.{name}: none of {} can measure it; {} can",
                     names(systems),
-                    names(sensor.systems())
+                    names(&able)
                 ));
             }
         }

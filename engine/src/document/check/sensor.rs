@@ -31,7 +31,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
             check_emission(&path, measures, scene, report);
         }
         check_until(&format!("{path}.until"), sensor, report);
-        check_system(&path, sensor, report);
+        check_system(&path, sensor, scene, report);
         match sensor {
             Sensor::Orthographic { measure, .. } => {
                 check_orthographic(&path, sensor, scene, report);

@@ -1,10 +1,10 @@
 //! Transport systems: which sensor can be measured by which.
 
-use super::super::scene::{Sensor, System};
+use super::super::scene::{ImageMeasure, Scene, Sensor, System};
 use super::Report;
 
 /// Whether a sensor can be measured by the system that it asks for.
-pub(super) fn check_system(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
+pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
     let (Sensor::Orthographic { system, .. }
     | Sensor::Perspective { system, .. }
     | Sensor::Fisheye { system, .. }
@@ -17,6 +17,28 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, report: &mut Report<'_>)
         if let Some(index) = views {
             let help = "measure cones, such as `BrfCones([(30.0, 90.0, 5.0)])`, or take `system: Analog` out";
             report.error(&format!("{path}.measure[{index}]"), WHOLE, help);
+        }
+    }
+    if let Some(measures) = sensor.image_measures()
+        && system == System::FirstOrder
+    {
+        let other = measures.iter().position(|one| !one.is_measured_by(system, scene));
+        if let Some(index) = other {
+            let measure = &measures[index];
+            let is_light = matches!(measure, ImageMeasure::Brf | ImageMeasure::Radiance);
+            let (message, help) = if is_light && scene.transport.most_orders() > 1 {
+                let message = format!(
+                    "`{measure:?}` is of light of all orders, and `FirstOrder` measures what was scattered once"
+                );
+                (
+                    message,
+                    "write `measure: [Orders]` for `brf_uc` and `brf_co_sgl`, or `transport: (first_order_only: true)`",
+                )
+            } else {
+                let message = format!("`{measure:?}` is not of light that was scattered once");
+                (message, "measure `Orders`, or take `system: FirstOrder` out")
+            };
+            report.error(&format!("{path}.measure[{index}]"), message, help);
         }
     }
     if sensor.systems().contains(&system) {

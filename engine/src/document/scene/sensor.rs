@@ -8,6 +8,7 @@ use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::{Node, Value};
 use super::camera::{Cover, FisheyeProjection, Look, Picture};
 use super::until::{Ends, Until};
+use super::{Band, Scene};
 
 choice! {
     /// A sensor.
@@ -150,24 +151,28 @@ impl Sensor {
     pub const fn systems(&self) -> &'static [System] {
         match self {
             Self::Orthographic { .. } | Self::Directions { .. } => {
-                &[System::Backward, System::Forward]
+                &[System::Backward, System::Forward, System::FirstOrder]
             }
-            Self::Perspective { .. } | Self::Fisheye { .. } => &[System::Backward],
+            Self::Perspective { .. } | Self::Fisheye { .. } => {
+                &[System::Backward, System::FirstOrder]
+            }
             Self::Photons { .. } => &[System::Forward, System::Analog],
         }
     }
 
-    /// The same sensor, and of what it is to report as much as a system can measure; `None` if that is
-    /// nothing.
+    /// The same sensor, and of what it is to report in a scene as much as a system can measure; `None`
+    /// if that is nothing. Where that is not all, the loosest of limits to the errors of single products
+    /// holds for every one that is left.
     #[must_use]
-    pub fn measured_by(&self, by: System) -> Option<Self> {
+    pub fn measured_by(&self, by: System, scene: &Scene) -> Option<Self> {
         let mut sensor = self.clone();
+        let measures = self.measures();
         match &mut sensor {
             Self::Orthographic { measure, system, .. }
             | Self::Perspective { measure, system, .. }
             | Self::Fisheye { measure, system, .. }
             | Self::Directions { measure, system, .. } => {
-                measure.retain(|one| one.is_measured_by(by));
+                measure.retain(|one| one.is_measured_by(by, scene));
                 if measure.is_empty() {
                     return None;
                 }
@@ -184,7 +189,34 @@ impl Sensor {
                 *system = by;
             }
         }
+        if sensor.measures() < measures {
+            sensor.loosen();
+        }
         self.systems().contains(&by).then_some(sensor)
+    }
+
+    /// How many measures it has.
+    fn measures(&self) -> usize {
+        match self {
+            Self::Photons { measure, .. } => measure.len(),
+            _ => self.image_measures().map_or(0, <[ImageMeasure]>::len),
+        }
+    }
+
+    /// Puts a limit for all products in the place of limits by name.
+    fn loosen(&mut self) {
+        let ends = match self {
+            Self::Directions { until, .. } => Some(until),
+            Self::Orthographic { until, .. }
+            | Self::Perspective { until, .. }
+            | Self::Fisheye { until, .. }
+            | Self::Photons { until, .. } => until.as_mut(),
+        };
+        for end in ends.into_iter().flat_map(|ends| &mut ends.0) {
+            if let Until::RelErrors(limits) = end {
+                *end = Until::RelError(limits.values().copied().fold(0.0, f64::max));
+            }
+        }
     }
 
     /// When it is good enough, if that is written.
@@ -258,11 +290,19 @@ choice! {
 }
 
 impl ImageMeasure {
-    /// Whether a transport system estimates it; what is seen first is found backwards alone.
-    const fn is_measured_by(&self, system: System) -> bool {
+    /// Whether a transport system estimates it in a scene. What is seen first is found backwards alone;
+    /// what is emitted was not scattered once, and all light was only where no more counts.
+    #[must_use]
+    pub fn is_measured_by(&self, system: System, scene: &Scene) -> bool {
+        let all = system != System::FirstOrder || scene.transport.most_orders() == 1;
         match self {
-            Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature => true,
-            Self::FourComponents | Self::GapFraction => matches!(system, System::Backward),
+            Self::Orders => true,
+            Self::Brf => all,
+            Self::Radiance => {
+                all && (system != System::FirstOrder || !scene.bands.iter().any(Band::emits))
+            }
+            Self::BrightnessTemperature => system != System::FirstOrder,
+            Self::FourComponents | Self::GapFraction => system == System::Backward,
         }
     }
 }
@@ -400,6 +440,10 @@ choice! {
         /// Photons of one band each, absorbed, reflected or transmitted as a whole: slow, and free of
         /// all that could be wrong with packets. For `Photons`, without views.
         Analog,
+        /// Light of sun and sky that was scattered once, integrated over low-discrepancy points with no
+        /// random walk. For images and directions: of `Orders` the parts `_uc` and `_co_sgl`, and, where
+        /// `first_order_only` is, `Brf` and `Radiance`.
+        FirstOrder,
     }
 }
 
@@ -407,7 +451,7 @@ impl Copy for System {}
 
 impl System {
     /// All there are.
-    pub const ALL: [Self; 3] = [Self::Backward, Self::Forward, Self::Analog];
+    pub const ALL: [Self; 4] = [Self::Backward, Self::Forward, Self::Analog, Self::FirstOrder];
 
     /// What a person calls it.
     #[must_use]
@@ -416,6 +460,7 @@ impl System {
             Self::Backward => "backward",
             Self::Forward => "forward",
             Self::Analog => "analog",
+            Self::FirstOrder => "first_order",
         }
     }
 }

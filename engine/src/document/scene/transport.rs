@@ -20,6 +20,14 @@ record! {
     }
 }
 
+impl Transport {
+    /// How often light may be scattered that counts.
+    #[must_use]
+    pub fn most_orders(&self) -> u32 {
+        if self.first_order_only { 1 } else { self.max_order.unwrap_or(u32::MAX) }
+    }
+}
+
 impl Default for Transport {
     fn default() -> Self {
         Self { seed: 1, roulette: Roulette::default(), first_order_only: false, max_order: None }
