@@ -4,8 +4,8 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
-use sunfleck::document::{System, nearest};
-use sunfleck::run::Share;
+use sunfleck::document::{self, System, nearest};
+use sunfleck::run::{self, Share};
 
 use crate::verify::CHECKS;
 
@@ -33,8 +33,8 @@ pub(crate) enum Command {
     Merge(Merge),
     /// Say what is wrong with a scene, and trace nothing
     Check(Scene),
-    /// Measure how fast this machine is on a scene
-    #[command(subcommand)]
+    /// Measure run time against error on a scene: of each product, by each transport system that can
+    /// measure it, over doublings of the number of samples
     Bench(Bench),
     /// Put this program to the test on this machine: physics whose answer is known, pass or fail with
     /// numbers, in about a minute
@@ -91,10 +91,36 @@ pub(crate) struct Fmt {
     pub(crate) check: bool,
 }
 
+#[derive(Args, Debug)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(crate) struct Bench {
+    #[command(subcommand)]
+    pub(crate) other: Option<OtherBench>,
+
+    #[command(flatten)]
+    pub(crate) error: Option<ErrorBench>,
+}
+
 #[derive(Debug, Subcommand)]
-pub(crate) enum Bench {
+pub(crate) enum OtherBench {
     /// Rate of the rays of path tracing, build time and memory of the ray engine
     Rays(Rays),
+}
+
+// A scene is enough to mean this, and no other command.
+#[derive(Args, Debug)]
+#[group(args = ["file"])]
+pub(crate) struct ErrorBench {
+    #[command(flatten)]
+    pub(crate) measured: Measured,
+
+    /// Doublings of the number of samples up to that of --quality
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=20))]
+    pub(crate) doublings: u32,
+
+    /// Times that each number of samples is measured, with random numbers of its own
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) repeats: u32,
 }
 
 #[derive(Args, Debug)]
@@ -184,18 +210,15 @@ impl Run {
     }
 }
 
+/// A scene, and by what it is measured.
 #[derive(Args, Debug)]
-pub(crate) struct Compare {
+pub(crate) struct Measured {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
-    /// Transport systems, the one that the others are compared with first
+    /// Transport systems
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = all_systems(), value_parser = system)]
     systems: Vec<SystemName>,
-
-    /// The system that the others are compared with [default: the first]
-    #[arg(long, value_name = "NAME", value_parser = system)]
-    reference: Option<SystemName>,
 
     /// Measure this sensor; may be repeated [default: all]
     #[arg(long = "sensor", value_name = "NAME")]
@@ -209,19 +232,25 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Folder for the tables and the picture [default: out/<name of the scene file>_compare]
+    /// Folder for tables and picture [default: out/<name of the scene file>_<name of the command>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-
-    /// Write each pixel of images into the table too
-    #[arg(long)]
-    pub(crate) pixels: bool,
 }
 
-impl Compare {
-    /// Folder for the results.
-    pub(crate) fn folder(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| self.scene.folder("_compare"))
+impl Measured {
+    /// Folder for the results of a command.
+    pub(crate) fn folder(&self, command: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| self.scene.folder(&format!("_{command}")))
+    }
+
+    /// How it is run.
+    pub(crate) fn options(&self) -> run::Options {
+        run::Options {
+            document: self.scene.options(),
+            threads: self.threads.map(Into::into),
+            quality: self.quality,
+            ..run::Options::default()
+        }
     }
 
     /// Each system once, in the order in which they were named.
@@ -234,16 +263,32 @@ impl Compare {
         }
         systems
     }
+}
 
+#[derive(Args, Debug)]
+pub(crate) struct Compare {
+    #[command(flatten)]
+    pub(crate) measured: Measured,
+
+    /// The system that the others are compared with [default: the first]
+    #[arg(long, value_name = "NAME", value_parser = system)]
+    reference: Option<SystemName>,
+
+    /// Write each pixel of images into the table too
+    #[arg(long)]
+    pub(crate) pixels: bool,
+}
+
+impl Compare {
     /// The system that the others are compared with.
     pub(crate) fn reference(&self) -> System {
-        self.reference.as_ref().unwrap_or(&self.systems[0]).0
+        self.reference.as_ref().unwrap_or(&self.measured.systems[0]).0
     }
 }
 
 /// A transport system by its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SystemName(pub(crate) System);
+struct SystemName(System);
 
 impl std::fmt::Display for SystemName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -282,6 +327,15 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
+    /// How it is read.
+    pub(crate) fn options(&self) -> document::Options {
+        document::Options {
+            set: self.settings.clone(),
+            variant: self.variant.clone(),
+            ..document::Options::default()
+        }
+    }
+
     /// Folder named after the scene and what is done with it.
     pub(crate) fn folder(&self, suffix: &str) -> PathBuf {
         let mut name = self.file.file_stem().unwrap_or_default().to_owned();

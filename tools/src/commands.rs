@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use sunfleck::run::Share;
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Bench, Command, Fmt, Merge, Run, Scene, Trace, Verify};
+use crate::arguments::{Bench, Command, Fmt, Merge, OtherBench, Run, Scene, Trace, Verify};
 use crate::progress::Bars;
 use crate::{bench, compare, import_less, verify};
 
@@ -30,7 +30,13 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
             print(&import_less::import(&arguments.folder, &arguments.out())?)
         }
         Command::Verify(arguments) => verify(arguments),
-        Command::Bench(Bench::Rays(arguments)) => print(&bench::rays(arguments)?),
+        Command::Bench(Bench { other: Some(OtherBench::Rays(arguments)), .. }) => {
+            print(&bench::rays(arguments)?)
+        }
+        Command::Bench(Bench { error, .. }) => match error {
+            Some(arguments) => print(&bench::error(arguments)?),
+            None => bail!("name a scene: sunfleck bench SCENE"),
+        },
     }
 }
 
@@ -79,7 +85,7 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
 
 fn merge(arguments: &Merge) -> anyhow::Result<()> {
     let options = run::Options {
-        document: document_options(&arguments.scene),
+        document: arguments.scene.options(),
         quality: arguments.quality,
         unite: arguments.files.clone(),
         ..run::Options::default()
@@ -146,7 +152,7 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
 
 fn run_options(arguments: &Run) -> run::Options {
     run::Options {
-        document: document_options(&arguments.scene),
+        document: arguments.scene.options(),
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
         ..run::Options::default()
@@ -154,7 +160,7 @@ fn run_options(arguments: &Run) -> run::Options {
 }
 
 fn check(scene: &Scene) -> anyhow::Result<()> {
-    let options = run::Options { document: document_options(scene), ..run::Options::default() };
+    let options = run::Options { document: scene.options(), ..run::Options::default() };
     let warnings = run::check_file(&scene.file, &options)?;
     warn(&warnings);
     let found = match warnings.iter().filter(|warning| !warning.starts_with(SKIPPED)).count() {
@@ -166,7 +172,7 @@ fn check(scene: &Scene) -> anyhow::Result<()> {
 }
 
 fn expand(scene: &Scene) -> anyhow::Result<()> {
-    let reading = document::read_file(&scene.file, &document_options(scene))?;
+    let reading = document::read_file(&scene.file, &scene.options())?;
     if !reading.is_sound() {
         bail!(reading.render());
     }
@@ -197,14 +203,6 @@ fn verify(arguments: &Verify) -> anyhow::Result<()> {
         bail!("what this program measures here is not to be trusted");
     }
     Ok(())
-}
-
-pub(crate) fn document_options(scene: &Scene) -> document::Options {
-    document::Options {
-        set: scene.settings.clone(),
-        variant: scene.variant.clone(),
-        ..document::Options::default()
-    }
 }
 
 pub(crate) fn warn(warnings: &[String]) {

@@ -2,10 +2,10 @@
 //! standard errors, and what they cost.
 
 mod curves;
-mod findings;
+pub(crate) mod findings;
 mod picture;
-mod plan;
-mod tables;
+pub(crate) mod plan;
+pub(crate) mod tables;
 
 use std::fmt::Write as _;
 
@@ -15,26 +15,21 @@ use sunfleck::{output, run};
 use self::findings::Finding;
 use self::plan::Plan;
 use crate::arguments::Compare;
-use crate::commands::{document_options, warn};
+use crate::commands::warn;
 use crate::progress::Bars;
 
 /// Runs the scene, writes `compare.csv`, `compare_summary.csv` and `compare.svg`; returns the summary
 /// for a person.
 pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
-    let folder = arguments.folder();
+    let measured = &arguments.measured;
+    let folder = measured.folder("compare");
     output::probe(&folder)?;
-    let options = run::Options {
-        document: document_options(&arguments.scene),
-        threads: arguments.threads.map(Into::into),
-        quality: arguments.quality,
-        ..run::Options::default()
-    };
-    let mut runs = run::Runs::read(&arguments.scene.file, &options)?;
-    let (systems, reference) = (arguments.systems(), arguments.reference());
+    let (systems, reference) = (measured.systems(), arguments.reference());
     if !systems.contains(&reference) {
         bail!("the reference `{}` is not among the systems: add it to --systems", reference.name());
     }
-    let plan = Plan::of(runs.scene(), &arguments.sensors, &systems)?;
+    let mut runs = run::Runs::read(&measured.scene.file, &measured.options())?;
+    let plan = Plan::of(runs.scene(), &measured.sensors, &systems)?;
     warn(&plan.warnings);
     let bars = Bars::new();
     let report = runs.run(&plan.scene, 1.0, &bars);

@@ -63,6 +63,13 @@ impl Plan {
         }
         Ok(Self { scene: Scene { sensors, ..scene.clone() }, members, warnings })
     }
+
+    /// The scene with other random streams for all sensors, the same for the same number.
+    pub(crate) fn again(&self, number: usize) -> Scene {
+        let sensors = self.scene.sensors.iter();
+        let sensors = sensors.map(|(name, sensor)| (format!("{name} {number}"), sensor.clone()));
+        Scene { sensors: sensors.collect(), ..self.scene.clone() }
+    }
 }
 
 /// `backward, forward`.

@@ -1,4 +1,4 @@
-//! How fast this machine is on a scene.
+//! How fast the ray engine is on a scene.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -12,7 +12,6 @@ use sunfleck::sampling::Key;
 use sunfleck::transport::{Projection, Traced, path_rays};
 
 use crate::arguments::Rays;
-use crate::commands::document_options;
 
 /// Rays that a thread takes at a time: enough that taking them costs nothing.
 const SHARE: usize = 4096;
@@ -25,7 +24,7 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
         None => thread::available_parallelism()?.get(),
     };
     let options = run::Options {
-        document: document_options(&arguments.scene),
+        document: arguments.scene.options(),
         threads: Some(threads),
         ..run::Options::default()
     };
