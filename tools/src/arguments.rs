@@ -146,6 +146,10 @@ pub(crate) struct Trace {
     #[command(flatten)]
     pub(crate) run: Run,
 
+    /// Trace the first samples alone, and say how much time, memory and files all of them will take
+    #[arg(long, conflicts_with = "checkpoint")]
+    pub(crate) forecast: bool,
+
     /// Write what is traced to this file every so often, and go on with it if it is there
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,
@@ -201,6 +205,11 @@ pub(crate) struct Run {
     /// Multiply the number of samples: 0.05 for a quick look
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
     pub(crate) quality: f64,
+
+    /// Refuse a run whose films and results take more memory than this, such as 4GiB [default: what is
+    /// free]
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
+    pub(crate) memory: Option<u64>,
 }
 
 impl Run {
@@ -371,6 +380,22 @@ fn part(text: &str) -> Result<Share, String> {
     }
 }
 
+fn memory(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let power = match text[end..].trim() {
+        "KiB" => 1,
+        "MiB" => 2,
+        "GiB" => 3,
+        "TiB" => 4,
+        _ => 0,
+    };
+    match text[..end].parse::<f64>() {
+        Ok(number) if number > 0.0 && power > 0 => Ok((number * 1024_f64.powi(power)) as u64),
+        _ => Err("write a number and KiB, MiB, GiB or TiB, such as 4GiB".to_owned()),
+    }
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds.is_finite() && seconds > 0.0 => Ok(seconds),
@@ -404,6 +429,15 @@ mod tests {
         };
         assert_eq!(folder(&["sunfleck", "run", "a/birch.ron"]), Path::new("out/birch"));
         assert_eq!(folder(&["sunfleck", "run", "a.ron", "--out", "b"]), Path::new("b"));
+    }
+
+    #[test]
+    fn memory_is_a_number_with_a_unit() {
+        assert_eq!(memory("4GiB"), Ok(4 << 30));
+        assert_eq!(memory("1.5 MiB"), Ok(3 << 19));
+        for wrong in ["4", "GiB", "0MiB", "-1GiB", "4GB", "1e3KiB", "1.2.3GiB"] {
+            assert!(memory(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

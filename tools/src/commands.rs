@@ -62,8 +62,12 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
         every: arguments.every,
         share,
     });
-    let options = run::Options { checkpoint, ..run_options(&arguments.run) };
+    let forecast = arguments.forecast;
+    let options = run::Options { checkpoint, forecast, ..run_options(&arguments.run) };
     let scene = &arguments.run.scene;
+    if forecast {
+        return forecasts(scene, &options);
+    }
     if share == Share::ALL {
         return results(scene, &options, &arguments.run.folder());
     }
@@ -91,6 +95,29 @@ fn merge(arguments: &Merge) -> anyhow::Result<()> {
         ..run::Options::default()
     };
     results(&arguments.scene, &options, &arguments.folder())
+}
+
+/// What each sensor of a scene will take.
+fn forecasts(scene: &Scene, options: &run::Options) -> anyhow::Result<()> {
+    let bars = Bars::new();
+    let report = run::run_file(&scene.file, options, &bars);
+    bars.clear();
+    let report = report?;
+    warn(&report.warnings);
+    let mut text = String::new();
+    for sensor in &report.sensors {
+        writeln!(text, "{}: {}", sensor.name, sensor.forecast)?;
+    }
+    if let [_, _, ..] = &report.sensors[..] {
+        let all = report.sensors.iter().map(|sensor| sensor.forecast);
+        let all = all.reduce(|all, one| run::Forecast {
+            seconds: all.seconds + one.seconds,
+            memory: all.memory.max(one.memory),
+            files: all.files + one.files,
+        });
+        all.iter().try_for_each(|all| writeln!(text, "all: {all}"))?;
+    }
+    print(&text)
 }
 
 /// Runs a scene and writes what its sensors measure.
@@ -155,6 +182,7 @@ fn run_options(arguments: &Run) -> run::Options {
         document: arguments.scene.options(),
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
+        memory: arguments.memory,
         ..run::Options::default()
     }
 }

@@ -1,11 +1,11 @@
-//! Progress bars on a terminal, nothing in a pipe.
+//! Progress bars on a terminal; in a pipe, forecasts of long runs alone.
 
-use std::io::{self, IsTerminal as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use sunfleck::run::Progress;
+use sunfleck::run::{Forecast, Progress};
 
 /// Steps of a bar from 0 to 1.
 const STEPS: u64 = 1000;
@@ -51,6 +51,16 @@ impl Bars {
 impl Progress for Bars {
     fn stage(&self, name: &str) {
         self.stage.set_message(name.to_owned());
+    }
+
+    fn forecast(&self, name: &str, forecast: &Forecast) {
+        let text = format!("{name}: {forecast}");
+        if self.all.is_hidden() {
+            // It stands in the log of a batch job, and a run goes on without.
+            drop(writeln!(io::stderr().lock(), "{text}"));
+        } else {
+            self.heading(&text);
+        }
     }
 
     fn sensor(&self, name: &str, done: f64) {

@@ -58,13 +58,6 @@ impl Spread {
         Self { count: self.count, mean, squares }
     }
 
-    /// Forgets all randomisations.
-    pub fn clear(&mut self) {
-        self.count = 0;
-        self.mean.fill(0.0);
-        self.squares.fill(0.0);
-    }
-
     /// Mean of each value.
     #[must_use]
     pub fn mean(&self) -> &[f64] {

@@ -12,6 +12,10 @@ pub struct Sums {
 /// Values from which a block's sums hold only the cells that it touches, 512 KiB.
 const MANY: usize = 1 << 16;
 
+/// Memory of the index of a cell, bytes: a number and its hash in a list that grows by doubling, and a
+/// place in a hash table that is a quarter full at least.
+const INDEX: u64 = 72;
+
 impl Sums {
     /// All zero.
     #[must_use]
@@ -23,10 +27,30 @@ impl Sums {
     /// something is added to. Sums come out the same, bit for bit.
     #[must_use]
     pub fn of_block(cells: usize, bands: usize) -> Self {
-        if cells * bands < MANY {
+        if cells.saturating_mul(bands) < MANY {
             return Self::new(cells, bands);
         }
         Self { bands, values: Vec::new(), touched: Some(IndexSet::new()) }
+    }
+
+    /// Memory of what [`Self::new`] makes, bytes; `u64::MAX` of more than can be counted.
+    #[must_use]
+    pub fn bytes(cells: usize, bands: usize) -> u64 {
+        let bytes = cells as u128 * bands as u128 * size_of::<f64>() as u128;
+        bytes.try_into().unwrap_or(u64::MAX)
+    }
+
+    /// The most memory of what [`Self::of_block`] makes once so many cells were added to, bytes.
+    #[must_use]
+    pub fn block_bytes(cells: usize, bands: usize, touched: u64) -> u64 {
+        let all = Self::bytes(cells, bands);
+        if all < Self::bytes(MANY, 1) {
+            return all;
+        }
+        // Values grow by doubling; of each cell there is an index.
+        let values = Self::bytes(2 * bands, 1).saturating_add(INDEX);
+        let touched = touched.min(cells as u64);
+        values.saturating_mul(touched)
     }
 
     /// Forgets all that was added.

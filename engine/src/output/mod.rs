@@ -10,6 +10,7 @@ mod names;
 mod picture;
 mod ply;
 mod rows;
+mod size;
 mod staging;
 mod summary;
 mod sweep;
@@ -22,6 +23,7 @@ use crate::products::{Image, Product, Report};
 
 pub use picture::Picture;
 pub use rows::number;
+pub use size::file_size;
 pub use sweep::{is_complete, place, write_point, write_sweep};
 pub use table::table;
 

@@ -7,7 +7,7 @@ use serde_json::ser::Formatter;
 
 use super::length;
 use super::names::{ProductNames, SensorNames};
-use crate::products::{AxisPoints, Product, Report, SensorReport};
+use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport};
 
 /// Writes numbers so that they read back as the same f64; NaN becomes `null`.
 pub(super) fn write(
@@ -77,14 +77,29 @@ struct Run<'a> {
     samples: u64,
     ended_by: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
+    forecast: Option<Expected>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     energy_imbalance: Option<f64>,
 }
 
 impl<'a> Run<'a> {
     fn of(sensor: &'a SensorReport) -> Self {
         let SensorReport { seconds, rays, samples, ref ended_by, energy_imbalance, .. } = *sensor;
-        Self { seconds, rays, samples, ended_by, energy_imbalance }
+        let Forecast { memory, files, .. } = sensor.forecast;
+        let expected = Expected { seconds: sensor.forecast.seconds, memory, files };
+        let forecast = sensor.forecast.is_long().then_some(expected);
+        Self { seconds, rays, samples, ended_by, forecast, energy_imbalance }
     }
+}
+
+/// What was told of a long measurement after its first samples.
+#[derive(Serialize)]
+struct Expected {
+    seconds: f64,
+    #[serde(rename = "memory_bytes")]
+    memory: u64,
+    #[serde(rename = "file_bytes")]
+    files: u64,
 }
 
 fn products<'a>(sensor: &'a SensorReport, names: &'a SensorNames) -> Ordered<'a, Entry<'a>> {

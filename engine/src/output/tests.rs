@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::*;
-use crate::products::{Axis, AxisPoints, Georeference, Rendering, SensorReport};
+use crate::products::{Axis, AxisPoints, Forecast, Georeference, Rendering, SensorReport};
 
 fn axis(name: &str, points: &[f64]) -> Axis {
     Axis { name: name.to_owned(), points: AxisPoints::Numbers(points.to_vec()) }
@@ -69,6 +69,7 @@ fn sensor(name: &str, product: Product) -> SensorReport {
         samples: 64,
         ended_by: "samples 64".to_owned(),
         energy_imbalance: None,
+        forecast: Forecast { seconds: 0.1, memory: 1 << 20, files: 1 << 10 },
     }
 }
 
@@ -124,6 +125,23 @@ fn exactly_the_promised_files_are_written() {
 }
 
 #[test]
+fn summary_tells_what_was_foretold_of_a_long_measurement() {
+    let mut report = report(vec![sensor("plane", views())]);
+    report.sensors[0].seconds = 820.5;
+    report.sensors[0].forecast = Forecast { seconds: 745.25, memory: 3 << 29, files: 1 << 28 };
+    let folder = tempfile::tempdir().unwrap();
+    let paths = write(&report, folder.path()).unwrap();
+    let text = fs::read_to_string(paths.last().unwrap()).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let plane = &json["runs"]["plane"];
+    assert_eq!(plane["seconds"], 820.5, "what it took beside what was foretold");
+    let foretold = serde_json::json!({
+        "seconds": 745.25, "memory_bytes": 1_610_612_736, "file_bytes": 268_435_456
+    });
+    assert_eq!(plane["forecast"], foretold);
+}
+
+#[test]
 fn summary_reads_back_bit_for_bit_with_keys_in_order() {
     let (_folder, paths) = written();
     let text = fs::read_to_string(&paths[5]).unwrap();
@@ -142,6 +160,7 @@ fn summary_reads_back_bit_for_bit_with_keys_in_order() {
     assert_eq!(json["seconds"].as_f64().map(f64::to_bits), Some((1.0_f64 / 7.0).to_bits()));
     assert_eq!(json["scene"], "Birch\n# stand \u{df}");
     assert_eq!(json["runs"]["plane"]["rays"], 1_u64 << 40);
+    assert!(json["runs"]["plane"]["forecast"].is_null(), "it was short");
     let files = ["nadir_brf.exr", "nadir_brf.img", "nadir_brf.hdr", "nadir_brf.png"];
     assert_eq!(json["sensors"]["nadir"]["brf"]["files"], serde_json::json!(files));
     let keys = [

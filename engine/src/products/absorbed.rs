@@ -55,11 +55,10 @@ pub fn absorbed(
     if counter.has_faces() {
         let areas: Vec<f64> = inventory.faces().map(|face| face.area).collect();
         let density = |power: Vec<f64>| -> Vec<f32> {
-            let faces = power.chunks_exact(bands).zip(&areas);
             let per_area = |power: f64, area: f64| if area > 0.0 { power / area } else { 0.0 };
-            faces
-                .flat_map(|(power, &area)| power.iter().map(move |p| per_area(*p, area) as f32))
-                .collect()
+            let area_of = |index: usize| areas[index / bands];
+            let of = |(index, power): (usize, &f64)| per_area(*power, area_of(index)) as f32;
+            power.iter().enumerate().map(of).collect()
         };
         let [values, standard_error] = power(counter.total() + 1..counter.cells()).map(density);
         let area: f64 = areas.iter().sum();

@@ -171,7 +171,9 @@ fn dominant(shares: &[f32]) -> f32 {
 /// Some columns of each row.
 fn pick<T: Copy>(values: &[T], columns: std::ops::Range<usize>) -> Vec<T> {
     let rows = values.chunks_exact(COMPONENT_COLUMNS);
-    rows.flat_map(|row| row[columns.clone()].iter().copied()).collect()
+    let mut picked = Vec::with_capacity(rows.len() * columns.len());
+    rows.for_each(|row| picked.extend_from_slice(&row[columns.clone()]));
+    picked
 }
 
 fn axis(names: &[&str]) -> Axis {

@@ -29,7 +29,8 @@ pub struct BandSources {
 
 impl Context {
     /// Names of the bands that hold emission.
-    pub(super) fn emitting(&self) -> Vec<String> {
+    #[must_use]
+    pub fn emitting(&self) -> Vec<String> {
         let pairs = self.bands.iter().zip(&self.sources);
         pairs.filter(|(_, source)| source.emits).map(|(name, _)| name.clone()).collect()
     }

@@ -92,15 +92,15 @@ fn brightness_image(
     total: &ImageOutcome,
     (context, georeference): (&Context, Option<Georeference>),
 ) -> Product {
-    let mut pixels = (Vec::new(), Vec::new());
-    let bands = context.bands.len();
+    let (bands, emitting) = (context.bands.len(), context.emitting());
+    let space = || Vec::with_capacity(total.coverage.len() * emitting.len());
+    let mut pixels = (space(), space());
     for (pixel, errors) in total.pixels.chunks_exact(bands).zip(total.errors.chunks_exact(bands)) {
         let wide = |values: &[f32]| -> Vec<f64> { values.iter().map(|&v| v.into()).collect() };
         let (kelvin, error) = brightness((&wide(pixel), &wide(errors)), context);
         pixels.0.extend(kelvin.iter().map(|&value| value as f32));
         pixels.1.extend(error.iter().map(|&value| value as f32));
     }
-    let emitting = context.emitting();
     let (values, standard_error) = brightness((&total.mean, &total.mean_error), context);
     Product {
         name: "brightness_temperature".to_owned(),
@@ -133,15 +133,15 @@ fn image(
     let bands = context.bands.len();
     let of_spectrum = spectrum * bands..(spectrum + 1) * bands;
     let scaled = |pixels: &[f32]| -> Vec<f32> {
-        pixels
-            .chunks_exact(outcome.mean.len())
-            .flat_map(|pixel| {
-                let pixel: Vec<f64> =
-                    pixel[of_spectrum.clone()].iter().map(|&value| f64::from(value)).collect();
-                scale(&pixel, &context.irradiance)
-            })
-            .map(|value| value as f32)
-            .collect()
+        let pixels = pixels.chunks_exact(outcome.mean.len());
+        let mut scaled = Vec::with_capacity(pixels.len() * bands);
+        for pixel in pixels {
+            let pixel: Vec<f64> =
+                pixel[of_spectrum.clone()].iter().map(|&value| f64::from(value)).collect();
+            let values = scale(&pixel, &context.irradiance);
+            scaled.extend(values.into_iter().map(|value| value as f32));
+        }
+        scaled
     };
     // `π L / E` of a white Lambertian surface on the horizontal is 1.
     let white = of_white(&vec![FRAC_1_PI; bands], &context.irradiance);

@@ -5,6 +5,7 @@ mod absorbed;
 mod components;
 mod context;
 mod directions;
+mod extent;
 mod images;
 mod leaf_area;
 mod photons;
@@ -18,12 +19,14 @@ pub use absorbed::{Faces, absorbed};
 pub use components::{components_of_directions, components_of_image};
 pub use context::{BandSources, Context};
 pub use directions::of_directions;
+pub use extent::{Extent, extents_of_directions, extents_of_image};
 pub use images::of_image;
 pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller, lai_of_rings};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    Axis, AxisPoints, Georeference, Image, Point, Product, Rendering, Report, SensorReport,
+    Axis, AxisPoints, Forecast, Georeference, Image, Point, Product, Rendering, Report,
+    SensorReport, data_size,
 };
 pub use sources::{brightness_of, of_sources};
 pub use thermal::{brightness, radiance_of_sources};

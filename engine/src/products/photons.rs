@@ -102,7 +102,7 @@ pub fn fapar(
 ) -> Vec<Product> {
     let gain = counter.plane.gain;
     let (values, errors) = scaled(spread, context.bands.len(), |_| gain);
-    let borders = &counter.borders;
+    let borders = counter.borders();
     let layers = vec![
         numbers("bottom_m", borders[..counter.layers()].iter().copied()),
         numbers("top_m", borders[1..].iter().copied()),

@@ -1,3 +1,5 @@
+use std::fmt;
+
 use super::Faces;
 use crate::components::{Channels, Projection};
 
@@ -164,6 +166,51 @@ pub struct SensorReport {
     /// Of photon packets, the largest share of the incident energy that is neither reflected, lost,
     /// absorbed nor taken by roulette: the rounding of f64.
     pub energy_imbalance: Option<f64>,
+    /// What its first samples told of the whole measurement; of one that ended with them, what it took.
+    pub forecast: Forecast,
+}
+
+/// What a sensor will take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forecast {
+    /// Wall time of the measurement, s.
+    pub seconds: f64,
+    /// Memory of its films and products at most, bytes.
+    pub memory: u64,
+    /// Size of its files, bytes.
+    pub files: u64,
+}
+
+impl Forecast {
+    /// Whether a person would want to know before.
+    #[must_use]
+    pub fn is_long(&self) -> bool {
+        self.seconds > 10.0
+    }
+}
+
+impl fmt::Display for Forecast {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { seconds, memory, files, .. } = *self;
+        let (time, unit) = match seconds {
+            ..120.0 => (seconds, "s"),
+            120.0..7200.0 => (seconds / 60.0, "min"),
+            7200.0..172_800.0 => (seconds / 3600.0, "h"),
+            _ => (seconds / 86_400.0, "days"),
+        };
+        let [memory, files] = [memory, files].map(data_size);
+        write!(f, "about {time:.0} {unit}, {memory} of memory, {files} of files")
+    }
+}
+
+/// A number of bytes as people write it: `1.5 GiB`.
+#[must_use]
+pub fn data_size(bytes: u64) -> String {
+    const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let power = (bytes.max(1).ilog2() as usize / 10).min(UNITS.len() - 1);
+    let size = bytes as f64 / 1024_f64.powi(power as i32);
+    let digits = usize::from(power > 0);
+    format!("{size:.digits$} {}", UNITS[power])
 }
 
 /// All that a run measured, and how it came about.
@@ -214,5 +261,22 @@ impl Point {
         let params: Vec<_> =
             self.params.iter().map(|(name, value)| format!("{name}={value}")).collect();
         params.join(",")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_forecast_is_told_in_units_of_people() {
+        let of = |seconds, memory, files| Forecast { seconds, memory, files }.to_string();
+        assert_eq!(of(12.4, 3 << 29, 2048), "about 12 s, 1.5 GiB of memory, 2.0 KiB of files");
+        assert_eq!(of(600.0, 5 << 20, 12), "about 10 min, 5.0 MiB of memory, 12 B of files");
+        assert_eq!(of(7200.0, 0, 1023), "about 2 h, 0 B of memory, 1023 B of files");
+        assert_eq!(
+            of(1e6, u64::MAX, 1024),
+            "about 12 days, 16777216.0 TiB of memory, 1.0 KiB of files"
+        );
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct Section {
     /// Samples of each randomisation.
     pub(super) done: u64,
     pub(super) seconds: f64,
-    pub(super) state: Arc<[u8]>,
+    pub(super) state: Arc<Vec<u8>>,
 }
 
 /// All that runs of a scene have traced, and the file that it goes to.
@@ -320,7 +320,7 @@ fn section(input: &mut &[u8]) -> io::Result<Section> {
     let length = usize::try_from(length).ok().filter(|length| *length <= input.len());
     let (state, rest) = input.split_at(length.ok_or(io::ErrorKind::UnexpectedEof)?);
     *input = rest;
-    Ok(Section { name, done, seconds, state: state.into() })
+    Ok(Section { name, done, seconds, state: Arc::new(state.to_vec()) })
 }
 
 fn array<const N: usize>(input: &mut &[u8]) -> io::Result<[u8; N]> {

@@ -1,12 +1,14 @@
 //! One loop for all sensors: more samples until the measurement is good enough.
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use super::Failure;
 use super::checkpoint::{Keeper, Section};
+use super::forecast::{Pilot, Size};
+use super::{Failure, Progress};
 use crate::components::Stop;
 use crate::document::Diagnostic;
-use crate::products::Product;
+use crate::products::{Extent, Forecast, Product};
 use crate::transport::{Film, Schedule, Share, Watch};
 
 /// What a sensor measures, as it grows.
@@ -16,6 +18,9 @@ pub(super) trait Measurement {
 
     /// What it has found so far.
     fn products(&self) -> Vec<Product>;
+
+    /// What its products consist of, but for a few single numbers.
+    fn extents(&self) -> Vec<Extent>;
 }
 
 /// A film and the samples of its own that go with each of the measurement, as a fraction.
@@ -53,6 +58,8 @@ pub(super) struct Ending {
     pub(super) errors: Vec<(String, f64)>,
     /// Seconds, those before it was gone on with among them.
     pub(super) seconds: f64,
+    /// What its first samples told of it.
+    pub(super) forecast: Forecast,
 }
 
 /// Samples of a measurement from which on a product that is 0 throughout counts as exactly 0: it may
@@ -105,6 +112,23 @@ impl Plan {
             Stop::Seconds(_) | Stop::Samples(_) => self.part(stop, done, seconds, None),
         }
     }
+
+    /// Samples after which one of the conditions will hold, were all to go on at a pace from what was done
+    /// at first, and errors from where they were last looked at; infinite if nothing tells.
+    pub(super) fn end(
+        &self,
+        (first, before): (u64, f64),
+        pace: f64,
+        last: Option<&(u64, Vec<(String, f64)>)>,
+    ) -> f64 {
+        let end = |stop: &Stop| match (stop, last) {
+            (Stop::Seconds(limit), _) => first as f64 + pace * (limit - before),
+            (Stop::Samples(limit), _) => (self.each)(*limit) as f64,
+            (_, Some((seen, errors))) => *seen as f64 / self.part(stop, *seen, 0.0, Some(errors)),
+            (_, None) => f64::INFINITY,
+        };
+        self.until.iter().map(end).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// Adds samples until one of the conditions holds; goes on with what `keeper` has read of the sensor of
@@ -120,9 +144,10 @@ pub(super) fn grow(
     measurement: &mut dyn Measurement,
     plan: &Plan,
     keeper: &mut Keeper,
-    watch: Watch<'_>,
+    (progress, pilot_alone): (&dyn Progress, bool),
 ) -> Result<Ending, Failure> {
     assert!(!plan.until.is_empty(), "a measurement ends");
+    let size = Size::of(measurement, keeper);
     let (mut done, before) = restore(name, measurement, keeper)?;
     let start = Instant::now();
     let elapsed = || before + start.elapsed().as_secs_f64();
@@ -130,6 +155,18 @@ pub(super) fn grow(
     let mut looks = plan.schedule.looks().take_while(|_| plan.needs_errors()).peekable();
     // What was found where errors were last looked at: the products and how far that was.
     let mut last: Option<(u64, Vec<(String, f64)>)> = None;
+    let pilot = Pilot::new(size, (done, before));
+    let end = |at: f64, seconds: f64, last: Option<&(u64, Vec<(String, f64)>)>| {
+        plan.end((first, before), pilot.pace(at, seconds), last)
+    };
+    let tell = |(at, seconds): (f64, f64), end: f64| {
+        if let Some(forecast) = pilot.tell((at, seconds), end)
+            && forecast.is_long()
+            && !pilot_alone
+        {
+            progress.forecast(name, &forecast);
+        }
+    };
     loop {
         while looks.next_if(|&look| look < done).is_some() {}
         if looks.peek() == Some(&done) {
@@ -149,29 +186,44 @@ pub(super) fn grow(
             }
         }
         if let Some(stop) = ended {
-            watch(1.0);
+            progress.sensor(name, 1.0);
             let errors = here.map_or_else(Vec::new, <[_]>::to_vec);
             let is_whole = keeper.share() == Share::ALL;
             let products = if is_whole { measurement.products() } else { Vec::new() };
-            return Ok(Ending { products, stop: stop.clone(), errors, seconds });
+            let forecast = pilot.told().unwrap_or_else(|| size.forecast(seconds));
+            return Ok(Ending { products, stop: stop.clone(), errors, seconds, forecast });
+        }
+        let can_grow = measurement.films().iter().all(|paced| paced.film.can_grow().is_ok());
+        // In the middle of a round, what is done is not like what is left.
+        let knows = last.is_some() || !plan.needs_errors();
+        if done > first && knows && (pilot.is_over(seconds) || pilot_alone && !can_grow) {
+            tell((done as f64, seconds), end(done as f64, seconds, last.as_ref()));
+        }
+        if let Some(forecast) = pilot.told().filter(|_| pilot_alone) {
+            let (products, errors, stop) = (Vec::new(), Vec::new(), plan.until[0].clone());
+            return Ok(Ending { products, stop, errors, seconds, forecast });
         }
         looks.next_if_eq(&done);
         let goal = looks.peek().map_or(limit, |&look| look.min(limit));
-        let pace = (done - first) as f64 / (seconds - before).max(1e-6);
-        let goal = next_round(plan, (done, goal), (pace, seconds, keeper.round()), measurement);
-        let progress = |at: f64| {
-            let seconds = elapsed();
-            let part = |stop: &Stop| match &last {
-                Some((seen, errors)) if matches!(stop, Stop::RelError(_) | Stop::RelErrors(_)) => {
-                    plan.part(stop, *seen, seconds, Some(errors)) * at / *seen as f64
-                }
-                _ => plan.part(stop, at as u64, seconds, None),
-            };
-            // Where the next look may decide, nothing is complete before it.
-            plan.until.iter().map(part).fold(0.0, f64::max).min(0.999)
+        let goal = if done == 0 && (can_grow || pilot_alone) {
+            // A short round tells how long others take.
+            plan.schedule.next(0).max(2).min(goal)
+        } else if can_grow {
+            let round = keeper.round().min(pilot.round());
+            next_round(plan, (done, goal), (pilot.pace(done as f64, seconds), seconds, round))
+        } else {
+            goal
         };
         let far = (goal - done) as f64;
-        trace(measurement, goal, &|part| watch(progress(done as f64 + part * far)));
+        trace(measurement, goal, &|part| {
+            let (at, seconds) = (done as f64 + part * far, elapsed());
+            let end = end(at, seconds, last.as_ref());
+            // Where the next look may decide, nothing is complete before it.
+            progress.sensor(name, (at / end).min(0.999));
+            if !can_grow && pilot.is_over(seconds) {
+                tell((at, seconds), end);
+            }
+        });
         done = goal;
     }
 }
@@ -184,7 +236,7 @@ fn restore(
 ) -> Result<(u64, f64), Failure> {
     let (mut done, mut seconds) = (0, 0.0);
     for (share, section) in keeper.before(name) {
-        let mut state = &*section.state;
+        let mut state = section.state.as_slice();
         for paced in measurement.films() {
             let place = paced.place(section.done);
             let restored = paced.film.restore(share, place, &mut state);
@@ -208,11 +260,12 @@ fn misfit(name: &str) -> Failure {
 }
 
 fn section(name: &str, measurement: &mut dyn Measurement, done: u64, seconds: f64) -> Section {
-    let mut state = Vec::new();
+    let bytes: u64 = measurement.films().iter().map(|paced| paced.film.bytes()).sum();
+    let mut state = Vec::with_capacity(bytes as usize);
     for paced in measurement.films() {
         paced.film.save(&mut state).expect("writing to memory does not fail");
     }
-    Section { name: name.to_owned(), done, seconds, state: state.into() }
+    Section { name: name.to_owned(), done, seconds, state: Arc::new(state) }
 }
 
 /// Where the next round ends, on the way from what is done to a goal.
@@ -220,18 +273,10 @@ fn next_round(
     plan: &Plan,
     (done, goal): (u64, u64),
     (pace, seconds, round): (f64, f64, f64),
-    measurement: &mut dyn Measurement,
 ) -> u64 {
-    if measurement.films().iter().any(|paced| paced.film.can_grow().is_err()) {
-        return goal;
-    }
     // What ends within a block cannot be kept: it comes last, and alone.
     let whole = plan.schedule.last(goal);
     let goal = if whole > done { whole } else { goal };
-    if done == 0 {
-        // A short round tells how long others take.
-        return plan.schedule.next(0).max(2).min(goal);
-    }
     let time = plan.until.iter().filter_map(|stop| match stop {
         Stop::Seconds(limit) => Some(*limit - seconds),
         _ => None,
@@ -248,7 +293,7 @@ fn next_round(
 }
 
 /// Brings all films to the same place.
-fn trace(measurement: &mut dyn Measurement, to: u64, watch: Watch<'_>) {
+pub(super) fn trace(measurement: &mut dyn Measurement, to: u64, watch: Watch<'_>) {
     let films = measurement.films();
     let all = films.len() as f64;
     for (index, paced) in films.into_iter().enumerate() {
@@ -259,7 +304,7 @@ fn trace(measurement: &mut dyn Measurement, to: u64, watch: Watch<'_>) {
 
 /// Median relative standard error of each product that was asked for, by name; infinite of one that
 /// is black for want of samples.
-fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String, f64)> {
+pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String, f64)> {
     let samples: u64 = measurement.films().iter().map(|paced| paced.film.samples()).sum();
     let of = |product: &Product| {
         let black = if samples < BLACK { f64::INFINITY } else { 0.0 };

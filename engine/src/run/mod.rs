@@ -3,11 +3,14 @@
 mod again;
 mod checkpoint;
 mod failure;
+mod forecast;
 mod growth;
 mod photons;
 mod provenance;
 mod sensors;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,6 +25,7 @@ use crate::products::{BandSources, Context, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
 
+pub use crate::products::Forecast;
 pub use crate::transport::Share;
 pub use again::Runs;
 pub use checkpoint::Checkpoint;
@@ -46,6 +50,11 @@ pub struct Options {
     pub checkpoint: Option<Checkpoint>,
     /// Checkpoints of all shares of one run, whose films are united in place of tracing them.
     pub unite: Vec<PathBuf>,
+    /// Memory that films and results may take, bytes; all that is free if absent. A run that takes more
+    /// is refused before it traces anything.
+    pub memory: Option<u64>,
+    /// Trace no more of each sensor than tells how long it will take.
+    pub forecast: bool,
 }
 
 impl Default for Options {
@@ -56,6 +65,8 @@ impl Default for Options {
             quality: 1.0,
             checkpoint: None,
             unite: Vec::new(),
+            memory: None,
+            forecast: false,
         }
     }
 }
@@ -66,6 +77,8 @@ pub trait Progress: Sync {
     fn stage(&self, name: &str);
     /// This part of a sensor's measurement, 0 to 1, is done.
     fn sensor(&self, name: &str, done: f64);
+    /// A sensor will run for long: so long.
+    fn forecast(&self, name: &str, forecast: &Forecast);
 }
 
 /// Watches nothing.
@@ -75,6 +88,7 @@ pub struct Unwatched;
 impl Progress for Unwatched {
     fn stage(&self, _: &str) {}
     fn sensor(&self, _: &str, _: f64) {}
+    fn forecast(&self, _: &str, _: &Forecast) {}
 }
 
 /// Runs a scene file.
@@ -200,13 +214,7 @@ fn run_kept(
     progress.stage("building");
     let stage = extract(&spawned.world, &setting(scene), built)?;
     clock.lap("build");
-    let context = Context {
-        bands: scene.bands.iter().map(|band| band.name.clone()).collect(),
-        irradiance: stage.light.irradiance.clone(),
-        has_sky: stage.light.dome.is_some(),
-        origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
-        sources: scene.bands.iter().map(sources).collect(),
-    };
+    let context = context(scene, &stage);
     progress.stage("tracing");
     let reports = measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
     clock.lap("trace");
@@ -254,6 +262,16 @@ fn unbalanced(reports: &[SensorReport]) -> impl Iterator<Item = String> {
     })
 }
 
+fn context(scene: &Scene, stage: &Stage) -> Context {
+    Context {
+        bands: scene.bands.iter().map(|band| band.name.clone()).collect(),
+        irradiance: stage.light.irradiance.clone(),
+        has_sky: stage.light.dome.is_some(),
+        origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
+        sources: scene.bands.iter().map(sources).collect(),
+    }
+}
+
 /// What the radiance in a band consists of.
 fn sources(band: &document::Band) -> BandSources {
     let window = BandWindow { center: band.center_nm, width: band.width_nm };
@@ -268,19 +286,19 @@ fn measure(
     keeper: &mut Keeper,
     progress: &dyn Progress,
 ) -> Result<Vec<SensorReport>, Failure> {
-    let quality = options.quality;
+    let scene = (stage, context);
     let sensors = sensors::in_order(world);
+    sensors::check_memory(&sensors, scene, options, keeper)?;
     let check = |(name, sensor): &(String, Sensor)| {
-        sensors::check(name, sensor, stage, context, quality, keeper)
+        sensors::check(name, sensor, scene, options.quality, keeper)
     };
     let problems: Vec<Diagnostic> = sensors.iter().flat_map(check).collect();
     if !problems.is_empty() {
         return Err(Failure::Problems(problems));
     }
-    let reports = sensors.iter().map(|(name, sensor)| {
-        let watch = |done| progress.sensor(name, done);
-        sensors::measure(name, sensor, stage, context, quality, keeper, &watch)
-    });
+    let reports = sensors
+        .iter()
+        .map(|(name, sensor)| sensors::measure(name, sensor, scene, options, keeper, progress));
     let reports = reports.collect::<Result<_, _>>()?;
     keeper.write()?;
     Ok(reports)

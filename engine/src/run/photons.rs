@@ -4,12 +4,12 @@ use super::growth::{Measurement, Paced};
 use crate::components::{PhotonMeasure, Photons, System, View};
 use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
-use crate::products::{self, BandSources, Context, Product};
+use crate::products::{self, BandSources, Context, Extent, Product};
 use crate::sampling::Key;
 use crate::transport::{
-    AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, FluxCounter, FluxLevel,
-    Grain, Hemisphere, LayerCounter, Part, PartCounter, Projection, ReferencePlane, Rows, Source,
-    ViewCounter, photon_film,
+    AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
+    FluxLevel, GROUND_TERMS, Grain, Hemisphere, LayerCounter, Part, PartCounter, Projection,
+    ReferencePlane, Rows, Source, ViewCounter, photon_film,
 };
 
 /// Photon packets of sun and sky, and of what emits, and what they are counted for.
@@ -75,6 +75,28 @@ impl Measurement for PhotonRun<'_> {
     fn films(&mut self) -> Vec<Paced<'_>> {
         let both = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
         both.map(|counted| Paced::evenly(&mut counted.film)).collect()
+    }
+
+    fn extents(&self) -> Vec<Extent> {
+        let (stage, context) = self.scene;
+        let Self { sensor, kinds, reflected, emitted, .. } = self;
+        let films: Vec<_> = [reflected, emitted].into_iter().flatten().collect();
+        let bands = context.bands.len() as u64;
+        let of = |(index, (measure, kind)): (usize, &(&PhotonMeasure, Kind))| {
+            // Sources add up to one product; each part of the light is one.
+            let asked = |part| films.iter().any(|film| film.asked.contains(&(index, part)));
+            let parts = parts(sensor).iter().filter(|&&part| asked(Some(part))).count();
+            let count = usize::from(asked(None)) + parts;
+            let mut extents = vec![kind.extents(bands); count].concat();
+            let kelvin = sensor.measure.contains(&PhotonMeasure::BrightnessTemperature);
+            if kelvin && measure.is_absolute() && kind.is_of_radiance() {
+                extents.extend(kind.extents(context.emitting().len() as u64));
+            }
+            extents
+        };
+        let rows = (EnergyCounter::ABSORBED + stage.surfaces.len()) as u64;
+        let energy = vec![Extent::Table { rows, axes: 1, bands }; films.len()];
+        kinds.iter().enumerate().flat_map(of).chain(energy).collect()
     }
 
     fn products(&self) -> Vec<Product> {
@@ -183,6 +205,36 @@ impl Kind {
         match self {
             Self::Albedo(_) | Self::Cells(_) | Self::Cones(_) | Self::Views(..) => true,
             Self::Layers(_) | Self::Absorbed(..) | Self::Fluxes(_) => false,
+        }
+    }
+
+    /// Whether it counts radiance, which has a temperature.
+    const fn is_of_radiance(&self) -> bool {
+        matches!(self, Self::Cells(_) | Self::Cones(_) | Self::Views(..))
+    }
+
+    /// What its products consist of.
+    fn extents(&self, bands: u64) -> Vec<Extent> {
+        let table = |rows: usize, axes: u64| vec![Extent::Table { rows: rows as u64, axes, bands }];
+        match self {
+            Self::Albedo(_) => table(1, 0),
+            Self::Cells(counter) => table(counter.hemisphere.len(), 3),
+            Self::Views(_, views) => table(views.len(), 2),
+            Self::Cones(counter) => table(counter.cones.len(), 3),
+            Self::Layers(counter) => {
+                let layers = table(counter.totals(), 3);
+                let whole = [table(counter.surfaces, 1), table(1, 0), table(GROUND_TERMS.len(), 1)];
+                [layers, whole.concat()].concat()
+            }
+            Self::Absorbed(counter, _) => {
+                let faces = (counter.cells() - counter.total() - 1) as u64;
+                let faces = vec![Extent::Faces { faces, bands }; usize::from(counter.has_faces())];
+                [table(counter.instances, 4), faces].concat()
+            }
+            Self::Fluxes(counter) => {
+                let pixels = u64::from(counter.size.x) * u64::from(counter.size.y);
+                vec![Extent::Image { pixels, bands }; 2 * counter.levels.len()]
+            }
         }
     }
 

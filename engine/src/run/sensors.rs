@@ -1,19 +1,20 @@
 use hecs::World;
 
-use super::Failure;
 use super::checkpoint::Keeper;
+use super::forecast::{self, Size};
 use super::growth::{Ending, Measurement, Paced, Plan, grow, is_ledger};
 use super::photons::PhotonRun;
+use super::{Failure, Options, Progress};
 use crate::components::{
     Directions, ImageMeasure, ImageSensor, Name, Photons, SceneId, Sensor, Stop, System,
 };
 use crate::document::{Diagnostic, unknown_name};
 use crate::extract::Stage;
-use crate::products::{self, Context, Product, SensorReport};
+use crate::products::{self, Context, Extent, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
     Camera, ComponentsFilm, DirectionsFilm, ImageFilm, RANDOMISATIONS, ReferencePlane, Schedule,
-    Share, Source, Tiles, Watch, image_components_film,
+    Share, Source, Tiles, image_components_film,
 };
 
 /// All sensors in document order.
@@ -25,9 +26,9 @@ pub(super) fn in_order(world: &World) -> Vec<(String, Sensor)> {
 }
 
 /// A measurement before its first sample, and how far it goes.
-type Begun<'a> = (Box<dyn Measurement + 'a>, Plan);
+pub(super) type Begun<'a> = (Box<dyn Measurement + 'a>, Plan);
 
-fn begin<'a>(
+pub(super) fn begin<'a>(
     name: &str,
     sensor: &'a Sensor,
     (stage, context): (&'a Stage, &'a Context),
@@ -45,12 +46,11 @@ fn begin<'a>(
 pub(super) fn check(
     name: &str,
     sensor: &Sensor,
-    stage: &Stage,
-    context: &Context,
+    scene: (&Stage, &Context),
     quality: f64,
     keeper: &Keeper,
 ) -> Vec<Diagnostic> {
-    let (mut measurement, plan) = begin(name, sensor, (stage, context), quality);
+    let (mut measurement, plan) = begin(name, sensor, scene, quality);
     let path = format!("sensors.{name}.until");
     let mut problems = Vec::new();
     let films = measurement.films();
@@ -83,7 +83,11 @@ pub(super) fn check(
     let mut known: Option<Vec<Product>> = None;
     for (index, limits) in named {
         let at = if plan.until.len() == 1 { path.clone() } else { format!("{path}[{index}]") };
-        let known = known.get_or_insert_with(|| measurement.products());
+        let known = known.get_or_insert_with(|| {
+            // Without a single sample.
+            measurement.films().into_iter().for_each(|paced| paced.film.trace(0, &|_| ()));
+            measurement.products()
+        });
         for (product, _) in limits {
             if !known.iter().any(|one| one.name == *product) {
                 let names = known.iter().map(|one| one.name.as_str());
@@ -97,18 +101,39 @@ pub(super) fn check(
     problems
 }
 
+/// What each sensor will take.
+///
+/// # Errors
+/// If all together take more memory than there is.
+pub(super) fn check_memory(
+    sensors: &[(String, Sensor)],
+    scene: (&Stage, &Context),
+    options: &Options,
+    keeper: &Keeper,
+) -> Result<(), Failure> {
+    let size = |(name, sensor): &(String, Sensor)| {
+        let (mut measurement, _) = begin(name, sensor, scene, options.quality);
+        Size::of(measurement.as_mut(), keeper)
+    };
+    let sizes: Vec<Size> = sensors.iter().map(size).collect();
+    let free = options.memory.or_else(forecast::free_memory).unwrap_or(u64::MAX);
+    match forecast::check(sensors, &sizes, free) {
+        Some(problem) => Err(Failure::Problems(vec![problem])),
+        None => Ok(()),
+    }
+}
+
 /// Measures one sensor.
 pub(super) fn measure(
     name: &str,
     sensor: &Sensor,
-    stage: &Stage,
-    context: &Context,
-    quality: f64,
+    scene: (&Stage, &Context),
+    options: &Options,
     keeper: &mut Keeper,
-    watch: Watch<'_>,
+    progress: &dyn Progress,
 ) -> Result<SensorReport, Failure> {
-    let (mut measurement, plan) = begin(name, sensor, (stage, context), quality);
-    let ending = grow(name, measurement.as_mut(), &plan, keeper, watch)?;
+    let (mut measurement, plan) = begin(name, sensor, scene, options.quality);
+    let ending = grow(name, measurement.as_mut(), &plan, keeper, (progress, options.forecast))?;
     let films = measurement.films();
     let sum = |of: &dyn Fn(&Paced<'_>) -> u64| films.iter().map(of).sum();
     let samples = sum(&|paced| paced.film.samples());
@@ -120,6 +145,7 @@ pub(super) fn measure(
         samples,
         ended_by: ended_by(&ending, &format!("{samples} {noun}")),
         energy_imbalance: films.iter().filter_map(|paced| paced.film.imbalance()).reduce(f64::max),
+        forecast: ending.forecast,
         products: ending.products,
     })
 }
@@ -236,6 +262,12 @@ impl Measurement for ImageRun<'_> {
         films
     }
 
+    fn extents(&self) -> Vec<Extent> {
+        let zones = self.components.as_ref().is_some_and(Tiles::has_zones);
+        let found = (self.reflected.is_some(), self.emitted.is_some(), zones);
+        products::extents_of_image(self.sensor, found, self.scene.1)
+    }
+
     fn products(&self) -> Vec<Product> {
         let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
         let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
@@ -290,6 +322,12 @@ impl Measurement for DirectionsRun<'_> {
             .chain(self.components.iter_mut().map(|one| &mut one.film))
             .map(|film| Paced::evenly(film))
             .collect()
+    }
+
+    fn extents(&self) -> Vec<Extent> {
+        let Directions { views, measure, .. } = self.sensor;
+        let found = (self.reflected.is_some(), self.emitted.is_some());
+        products::extents_of_directions(views.len(), measure, found, self.context)
     }
 
     fn products(&self) -> Vec<Product> {

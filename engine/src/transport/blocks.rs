@@ -3,27 +3,31 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 /// Does jobs in parallel and hands their results over in the order of the jobs, a batch at a time so
-/// that few wait in memory. What comes out cannot depend on the number of threads.
+/// that few wait in memory; `watch` hears when all of a batch are handed over. What comes out cannot
+/// depend on the number of threads.
 pub(super) fn in_order<J: Send, T: Send>(
     jobs: impl IntoIterator<Item = J>,
     batch: usize,
     work: impl Fn(J) -> T + Sync,
     mut fold: impl FnMut(T),
+    watch: impl Fn(usize),
 ) {
-    let mut jobs = jobs.into_iter();
+    let (mut jobs, mut done) = (jobs.into_iter(), 0);
     loop {
         let batch: Vec<J> = jobs.by_ref().take(batch).collect();
         if batch.is_empty() {
             return;
         }
         let results: Vec<T> = batch.into_par_iter().map(&work).collect();
+        done += results.len();
         results.into_iter().for_each(&mut fold);
+        watch(done);
     }
 }
 
 /// Samples of the largest block. Small enough to share the work out evenly, large enough that folding
 /// the blocks' sums costs nothing beside tracing them.
-const LARGEST: u64 = 2048;
+pub(super) const LARGEST: u64 = 2048;
 
 /// Samples of the first block.
 const FIRST: u64 = 16;

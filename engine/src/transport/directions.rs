@@ -172,6 +172,10 @@ impl<W: Walk, F: Fn() -> W + Sync> Tracer for Views<'_, F> {
         vec![(self.projections.len(), self.columns)]
     }
 
+    fn block_bytes(&self, _: u64) -> u64 {
+        Sums::bytes(self.projections.len(), self.columns)
+    }
+
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
         // All views share their points: differences between them have less noise.
         let stream = self.key.index(randomisation);

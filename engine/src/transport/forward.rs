@@ -62,10 +62,21 @@ impl Tracer for Packets<'_> {
         (packet.sums, packet.rays)
     }
 
+    fn block_bytes(&self, samples: u64) -> u64 {
+        let touched = samples * TOUCHED;
+        let shapes = self.shapes().into_iter();
+        let blocks = shapes.map(|(cells, bands)| Sums::block_bytes(cells, bands, touched));
+        blocks.fold(0, u64::saturating_add)
+    }
+
     fn imbalance(&self, sums: &[Sums]) -> Option<f64> {
         sums.first().map(EnergyCounter::imbalance)
     }
 }
+
+/// Cells of one counter that a packet touches, on average at most: those in which the light of a
+/// bright scene is scattered, and some more.
+const TOUCHED: u64 = 16;
 
 /// What photon packets are counted for; what leaves through the plane counts as reflected. The sums
 /// are those of [`EnergyCounter`], which always counts, and of each counter, shape `[cells, bands]`.

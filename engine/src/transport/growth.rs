@@ -32,8 +32,13 @@ pub trait Film {
     /// That memory.
     fn can_grow(&self) -> Result<(), u64>;
 
-    /// Memory of what it holds, bytes.
+    /// Memory of what it holds once it is traced, bytes: nothing before. `u64::MAX` of more than can
+    /// be counted.
     fn bytes(&self) -> u64;
+
+    /// The most memory that it takes beside that, bytes: of blocks that wait while it is traced, or
+    /// of what is found when products are made of it.
+    fn bytes_beside(&self) -> u64;
 
     /// Paths or photon packets traced.
     fn samples(&self) -> u64;

@@ -94,11 +94,14 @@ fn of_packets(rows: &Rows<'_>, stage: &Stage, projection: &Projection) -> ImageO
     let errors: Vec<&[f64]> = errors.iter().map(Vec::as_slice).collect();
     // Pixel by pixel the whole and its parts; behind the pixels stand totals.
     let of_pixels = |spectra: &[&[f64]]| -> Vec<f32> {
-        (0..pixels)
-            .flat_map(|pixel| spectra.iter().map(move |values| (pixel, values)))
-            .flat_map(|(pixel, values)| &values[pixel * stage.bands..(pixel + 1) * stage.bands])
-            .map(|value| (value * per_count) as f32)
-            .collect()
+        let mut all = Vec::with_capacity(pixels * spectra.len() * stage.bands);
+        for pixel in 0..pixels {
+            for values in spectra {
+                let values = &values[pixel * stage.bands..(pixel + 1) * stage.bands];
+                all.extend(values.iter().map(|value| (value * per_count) as f32));
+            }
+        }
+        all
     };
     // The total counts what all pixels together see.
     let of_total = |spectra: &[&[f64]]| -> Vec<f64> {

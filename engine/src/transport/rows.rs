@@ -1,5 +1,6 @@
 //! Sums of each randomisation, which go on along the same sequences for as long as one likes.
 
+use std::cell::Cell;
 use std::io::{self, Read, Write};
 use std::ops::Range;
 
@@ -14,6 +15,9 @@ pub(super) trait Tracer: Sync {
 
     /// Traces these samples of a randomisation; returns its sums and the number of rays.
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64);
+
+    /// The most memory of the sums of so many samples, bytes.
+    fn block_bytes(&self, samples: u64) -> u64;
 
     /// Of the sums of a whole randomisation, the share of the energy that is not accounted for.
     fn imbalance(&self, _: &[Sums]) -> Option<f64> {
@@ -39,7 +43,7 @@ pub struct Rows<'a> {
 }
 
 enum Store {
-    /// All, shape `[randomisations, sums]`: these can grow.
+    /// All, shape `[randomisations, sums]`, without those of other shares: these can grow.
     All(Vec<Vec<Sums>>),
     /// Each randomisation's once it is complete, and the largest imbalance.
     Folded(Vec<Spread>, Option<f64>),
@@ -48,14 +52,28 @@ enum Store {
 impl<'a> Rows<'a> {
     /// None yet; those of a tracer with large sums are folded as they come, and cannot grow.
     pub(super) fn new(tracer: impl Tracer + 'a) -> Self {
-        let shapes = tracer.shapes();
-        let store = if bytes(&shapes) > MOST_BYTES {
-            let spreads = shapes.iter().map(|(cells, columns)| Spread::new(cells * columns));
-            Store::Folded(spreads.collect(), None)
+        let store = if of_all(&tracer.shapes()) > MOST_BYTES {
+            Store::Folded(Vec::new(), None)
         } else {
-            Store::All((0..RANDOMISATIONS).map(|_| empty(&shapes)).collect())
+            Store::All((0..RANDOMISATIONS).map(|_| Vec::new()).collect())
         };
         Self { tracer: Box::new(tracer), store, done: 0, rays: 0, share: Share::ALL }
+    }
+
+    /// Takes the memory that a share needs: what is never traced does without.
+    fn set_up(&mut self, share: Share) {
+        let shapes = self.tracer.shapes();
+        match &mut self.store {
+            Store::All(rows) => {
+                let own = rows.iter_mut().enumerate().filter(|(row, _)| share.owns(*row));
+                let missing = own.filter(|(_, row)| row.is_empty());
+                missing.for_each(|(_, row)| *row = empty(&shapes));
+            }
+            Store::Folded(spreads, _) => {
+                spreads.clear();
+                spreads.extend(shapes.iter().map(|(cells, columns)| Spread::new(cells * columns)));
+            }
+        }
     }
 
     /// Sums of each randomisation; none of those that are folded.
@@ -64,7 +82,7 @@ impl<'a> Rows<'a> {
             Store::All(rows) => rows.as_slice(),
             Store::Folded(..) => &[],
         };
-        rows.iter().map(move |row| &row[of])
+        rows.iter().filter_map(move |row| row.get(of))
     }
 
     /// Spread over the randomisations of one of the sums, per sample.
@@ -74,11 +92,10 @@ impl<'a> Rows<'a> {
     #[must_use]
     pub fn spread(&self, of: usize) -> Spread {
         match &self.store {
-            Store::All(rows) => {
-                let mut spread = Spread::new(rows[0][of].values().len());
-                for row in rows {
-                    push(&mut spread, &row[of], self.done);
-                }
+            Store::All(_) => {
+                let (cells, columns) = self.tracer.shapes()[of];
+                let mut spread = Spread::new(cells * columns);
+                self.rows(of).for_each(|sums| push(&mut spread, sums, self.done));
                 spread
             }
             Store::Folded(spreads, _) => spreads[of].clone(),
@@ -87,10 +104,7 @@ impl<'a> Rows<'a> {
 
     /// Number of its sums.
     pub(super) fn count(&self) -> usize {
-        match &self.store {
-            Store::All(rows) => rows[0].len(),
-            Store::Folded(spreads, _) => spreads.len(),
-        }
+        self.tracer.shapes().len()
     }
 }
 
@@ -98,10 +112,15 @@ fn empty(shapes: &[(usize, usize)]) -> Vec<Sums> {
     shapes.iter().map(|&(cells, columns)| Sums::new(cells, columns)).collect()
 }
 
-/// Memory of the sums of all randomisations.
-fn bytes(shapes: &[(usize, usize)]) -> u64 {
-    let values: usize = shapes.iter().map(|(cells, columns)| cells * columns).sum();
-    values as u64 * 8 * u64::from(RANDOMISATIONS)
+/// Memory of the sums of one randomisation, bytes.
+fn of_one(shapes: &[(usize, usize)]) -> u64 {
+    let bytes = shapes.iter().map(|&(cells, columns)| Sums::bytes(cells, columns));
+    bytes.fold(0, u64::saturating_add)
+}
+
+/// Memory of those of all.
+fn of_all(shapes: &[(usize, usize)]) -> u64 {
+    of_one(shapes).saturating_mul(RANDOMISATIONS.into())
 }
 
 fn push(spread: &mut Spread, sums: &Sums, samples: u64) {
@@ -113,15 +132,12 @@ impl Film for Rows<'_> {
     fn trace(&mut self, to: u64, watch: Watch<'_>) {
         let from = self.done;
         assert_eq!(blocks::last_end(from), from, "a block that ended too early ends a run");
+        assert!(from == 0 || self.can_grow().is_ok(), "what is folded cannot grow");
+        self.set_up(self.share);
         let Self { tracer, store, rays, share, .. } = self;
-        if let Store::Folded(spreads, _) = store {
-            assert_eq!(from, 0, "what is folded cannot grow");
-            spreads.iter_mut().for_each(Spread::clear);
-        }
-        let jobs = (0..u64::from(RANDOMISATIONS))
-            .filter(|row| share.owns(*row as usize))
-            .flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
-        let (mut traced, all) = (0, (to - from) * u64::from(RANDOMISATIONS));
+        let own = (0..u64::from(RANDOMISATIONS)).filter(|row| share.owns(*row as usize));
+        let (traced, all) = (Cell::new(0), (to - from) * own.clone().count() as u64);
+        let jobs = own.flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
         let mut current = Vec::new();
         blocks::in_order(
             jobs,
@@ -150,9 +166,9 @@ impl Film for Rows<'_> {
                     }
                     current.clear();
                 }
-                traced += samples.end - samples.start;
-                watch(traced as f64 / all as f64);
+                traced.set(traced.get() + samples.end - samples.start);
             },
+            |_| watch(traced.get() as f64 / all as f64),
         );
         self.done = to;
     }
@@ -173,6 +189,7 @@ impl Film for Rows<'_> {
         restore_u64(input, &mut rays)?;
         self.rays += rays[0];
         self.done = done;
+        self.set_up(share);
         let Store::All(rows) = &mut self.store else { return Ok(()) };
         let own = rows.iter_mut().enumerate().filter(|(row, _)| share.owns(*row));
         own.flat_map(|(_, row)| row).try_for_each(|sums| restore_f64(input, sums.values_mut()))
@@ -181,17 +198,29 @@ impl Film for Rows<'_> {
     fn can_grow(&self) -> Result<(), u64> {
         match &self.store {
             Store::All(_) => Ok(()),
-            Store::Folded(..) => Err(bytes(&self.tracer.shapes())),
+            Store::Folded(..) => Err(of_all(&self.tracer.shapes())),
         }
     }
 
     fn bytes(&self) -> u64 {
-        let all = bytes(&self.tracer.shapes());
-        match &self.store {
-            Store::All(_) => all,
-            // Mean and squares, and those of the randomisation that is being traced.
-            Store::Folded(..) => 3 * all / u64::from(RANDOMISATIONS),
-        }
+        let rows = match &self.store {
+            Store::All(rows) => (0..rows.len()).filter(|row| self.share.owns(*row)).count() as u64,
+            // Mean and squares.
+            Store::Folded(..) => 2,
+        };
+        of_one(&self.tracer.shapes()).saturating_mul(rows)
+    }
+
+    fn bytes_beside(&self) -> u64 {
+        let one = of_one(&self.tracer.shapes());
+        let waiting = self.tracer.block_bytes(blocks::LARGEST).saturating_mul(BATCH as u64);
+        let tracing = match &self.store {
+            Store::All(_) => waiting,
+            // The randomisation that is being traced, and its means.
+            Store::Folded(..) => waiting.saturating_add(one.saturating_mul(2)),
+        };
+        // Mean, squares and error, and what mean and error are scaled to.
+        tracing.max(one.saturating_mul(5))
     }
 
     fn samples(&self) -> u64 {

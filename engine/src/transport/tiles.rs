@@ -53,13 +53,23 @@ struct Tile {
 }
 
 impl Tile {
-    fn new(low: UVec2, high: UVec2, columns: usize) -> Self {
-        let size = high - low;
-        let pixels = (size.x * size.y) as usize;
-        let zeros = || vec![0.0; pixels * columns];
-        let sums = Sums::new(RANDOMISATIONS as usize, columns);
-        let counts = vec![0; RANDOMISATIONS as usize];
-        Self { low, high, hits: vec![0; pixels], mean: zeros(), squares: zeros(), sums, counts }
+    /// One that holds nothing yet.
+    fn new(low: UVec2, high: UVec2) -> Self {
+        let sums = Sums::new(0, 0);
+        let (hits, mean, squares, counts) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { low, high, hits, mean, squares, sums, counts }
+    }
+
+    /// Takes the memory that it needs to be traced.
+    fn set_up(&mut self, columns: usize) {
+        if self.hits.is_empty() {
+            let pixels = self.pixels().count();
+            let zeros = || vec![0.0; pixels * columns];
+            (self.mean, self.squares) = (zeros(), zeros());
+            self.hits = vec![0; pixels];
+            self.sums = Sums::new(RANDOMISATIONS as usize, columns);
+            self.counts = vec![0; RANDOMISATIONS as usize];
+        }
     }
 
     fn pixels(&self) -> impl Iterator<Item = UVec2> + use<> {
@@ -95,9 +105,6 @@ impl<'a> Tiles<'a> {
         walk: impl Fn() -> W + Sync + 'a,
     ) -> Self {
         let size = camera.size();
-        let starts = |length: u32| (0..length).step_by(TILE as usize);
-        let tiles = starts(size.y).flat_map(|y| starts(size.x).map(move |x| UVec2::new(x, y)));
-        let tiles = tiles.map(|low| Tile::new(low, (low + TILE).min(size), columns)).collect();
         let zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
         let trace = move |tile: &mut Tile, samples: Range<u64>| {
             trace_tile((stage, &camera), tile, samples, key, columns, walk())
@@ -106,12 +113,27 @@ impl<'a> Tiles<'a> {
             size,
             columns,
             trace: Box::new(trace),
-            all: tiles,
+            all: Vec::new(),
             zones,
             done: 0,
             rays: 0,
             share: Share::ALL,
         }
+    }
+
+    /// Takes the memory that a share needs: what is never traced does without.
+    fn set_up(&mut self, share: Share) {
+        if self.all.is_empty() {
+            self.all = tiles(self.size).map(|(low, high)| Tile::new(low, high)).collect();
+        }
+        let own = self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
+        own.for_each(|(_, tile)| tile.set_up(self.columns));
+    }
+
+    /// Whether walks sum anything over the whole image alone.
+    #[must_use]
+    pub const fn has_zones(&self) -> bool {
+        self.zones.bands() > 0
     }
 
     /// What was found so far.
@@ -166,21 +188,34 @@ impl<'a> Tiles<'a> {
     }
 }
 
+/// Corners of all tiles of an image, row by row.
+fn tiles(size: UVec2) -> impl Iterator<Item = (UVec2, UVec2)> {
+    let starts = |length: u32| (0..length).step_by(TILE as usize);
+    let corners = starts(size.y).flat_map(move |y| starts(size.x).map(move |x| UVec2::new(x, y)));
+    corners.map(move |low| (low, (low + TILE).min(size)))
+}
+
 impl Film for Tiles<'_> {
     fn trace(&mut self, to: u64, watch: Watch<'_>) {
+        self.set_up(self.share);
         let samples = self.done..to;
-        let (tiles, mut traced) = (self.all.len(), 0);
-        let Self { trace, zones, rays, share, .. } = self;
+        let Self { all, trace, zones, rays, share, .. } = self;
+        let own: Vec<&mut Tile> = all
+            .iter_mut()
+            .enumerate()
+            .filter(|(tile, _)| share.owns(*tile))
+            .map(|(_, tile)| tile)
+            .collect();
+        let tiles = own.len() as f64;
         blocks::in_order(
-            self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile)),
+            own,
             BATCH,
-            |(_, tile)| trace(tile, samples.clone()),
+            |tile| trace(tile, samples.clone()),
             |(of_zones, of_rays)| {
                 zones.merge(&of_zones);
                 *rays += of_rays;
-                traced += 1;
-                watch(f64::from(traced) / tiles as f64);
             },
+            |traced| watch(traced as f64 / tiles),
         );
         self.done = to;
     }
@@ -211,6 +246,7 @@ impl Film for Tiles<'_> {
         restore_f64(input, zones.values_mut())?;
         self.zones.merge(&zones);
         self.done = done;
+        self.set_up(share);
         let own = self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
         for (_, tile) in own {
             restore_u64(input, &mut tile.hits)?;
@@ -232,8 +268,25 @@ impl Film for Tiles<'_> {
     }
 
     fn bytes(&self) -> u64 {
-        let values = |tile: &Tile| 2 * tile.mean.len() + tile.sums.values().len();
-        self.all.iter().map(|tile| 8 * values(tile) as u64).sum()
+        let all = u64::from(self.size.x.div_ceil(TILE)) * u64::from(self.size.y.div_ceil(TILE));
+        let own = tiles(self.size).enumerate().filter(|(tile, _)| self.share.owns(*tile));
+        let (tiles, pixels) = own.fold((0, 0), |(tiles, pixels), (_, (low, high))| {
+            let size = high - low;
+            (tiles + 1, pixels + u64::from(size.x * size.y))
+        });
+        // Of a pixel its hits, and mean and squares of its columns; of a tile its sums and counts.
+        let columns = self.columns as u64;
+        let words = pixels.saturating_mul(1 + 2 * columns)
+            + tiles * u64::from(RANDOMISATIONS) * (1 + columns);
+        let zones = self.zones.values().len() as u64;
+        all * size_of::<Tile>() as u64 + 8 * (words + zones)
+    }
+
+    fn bytes_beside(&self) -> u64 {
+        let waiting = (BATCH * self.zones.values().len() * size_of::<f64>()) as u64;
+        // Of each pixel the coverage, and of its columns mean and error, as f32.
+        let pixels = u64::from(self.size.x) * u64::from(self.size.y);
+        waiting.max(pixels.saturating_mul(4 + 8 * self.columns as u64))
     }
 
     fn rays(&self) -> u64 {

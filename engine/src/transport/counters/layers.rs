@@ -11,15 +11,24 @@ use crate::transport::ReferencePlane;
 /// that of all but the ground; then the power that arrives at the ground, as [`GROUND_TERMS`].
 #[derive(Clone, Debug)]
 pub struct LayerCounter {
-    /// Heights of the layers' borders, m, upwards.
-    pub borders: Vec<f64>,
-    /// Thickness of layers that are all alike, m: they hold whatever lies below or above them too.
-    even: Option<f64>,
+    layers: Borders,
     /// Number of surfaces.
     pub surfaces: usize,
     /// What it counts lies below this.
     pub plane: ReferencePlane,
 }
+
+/// Between which heights layers lie, m.
+#[derive(Clone, Debug)]
+enum Borders {
+    /// So many of one thickness above a height; they hold whatever lies below or above them too.
+    Even { lowest: f64, thickness: f64, count: usize },
+    /// These, upwards.
+    Given(Vec<f64>),
+}
+
+/// More layers than any memory holds, and few enough to count with.
+const MOST_LAYERS: f64 = 1e12;
 
 /// Transmission to the ground: all; without any scattering; after scattering by the canopy alone;
 /// after the ground has scattered it before. The last three sum to the first.
@@ -31,24 +40,35 @@ impl LayerCounter {
     #[must_use]
     pub fn of(stage: &Stage, layers: &Layers, plane: ReferencePlane) -> Self {
         let surfaces = stage.surfaces.len();
-        match layers {
+        let layers = match layers {
             Layers::Thickness(thickness) => {
                 let height = stage.top() - stage.ground;
-                let count = (height / thickness).ceil().max(1.0) as usize;
-                let border = |layer: usize| stage.ground + layer as f64 * thickness;
-                let borders = (0..=count).map(border).collect();
-                Self { borders, even: Some(*thickness), surfaces, plane }
+                let count = (height / thickness).ceil().clamp(1.0, MOST_LAYERS) as usize;
+                Borders::Even { lowest: stage.ground, thickness: *thickness, count }
             }
-            Layers::Borders(borders) => {
-                Self { borders: borders.clone(), even: None, surfaces, plane }
+            Layers::Borders(borders) => Borders::Given(borders.clone()),
+        };
+        Self { layers, surfaces, plane }
+    }
+
+    /// Heights of the layers' borders, m, upwards.
+    #[must_use]
+    pub fn borders(&self) -> Vec<f64> {
+        match &self.layers {
+            Borders::Even { lowest, thickness, count } => {
+                (0..=*count).map(|layer| lowest + layer as f64 * thickness).collect()
             }
+            Borders::Given(borders) => borders.clone(),
         }
     }
 
     /// Number of layers.
     #[must_use]
     pub const fn layers(&self) -> usize {
-        self.borders.len() - 1
+        match &self.layers {
+            Borders::Even { count, .. } => *count,
+            Borders::Given(borders) => borders.len() - 1,
+        }
     }
 
     /// First cell of the totals of the surfaces.
@@ -64,12 +84,15 @@ impl LayerCounter {
     }
 
     fn layer(&self, height: f64) -> Option<usize> {
-        if let Some(thickness) = self.even {
-            let layer = ((height - self.borders[0]) / thickness) as usize;
-            return Some(layer.min(self.layers() - 1));
+        match &self.layers {
+            Borders::Even { lowest, thickness, count } => {
+                Some((((height - lowest) / thickness) as usize).min(count - 1))
+            }
+            Borders::Given(borders) => {
+                let above = borders.partition_point(|border| *border <= height);
+                (1..borders.len()).contains(&above).then(|| above - 1)
+            }
         }
-        let above = self.borders.partition_point(|border| *border <= height);
-        (1..self.borders.len()).contains(&above).then(|| above - 1)
     }
 }
 

@@ -1,0 +1,37 @@
+use crate::products::Extent;
+
+/// Size of a number in a table, with what parts it from the next, bytes: about what the shortest
+/// text takes that reads back as the same f64.
+const NUMBER: u64 = 20;
+
+/// Size of a number or name that tells where a value lies: these have few digits.
+const PLACE: u64 = 8;
+
+/// Size of what an image's files or a table hold beside their values, bytes.
+const HEADERS: u64 = 3000;
+const HEADER: u64 = 300;
+
+/// Size of an opaque pixel in a PNG, bytes.
+const PIXEL: u64 = 2;
+
+/// Size of the files of a product that is to be measured, bytes: exact but for compression, for how
+/// many digits its numbers have, and for headers.
+#[must_use]
+pub fn file_size(extent: Extent) -> u64 {
+    match extent {
+        Extent::Image { pixels, bands } => {
+            // EXR: values, errors and coverage; ENVI: values; PNG.
+            let pixel = 4 * (2 * bands + 1) + 4 * bands + PIXEL;
+            pixels.saturating_mul(pixel).saturating_add(HEADERS)
+        }
+        Extent::Table { rows, axes, bands } => {
+            // Once in the table, once in the summary.
+            let row = 2 * NUMBER * 2 * bands + PLACE * axes;
+            rows.saturating_mul(row).saturating_add(HEADER)
+        }
+        // Of a triangle three corners with their colour, their numbers, its colour; and the values.
+        Extent::Faces { faces, bands } => {
+            faces.saturating_mul(3 * 15 + 13 + 3 + 8 * bands).saturating_add(HEADER)
+        }
+    }
+}

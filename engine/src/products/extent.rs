@@ -1,0 +1,152 @@
+//! How much a product will hold, before it is measured.
+
+use super::{Context, Product};
+use crate::components::{ImageMeasure, ImageSensor};
+use crate::transport::Part;
+
+/// What a product consists of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Pixels of an image in each of its bands.
+    Image {
+        /// Columns times rows.
+        pixels: u64,
+        /// Its bands.
+        bands: u64,
+    },
+    /// Rows of a table.
+    Table {
+        /// Points.
+        rows: u64,
+        /// Numbers or names that tell where each of them lies.
+        axes: u64,
+        /// Bands at each.
+        bands: u64,
+    },
+    /// Triangles and discs.
+    Faces {
+        /// How many.
+        faces: u64,
+        /// Bands of each.
+        bands: u64,
+    },
+}
+
+impl Extent {
+    /// Of a product that was measured.
+    #[must_use]
+    pub fn of(product: &Product) -> Self {
+        let count = |values: usize, bands: usize| (values / bands.max(1)) as u64;
+        if let Some(image) = &product.image {
+            let (pixels, bands) = ((image.width * image.height) as u64, image.bands.len() as u64);
+            return Self::Image { pixels, bands };
+        }
+        if let Some(faces) = &product.faces {
+            let bands = faces.bands.len();
+            return Self::Faces { faces: count(faces.values.len(), bands), bands: bands as u64 };
+        }
+        let points =
+            |dimension: &[super::Axis]| dimension.first().map_or(1, |one| one.points.len());
+        let (bands, axes) = match product.dimensions.split_last() {
+            Some((last, others)) => (points(last), others.iter().flatten().count() as u64),
+            None => (1, 0),
+        };
+        Self::Table { rows: count(product.values.len(), bands), axes, bands: bands as u64 }
+    }
+
+    /// Values, each with an error.
+    #[must_use]
+    pub const fn values(self) -> u64 {
+        match self {
+            Self::Image { pixels: count, bands }
+            | Self::Table { rows: count, bands, .. }
+            | Self::Faces { faces: count, bands } => count.saturating_mul(bands),
+        }
+    }
+
+    /// Memory, bytes; `u64::MAX` of more than can be counted.
+    #[must_use]
+    pub const fn memory(self) -> u64 {
+        match self {
+            // Values and errors as f32, and the coverage.
+            Self::Image { pixels, bands } => pixels.saturating_mul(8 * bands + 4),
+            Self::Table { rows, axes, bands } => rows.saturating_mul(16 * bands + 8 * axes),
+            Self::Faces { faces, bands } => faces.saturating_mul(8 * bands),
+        }
+    }
+
+    /// Memory that making its files takes beside that, bytes: of an image the channels of its EXR,
+    /// in rows of their own, or its picture and the values that this is stretched by.
+    #[must_use]
+    pub const fn memory_of_files(self) -> u64 {
+        match self {
+            Self::Image { pixels, .. } => {
+                let picture = pixels.saturating_mul(8);
+                if self.memory() > picture { self.memory() } else { picture }
+            }
+            Self::Table { .. } | Self::Faces { .. } => 0,
+        }
+    }
+}
+
+/// Indices that fisheyes report beside gaps, at most.
+const LEAF_AREA_INDICES: usize = 3;
+
+/// What [`of_image`](super::of_image) and [`components_of_image`](super::components_of_image) make of
+/// what is reflected, emitted and summed by zones, as far as they are there.
+#[must_use]
+pub fn extents_of_image(
+    sensor: &ImageSensor,
+    (reflected, emitted, zones): (bool, bool, bool),
+    context: &Context,
+) -> Vec<Extent> {
+    let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
+    let image = |bands: usize| Extent::Image { pixels, bands: bands as u64 };
+    let index = Extent::Table { rows: 1, axes: 0, bands: 1 };
+    let of = |measure: &ImageMeasure| match measure {
+        ImageMeasure::FourComponents => vec![image(4), image(1)],
+        ImageMeasure::GapFraction => {
+            [vec![image(1)], vec![index; usize::from(zones) * LEAF_AREA_INDICES]].concat()
+        }
+        light => of_light(*light, (reflected, emitted), context, image),
+    };
+    sensor.measure.iter().flat_map(of).collect()
+}
+
+/// What [`of_directions`](super::of_directions) and
+/// [`components_of_directions`](super::components_of_directions) make, but for single numbers.
+#[must_use]
+pub fn extents_of_directions(
+    views: usize,
+    measures: &[ImageMeasure],
+    found: (bool, bool),
+    context: &Context,
+) -> Vec<Extent> {
+    let table = |bands: usize| Extent::Table { rows: views as u64, axes: 2, bands: bands as u64 };
+    let of = |measure: &ImageMeasure| match measure {
+        ImageMeasure::FourComponents => vec![table(4)],
+        // The share of gaps, and Beer's index.
+        ImageMeasure::GapFraction => vec![table(1); 2],
+        light => of_light(*light, found, context, table),
+    };
+    measures.iter().flat_map(of).collect()
+}
+
+/// What is made of light that is reflected and emitted, of so many bands each.
+fn of_light(
+    measure: ImageMeasure,
+    (reflected, emitted): (bool, bool),
+    context: &Context,
+    of: impl Fn(usize) -> Extent,
+) -> Vec<Extent> {
+    let bands = context.bands.len();
+    match measure {
+        ImageMeasure::Radiance => vec![of(bands); usize::from(reflected || emitted)],
+        ImageMeasure::Brf => vec![of(bands); usize::from(reflected)],
+        ImageMeasure::Orders => vec![of(bands); usize::from(reflected) * Part::ALL.len()],
+        ImageMeasure::BrightnessTemperature => {
+            vec![of(context.emitting().len()); usize::from(emitted)]
+        }
+        ImageMeasure::FourComponents | ImageMeasure::GapFraction => Vec::new(),
+    }
+}

@@ -1,0 +1,114 @@
+//! Forecasts against what they foretell.
+
+use std::path::Path;
+
+use super::checkpoint::Keeper;
+use super::growth::{relative_errors, trace};
+use super::{Options, Unwatched, context, document, sensors, setting};
+use crate::components::Sensor;
+use crate::extract::{Stage, extract};
+use crate::products::{Context, Extent, Product};
+use crate::spawn::spawn;
+
+/// A tree on soil in two bands of reflected light and one of emitted, with these sensors.
+fn with_scene(sensors: &str, look: impl Fn(&str, &Sensor, (&Stage, &Context))) {
+    let text = format!(
+        r#"Scene(
+            format: 1,
+            bands: [
+                (name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0),
+                (name: "tir", center_nm: 10500.0, width_nm: 100.0),
+            ],
+            materials: {{
+                "soil": Lambertian(reflectance: Bands([0.1, 0.3, 0.05]), temperature: Uniform(300.0)),
+                "leaf": Leaf(
+                    reflectance: Bands([0.05, 0.5, 0.02]), transmittance: Bands([0.03, 0.45, 0.0]),
+                    temperature: Uniform(290.0),
+                ),
+            }},
+            meshes: {{ "tree": Crown(
+                shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+                leaf: Rhombus(length_m: 0.1, width_m: 0.07), leaf_material: "leaf",
+            ) }},
+            terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
+            instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
+            sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+            boundary: Periodic,
+            sensors: {{ {sensors} }},
+        )"#
+    );
+    let reading =
+        document::read_text("test.ron", &text, &document::Options::default()).expect("a scene");
+    assert!(reading.is_sound(), "{}", reading.render());
+    let spawned = spawn(&reading.scene, Path::new("")).expect("a world");
+    let stage = extract(&spawned.world, &setting(&reading.scene), None).expect("a stage");
+    let context = context(&reading.scene, &stage);
+    for (name, sensor) in sensors::in_order(&spawned.world) {
+        look(&name, &sensor, (&stage, &context));
+    }
+}
+
+/// What was foretold of products is what they are, but for single numbers.
+#[test]
+fn products_consist_of_what_was_foretold() {
+    let many = |extent: &Extent| extent.values() > 3;
+    with_scene(
+        r#"
+        "map": Orthographic(size_px: (20, 33), extent_m: (5.0, 5.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction]),
+        "film": Orthographic(size_px: (7, 4), extent_m: (5.0, 5.0), system: Forward, samples_per_px: 50, measure: [Brf, Radiance, Orders]),
+        "eye": Fisheye(size_px: (20, 20), position_m: (2.5, 2.5, 0.2), measure: [Radiance, GapFraction]),
+        "views": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 15.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction], until: Samples(64)),
+        "photons": Photons(per_m2: 20.0, measure: [
+            Albedo, Exitance, BrfCells(12), RadianceCells(12), BrfViews(List([(0.0, 0.0), (30.0, 20.0)])),
+            RadianceViews(List([(0.0, 0.0), (30.0, 20.0)])), BrfCones([(0.0, 0.0, 5.0), (30.0, 5.0, 5.0)]),
+            RadianceCones([(0.0, 0.0, 5.0), (30.0, 5.0, 5.0)]), BrightnessTemperature,
+            Fapar(layer_m: 1.0), Orders, Fluxes(pixel_m: 1.0, heights_m: [2.0]), Absorbed(per: Triangle),
+        ]),
+        "borders": Photons(per_m2: 20.0, measure: [Fapar(layer_m: [0.0, 1.5, 2.0, 9.0]), Absorbed(per: Instance)]),
+        "#,
+        |name, sensor, scene| {
+            let (mut measurement, _) = sensors::begin(name, sensor, scene, 1.0);
+            let mut foretold: Vec<Extent> =
+                measurement.extents().into_iter().filter(many).collect();
+            trace(measurement.as_mut(), 16, &|_| ());
+            let products: Vec<Product> = measurement.products();
+            let mut found: Vec<Extent> = products.iter().map(Extent::of).filter(many).collect();
+            let order = |extent: &Extent| format!("{extent:?}");
+            foretold.sort_by_key(order);
+            found.sort_by_key(order);
+            assert_eq!(foretold, found, "{name}");
+        },
+    );
+}
+
+/// What is done after the first samples tells within a factor of two how many it will be.
+#[test]
+fn the_first_errors_tell_how_many_samples_it_will_take() {
+    with_scene(
+        r#"
+        "map": Orthographic(size_px: (20, 20), extent_m: (5.0, 5.0), measure: [Brf], until: RelError(0.05)),
+        "views": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 15.0), measure: [Brf], until: RelError(0.005)),
+        "photons": Photons(measure: [BrfCells(50), Fapar(layer_m: 1.0)], until: RelError(0.03)),
+        "counted": Photons(measure: [Albedo], until: [Samples(100000), RelError(1e-9)]),
+        "#,
+        |name, sensor, scene| {
+            let (mut measurement, plan) = sensors::begin(name, sensor, scene, 1.0);
+            let look = plan.schedule.looks().find(|&look| look >= 32).expect("looks never end");
+            trace(measurement.as_mut(), look, &|_| ());
+            let last = (look, relative_errors(measurement.as_mut()));
+            let foretold = plan.end((0, 0.0), 1.0, Some(&last));
+            let report = sensors::measure(
+                name,
+                sensor,
+                scene,
+                &Options::default(),
+                &mut Keeper::idle(),
+                &Unwatched,
+            );
+            let samples = report.expect("a report").samples as f64;
+            let first = measurement.films().iter().map(|paced| paced.film.samples()).sum::<u64>();
+            let ratio = foretold * first as f64 / look as f64 / samples;
+            assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}, {foretold} from {look}");
+        },
+    );
+}

@@ -1,0 +1,138 @@
+//! Memory and files as they are foretold and as they are.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use peak_alloc::PeakAlloc;
+use sunfleck::document;
+use sunfleck::products::{Forecast, Report};
+use sunfleck::run::{Failure, Options, Progress, run};
+
+/// Counts what is held: so there is one test in this file.
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// A grove with one sensor.
+fn scene(bands: usize, sensor: &str) -> String {
+    let names: Vec<String> = (0..bands)
+        .map(|band| format!("(name: \"b{band}\", center_nm: {}.0)", 400 + band))
+        .collect();
+    format!(
+        r#"Scene(
+            format: 1,
+            bands: [{}],
+            materials: {{
+                "soil": Lambertian(reflectance: Constant(0.2)),
+                "leaf": Leaf(reflectance: Constant(0.4), transmittance: Constant(0.3)),
+            }},
+            meshes: {{ "tree": Crown(
+                shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+                leaf: Rhombus(length_m: 0.1, width_m: 0.07), leaf_material: "leaf",
+            ) }},
+            terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
+            instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
+            sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+            boundary: Periodic,
+            sensors: {{ "it": {sensor} }},
+        )"#,
+        names.join(", ")
+    )
+}
+
+/// Memory at the start of tracing, and the most of it afterwards.
+#[derive(Default)]
+struct Meter {
+    before: AtomicUsize,
+}
+
+impl Progress for Meter {
+    fn stage(&self, name: &str) {
+        if name == "tracing" {
+            self.before.store(PeakAlloc.current_usage(), Ordering::Relaxed);
+            PeakAlloc.reset_peak_usage();
+        }
+    }
+    fn sensor(&self, _: &str, _: f64) {}
+    fn forecast(&self, _: &str, _: &Forecast) {}
+}
+
+/// Runs a scene; returns its report and the most memory that it took while it was traced.
+fn traced(bands: usize, sensor: &str, options: &Options) -> Result<(Report, u64), Failure> {
+    let text = scene(bands, sensor);
+    let reading = document::read_text("test.ron", &text, &document::Options::default());
+    let reading = reading.expect("a scene");
+    if !reading.is_sound() {
+        return Err(Failure::Scene(reading.render()));
+    }
+    let meter = Meter::default();
+    let report = run(&reading.scene, Path::new(""), options, &meter)
+        .map_err(|failure| failure.with_source(&reading.source));
+    let most = PeakAlloc.peak_usage().saturating_sub(meter.before.load(Ordering::Relaxed));
+    report.map(|report| (report, most as u64))
+}
+
+const SENSORS: [(&str, usize, &str); 6] = [
+    (
+        "image",
+        2,
+        "Orthographic(size_px: (700, 500), extent_m: (5.0, 5.0), samples_per_px: 2, measure: [Brf, Radiance])",
+    ),
+    (
+        "orders",
+        30,
+        "Orthographic(size_px: (120, 90), extent_m: (5.0, 5.0), samples_per_px: 2, measure: [Brf, Orders])",
+    ),
+    (
+        "components",
+        1,
+        "Orthographic(size_px: (500, 500), extent_m: (5.0, 5.0), samples_per_px: 2, measure: [FourComponents, GapFraction])",
+    ),
+    (
+        "views",
+        400,
+        "Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 2.0), measure: [Brf, Orders], until: Samples(32))",
+    ),
+    ("cells", 40, "Photons(per_m2: 100.0, measure: [Albedo, BrfCells(3000)])"),
+    ("fluxes", 2, "Photons(per_m2: 100.0, measure: [Fluxes(pixel_m: 0.02)])"),
+];
+
+/// Scenes that no memory holds, or not this much of it: what their author reads.
+const HOPELESS: [(usize, &str); 6] = [
+    (2, "Orthographic(size_px: (30000, 30000), extent_m: (5.0, 5.0))"),
+    (2, "Orthographic(size_px: (4000, 2000), extent_m: (5.0, 5.0), system: Forward)"),
+    (
+        2100,
+        "Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 0.01), until: RelErrors({\"brf\": 0.01}))",
+    ),
+    (2, "Photons(measure: [Fapar(layer_m: 1e-12)])"),
+    (2100, "Photons(measure: [Albedo, Fluxes(pixel_m: 0.01)])"),
+    (2100, "Orthographic(size_px: (100000, 100000), extent_m: (5.0, 5.0))"),
+];
+
+/// The most memory for these.
+const LITTLE: u64 = 256 << 20;
+
+#[test]
+fn memory_is_what_was_foretold_and_what_is_too_much_is_refused() {
+    let mut shares = Vec::new();
+    for (name, bands, sensor) in SENSORS {
+        let (report, most) = traced(bands, sensor, &Options::default()).expect("it fits");
+        let foretold = report.sensors[0].forecast.memory;
+        shares.push((most as f64 / foretold as f64, format!("{name}: {most} of {foretold}")));
+    }
+    for (share, text) in &shares {
+        assert!((0.5..=1.0).contains(share), "{text}: {shares:?}");
+    }
+    let mut texts = String::new();
+    for (bands, sensor) in HOPELESS {
+        let options = Options { memory: Some(LITTLE), ..Options::default() };
+        let before = PeakAlloc.current_usage();
+        PeakAlloc.reset_peak_usage();
+        let failure = traced(bands, sensor, &options).expect_err("it is refused");
+        let most = PeakAlloc.peak_usage() - before;
+        assert!(most < 64 << 20, "{sensor}: {most} bytes");
+        texts += &failure.to_string();
+        texts.push('\n');
+    }
+    insta::assert_snapshot!(texts);
+}
