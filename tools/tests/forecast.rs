@@ -44,7 +44,7 @@ fn outcome(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 #[test]
 fn a_run_that_does_not_fit_is_refused_with_the_numbers() {
     let folder = folder_with(SOIL);
-    let (code, stdout, stderr) = outcome(folder.path(), &["run", "soil.ron", "--memory", "20MiB"]);
+    let (code, stdout, stderr) = outcome(folder.path(), &["run", "soil.ron", "--memory", "16MiB"]);
     assert_eq!((code, stdout.as_str()), (1, ""));
     insta::assert_snapshot!(stderr);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing was written");
@@ -57,7 +57,7 @@ fn a_run_that_does_not_fit_is_refused_with_the_numbers() {
 #[test]
 fn what_is_advised_fits() {
     let folder = folder_with(SOIL);
-    let limit = ["run", "soil.ron", "--memory", "20MiB"];
+    let limit = ["run", "soil.ron", "--memory", "16MiB"];
     let (_, _, stderr) = outcome(folder.path(), &limit);
     let advice = stderr.split("write `size_px: (").nth(1).unwrap();
     let pixels: u32 = advice.split(',').next().unwrap().parse().unwrap();
@@ -72,7 +72,7 @@ fn what_is_advised_fits() {
 #[test]
 fn a_sweep_stops_at_the_point_that_does_not_fit() {
     let folder = folder_with(&SOIL.replace("(500, 500)", "(20, 20)"));
-    let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron", "--memory", "20MiB"]);
+    let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron", "--memory", "16MiB"]);
     assert_eq!(code, 1);
     let message = "error: at pixel=0.02: error: films and results take";
     assert!(stderr.starts_with(message), "{stderr}");

@@ -70,8 +70,8 @@ impl<'a> Rows<'a> {
                 missing.for_each(|(_, row)| *row = empty(&shapes));
             }
             Store::Folded(spreads, _) => {
-                spreads.clear();
-                spreads.extend(shapes.iter().map(|(cells, columns)| Spread::new(cells * columns)));
+                let empty = |(cells, columns): &(usize, usize)| Spread::new(cells * columns);
+                *spreads = shapes.iter().map(empty).collect();
             }
         }
     }
@@ -208,7 +208,9 @@ impl Film for Rows<'_> {
             // Mean and squares.
             Store::Folded(..) => 2,
         };
-        of_one(&self.tracer.shapes()).saturating_mul(rows)
+        let shapes = self.tracer.shapes();
+        let each = (shapes.len() * size_of::<Sums>()) as u64;
+        of_one(&shapes).saturating_add(each).saturating_mul(rows)
     }
 
     fn bytes_beside(&self) -> u64 {

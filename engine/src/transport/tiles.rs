@@ -124,7 +124,8 @@ impl<'a> Tiles<'a> {
     /// Takes the memory that a share needs: what is never traced does without.
     fn set_up(&mut self, share: Share) {
         if self.all.is_empty() {
-            self.all = tiles(self.size).map(|(low, high)| Tile::new(low, high)).collect();
+            self.all = Vec::with_capacity(count(self.size) as usize);
+            self.all.extend(tiles(self.size).map(|(low, high)| Tile::new(low, high)));
         }
         let own = self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
         own.for_each(|(_, tile)| tile.set_up(self.columns));
@@ -186,6 +187,11 @@ impl<'a> Tiles<'a> {
         (outcome.mean, outcome.mean_error) = ratio(&sums.values()[..rows * columns], &counts);
         outcome
     }
+}
+
+/// Number of tiles of an image.
+fn count(size: UVec2) -> u64 {
+    u64::from(size.x.div_ceil(TILE)) * u64::from(size.y.div_ceil(TILE))
 }
 
 /// Corners of all tiles of an image, row by row.
@@ -268,7 +274,6 @@ impl Film for Tiles<'_> {
     }
 
     fn bytes(&self) -> u64 {
-        let all = u64::from(self.size.x.div_ceil(TILE)) * u64::from(self.size.y.div_ceil(TILE));
         let own = tiles(self.size).enumerate().filter(|(tile, _)| self.share.owns(*tile));
         let (tiles, pixels) = own.fold((0, 0), |(tiles, pixels), (_, (low, high))| {
             let size = high - low;
@@ -279,7 +284,7 @@ impl Film for Tiles<'_> {
         let words = pixels.saturating_mul(1 + 2 * columns)
             + tiles * u64::from(RANDOMISATIONS) * (1 + columns);
         let zones = self.zones.values().len() as u64;
-        all * size_of::<Tile>() as u64 + 8 * (words + zones)
+        count(self.size) * size_of::<Tile>() as u64 + 8 * (words + zones)
     }
 
     fn bytes_beside(&self) -> u64 {
