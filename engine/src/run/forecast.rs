@@ -203,7 +203,7 @@ pub(super) fn free_memory() -> Option<u64> {
     let id = sysinfo::get_current_pid().ok()?;
     let own = ProcessesToUpdate::Some(&[id]);
     system.refresh_processes_specifics(own, false, ProcessRefreshKind::nothing());
-    let limits = system.process(id).and_then(|process| process.cgroup_limits());
+    let limits = system.process(id).and_then(sysinfo::Process::cgroup_limits);
     // Files that the group has read count as used, but give way.
     let allowed = limits.map(|limits| limits.total_memory.saturating_sub(limits.rss));
     free.into_iter().chain(allowed).min()
