@@ -105,17 +105,29 @@ const SENSORS: [(&str, usize, &str); 8] = [
     ("fluxes", 2, "Photons(per_m2: 100.0, measure: [Fluxes(pixel_m: 0.02)])"),
 ];
 
-/// Scenes that no memory holds, or not this much of it: what their author reads.
-const HOPELESS: [(usize, &str); 6] = [
-    (2, "Orthographic(size_px: (30000, 30000), extent_m: (5.0, 5.0))"),
-    (2, "Orthographic(size_px: (4000, 2000), extent_m: (5.0, 5.0), system: Forward)"),
+/// Scenes that no memory holds, or not this much of it: what their author reads, and the text that is to
+/// be written otherwise.
+const HOPELESS: [(usize, &str, &str); 8] = [
+    (
+        200,
+        "Orthographic(size_px: (3000, 3000), extent_m: (5.0, 5.0), samples_per_px: 2)",
+        "size_px: (3000, 3000)",
+    ),
+    (
+        60,
+        "Orthographic(size_px: (1000, 500), extent_m: (5.0, 5.0), system: Forward, samples_per_px: 2)",
+        "size_px: (1000, 500)",
+    ),
     (
         2100,
         "Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 0.01), until: RelErrors({\"brf\": 0.01}))",
+        "",
     ),
-    (2, "Photons(measure: [Fapar(layer_m: 1e-12)])"),
-    (2100, "Photons(measure: [Albedo, Fluxes(pixel_m: 0.01)])"),
-    (2100, "Orthographic(size_px: (100000, 100000), extent_m: (5.0, 5.0))"),
+    (2, "Photons(per_m2: 4.0, measure: [Fapar(layer_m: 1e-9)])", "layer_m: 1e-9"),
+    (2100, "Photons(per_m2: 4.0, measure: [Albedo, Fluxes(pixel_m: 0.01)])", "pixel_m: 0.01"),
+    (2100, "Photons(per_m2: 4.0, measure: [Albedo, BrfCells(90000)])", "BrfCells(90000)"),
+    (700, "Photons(per_m2: 4.0, measure: [Absorbed(per: Triangle)])", "per: Triangle"),
+    (2100, "Orthographic(size_px: (100000, 100000), extent_m: (5.0, 5.0))", ""),
 ];
 
 /// Memory of what is not worth a forecast, bytes: lists of jobs and names.
@@ -182,14 +194,21 @@ fn memory_is_what_was_foretold_and_what_is_too_much_is_refused() {
         assert!(*share > 0.5 && *beyond < SMALL, "{name}: {shares:?}");
     }
     let mut texts = String::new();
-    for (bands, sensor) in HOPELESS {
+    for (bands, sensor, key) in HOPELESS {
         let options = Options { memory: Some(LITTLE), ..Options::default() };
         let before = PeakAlloc.current_usage();
         PeakAlloc.reset_peak_usage();
         let failure = traced(bands, sensor, &options).expect_err("it is refused");
         let most = PeakAlloc.peak_usage() - before;
         assert!(most < 64 << 20, "{sensor}: {most} bytes");
-        texts += &failure.to_string();
+        let text = failure.to_string();
+        if !key.is_empty() {
+            let advice = text.split("write `").nth(1).and_then(|rest| rest.split('`').next());
+            let advised = sensor.replace(key, advice.expect("advice"));
+            let (_, most) = traced(bands, &advised, &options).expect("what is advised fits");
+            assert!(most < LITTLE + SMALL, "{advised}: {most} bytes");
+        }
+        texts += &text;
         texts.push('\n');
     }
     insta::assert_snapshot!(texts);

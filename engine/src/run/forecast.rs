@@ -1,9 +1,12 @@
 //! What a run will take, told before it takes it.
 
+use std::cmp::Reverse;
+use std::iter::successors;
 use std::sync::OnceLock;
 
 use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, System};
 
+use super::advice::{Smaller, smaller};
 use super::checkpoint::Keeper;
 use super::growth::Measurement;
 use crate::components::Sensor;
@@ -27,6 +30,8 @@ pub(super) struct Size {
     writing: u64,
     /// Its files.
     files: u64,
+    /// The measure that takes most of it.
+    largest: usize,
 }
 
 impl Size {
@@ -51,6 +56,7 @@ impl Size {
             kept,
             writing: extents.iter().map(|extent| extent.memory_of_files()).max().unwrap_or(0),
             files: of_all(output::file_size),
+            largest: measurement.largest(),
         }
     }
 
@@ -125,74 +131,56 @@ fn peak(sizes: &[Size]) -> u64 {
     most.max(sum([kept, writing]))
 }
 
-/// A problem if sensors take more memory than there is: at that which takes most.
-pub(super) fn check(sensors: &[(String, Sensor)], sizes: &[Size], free: u64) -> Option<Diagnostic> {
-    let needed = peak(sizes);
-    let largest = (0..sizes.len()).max_by_key(|&index| sizes[index].memory())?;
-    if needed <= free {
-        return None;
-    }
-    let own = sizes[largest].memory();
-    // What it may take beside the others, as a share of what it takes.
-    let share = free.saturating_sub(needed.saturating_sub(own)) as f64 / own as f64;
+/// A problem if sensors take more memory than there is: at that which takes most, with what would fit;
+/// `size` is that of a sensor in place of it.
+pub(super) fn check(
+    sensors: &[(String, Sensor)],
+    mut sizes: Vec<Size>,
+    free: u64,
+    size: impl Fn(&str, &Sensor) -> Size,
+) -> Option<Diagnostic> {
+    let needed = peak(&sizes);
     let mut order: Vec<usize> = (0..sizes.len()).collect();
-    order.sort_by_key(|&index| std::cmp::Reverse(sizes[index].memory()));
-    let each = |&index: &usize| {
-        format!("sensors.{} {}", sensors[index].0, data_size(sizes[index].memory()))
-    };
-    let shown: Vec<String> = order.iter().take(SHOWN).map(each).collect();
-    let others = match sizes.len().saturating_sub(SHOWN) {
-        0 => String::new(),
-        others => format!(", and {others} more"),
-    };
+    order.sort_by_key(|&index| Reverse(sizes[index].memory()));
+    let largest = *order.first().filter(|_| needed > free)?;
+    let each =
+        |&index: &usize| format!("`{}` {}", sensors[index].0, data_size(sizes[index].memory()));
+    let mut shown: Vec<String> = order.iter().take(SHOWN).map(each).collect();
+    if let others @ 1.. = sizes.len().saturating_sub(SHOWN) {
+        shown.push(format!("{others} more"));
+    }
     let message = format!(
-        "films and results take {} of memory, and {} are free: {}{others}",
+        "films and results take {} of memory, and {} are free: {}",
         data_size(needed),
         data_size(free),
         shown.join(", ")
     );
     let (name, sensor) = &sensors[largest];
-    let (key, help) = advice(sensor, share);
-    Some(Diagnostic::error(format!("sensors.{name}{key}"), message).help(help))
+    let path = format!("sensors.{name}");
+    let alone = if sizes.len() > 1 { ", or each sensor in a scene of its own" } else { "" };
+    // What it may take beside the others, as a share of what it takes; small films are kept in another
+    // way, so that memory is not in proportion.
+    let Size { largest: measure, .. } = sizes[largest];
+    let own = sizes[largest].memory();
+    let share = free.saturating_sub(needed.saturating_sub(own)) as f64 / own as f64;
+    let shares = successors(Some(0.99 * share), |share| Some(0.8 * share));
+    let candidates = shares.map_while(|share| smaller(sensor, measure, share)).take(TRIES);
+    for Smaller { sensor, key, text } in candidates {
+        sizes[largest] = size(name, &sensor);
+        if peak(&sizes) <= free {
+            let help = format!("write {text}, or measure in fewer bands{alone}");
+            return Some(Diagnostic::error(path + &key, message).help(help));
+        }
+    }
+    let help = format!("measure less there, or in fewer bands{alone}");
+    Some(Diagnostic::error(path, message).help(help))
 }
 
 /// Sensors of which a person is told what they take.
 const SHOWN: usize = 5;
 
-/// The key that decides how much memory a sensor takes, and what to write there for it to take such a
-/// share.
-fn advice(sensor: &Sensor, share: f64) -> (&'static str, String) {
-    // A little less, for what does not shrink along.
-    let of = |count: f64| (0.99 * share * count).floor();
-    let split = "or measure in fewer bands, or each sensor in a scene of its own";
-    match sensor {
-        Sensor::Image(image) => {
-            let scale = (0.99 * share).sqrt();
-            let size = (image.size.as_dvec2() * scale).floor();
-            let help = if size.min_element() < 1.0 {
-                format!("write fewer pixels, {split}")
-            } else {
-                format!("write `size_px: ({}, {})`, {split}", size.x, size.y)
-            };
-            (".size_px", help)
-        }
-        Sensor::Directions(directions) => {
-            let views = directions.views.len();
-            let help = match of(views as f64) {
-                0.0 => format!("write fewer views, {split}"),
-                fit => format!("{fit} of its {views} views would fit; write so many, {split}"),
-            };
-            (".views", help)
-        }
-        Sensor::Photons(_) => {
-            let percent = of(100.0);
-            let help = format!(
-                "measure on wider pixels, in thicker layers or in fewer cells: {percent} % of what it counts in would fit; {split}"
-            );
-            (".measure", help)
-        }
-    }
-}
+/// Sizes that are tried for one that fits.
+const TRIES: usize = 40;
 
 /// Memory that this process can still take, bytes: what the system has left, and what the control
 /// groups of this process allow it. `None` if nothing tells.

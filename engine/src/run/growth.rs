@@ -21,6 +21,11 @@ pub(super) trait Measurement {
 
     /// What its products consist of, but for a few single numbers.
     fn extents(&self) -> Vec<Extent>;
+
+    /// Which of the sensor's measures counts in most cells, if that differs.
+    fn largest(&self) -> usize {
+        0
+    }
 }
 
 /// A film and the samples of its own that go with each of the measurement, as a fraction.

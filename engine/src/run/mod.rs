@@ -1,5 +1,6 @@
 //! The list of stages, one call a line: text to document to world to stage to films to report.
 
+mod advice;
 mod again;
 mod checkpoint;
 mod failure;

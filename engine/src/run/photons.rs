@@ -77,6 +77,12 @@ impl Measurement for PhotonRun<'_> {
         both.map(|counted| Paced::evenly(&mut counted.film)).collect()
     }
 
+    fn largest(&self) -> usize {
+        let largest = self.kinds.iter().max_by_key(|(_, kind)| kind.counter().cells());
+        let is_largest = |one: &&PhotonMeasure| largest.is_some_and(|(most, _)| most == one);
+        self.sensor.measure.iter().take_while(|one| !is_largest(one)).count()
+    }
+
     fn extents(&self) -> Vec<Extent> {
         let (stage, context) = self.scene;
         let Self { sensor, kinds, reflected, emitted, .. } = self;

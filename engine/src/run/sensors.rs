@@ -111,13 +111,13 @@ pub(super) fn check_memory(
     options: &Options,
     keeper: &Keeper,
 ) -> Result<(), Failure> {
-    let size = |(name, sensor): &(String, Sensor)| {
+    let size = |name: &str, sensor: &Sensor| {
         let (mut measurement, _) = begin(name, sensor, scene, options.quality);
         Size::of(measurement.as_mut(), keeper)
     };
-    let sizes: Vec<Size> = sensors.iter().map(size).collect();
+    let sizes = sensors.iter().map(|(name, sensor)| size(name, sensor)).collect();
     let free = options.memory.or_else(forecast::free_memory).unwrap_or(u64::MAX);
-    match forecast::check(sensors, &sizes, free) {
+    match forecast::check(sensors, sizes, free, size) {
         Some(problem) => Err(Failure::Problems(vec![problem])),
         None => Ok(()),
     }
