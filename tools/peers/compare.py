@@ -29,16 +29,17 @@ class Worker:
 
     def __init__(self, name, script, folder):
         self.name, self.folder = name, folder
-        log = open(os.path.join(folder, f"{name}.log"), "w")
+        self.log = os.path.join(folder, f"{name}.log")
         command = [sys.executable, os.path.join(HERE, script), STAND]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True)
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(self.log, "w"), text=True)
 
     def measure(self, what, count, seed):
         file = os.path.join(self.folder, f"{self.name}.npy")
         print(what, count, seed, file, file=self.process.stdin, flush=True)
         answer = self.process.stdout.readline()
         if not answer:
-            raise SystemExit(f"{self.name} ended: see {self.folder}/{self.name}.log")
+            said = "".join(open(self.log).readlines()[-8:])
+            raise SystemExit(f"{self.name} ended:\n{said}")
         return json.loads(answer)["seconds"], np.load(file)
 
     def close(self):
@@ -66,10 +67,10 @@ class Sunfleck:
         if what == "image":
             out, summary = self.run("stand.ron", samples=count, seed=seed)
             pixels = np.fromfile(os.path.join(out, "nadir_brf.img"), dtype="<f4").astype(float)
-            return summary["sensors"]["nadir"]["seconds"], pixels.reshape(PIXELS, PIXELS)
+            return summary["runs"]["nadir"]["seconds"], pixels.reshape(PIXELS, PIXELS)
         _, summary = self.run("stand_plane.ron", error=count, seed=seed)
-        plane = summary["sensors"]["plane"]
-        return plane["seconds"], np.array(plane["brf"]["values"]).reshape(31, 2)
+        values = np.array(summary["sensors"]["plane"]["brf"]["values"])
+        return summary["runs"]["plane"]["seconds"], values.reshape(31, 2)
 
 
 def rmse(a, b):
@@ -89,6 +90,8 @@ def images(programs, truth, samples, repeats):
                 mean = float(np.nanmean(pixels))
                 # A program that draws another scene or turns it shows here, not in its noise.
                 alike = float(np.corrcoef(np.nan_to_num(pixels).ravel(), truth.values.ravel())[0, 1])
+                if alike < 0.5 * truth.likeness(error):
+                    raise SystemExit(f"{program.name} draws another picture: correlation {alike:.3f}, not {truth.likeness(error):.3f}")
                 rows.append(
                     dict(product="nadir image, pixels", program=program.name, repeat=repeat, samples=count,
                          seconds=seconds, relative_error=error, mean=mean, correlation=alike)
@@ -106,6 +109,12 @@ class Truth:
         _, b = sunfleck.measure("image", samples // 2, 2)
         self.values = 0.5 * (a + b)
         self.error = rmse(a, b) / 2.0
+
+    def likeness(self, error):
+        """Correlation with an image that differs from this one by noise alone, of that relative error."""
+        noisy = (np.nanstd(self.values) / np.nanmean(self.values)) ** 2
+        scene = noisy - self.error**2
+        return scene / math.sqrt(noisy * (scene + error**2))
 
 
 def planes(sunfleck, less, photons, errors, repeats):
@@ -127,10 +136,12 @@ def planes(sunfleck, less, photons, errors, repeats):
             seconds, a = sunfleck.measure("plane", error, 10 * repeat)
             _, b = sunfleck.measure("plane", error, 10 * repeat + 1)
             add("sunfleck", error, seconds, a, b, 1.0)
-        if less and repeat == 1:
+        if less and photons and repeat == 1:
             # The seed is fixed: photons of a longer run less those of a shorter one are others.
             seconds, once = less.measure("plane", photons, 1)
             _, twice = less.measure("plane", 2 * photons, 1)
+            if np.array_equal(once, twice):
+                raise SystemExit(f"LESS traced the same photons twice: {photons} are fewer than it traces at once")
             add("less", photons, seconds, once, 2.0 * twice - once, 1.0)
     return rows
 
@@ -181,6 +192,7 @@ def draw(path, summary):
     matplotlib.use("svg")
     matplotlib.rcParams["svg.fonttype"] = "none"
     import matplotlib.pyplot as plt
+    from matplotlib import ticker
 
     products = list(dict.fromkeys(one["product"] for one in summary))
     figure, panels = plt.subplots(1, len(products), figsize=(5.2 * len(products), 4.2), squeeze=False, layout="constrained")
@@ -193,7 +205,11 @@ def draw(path, summary):
         bottom, top = panel.get_ylim()
         for decade in np.arange(-4.0, 8.0):
             line = np.array([low, high])
-            panel.plot(line, 10.0**decade / np.sqrt(line), ":", color="0.75", linewidth=0.8, zorder=0)
+            panel.plot(line, 10.0 ** (decade / 2) / np.sqrt(line), ":", color="0.75", linewidth=0.8, zorder=0)
+        for axis in [panel.xaxis, panel.yaxis]:
+            axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+            axis.set_minor_locator(ticker.NullLocator())
         panel.set_xlim(low, high)
         panel.set_ylim(bottom, top)
         panel.set_title(product)
@@ -210,18 +226,18 @@ def main():
     parser.add_argument("--out", default=os.path.join(ROOT, "out", "peers"))
     parser.add_argument("--program", default=os.path.join(ROOT, "target", "release", "sunfleck"))
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--quick", action="store_true", help="few samples: does it work?")
+    parser.add_argument("--quick", action="store_true", help="few samples, and no directions by LESS: does it work?")
     parser.add_argument("--without", nargs="*", default=[], choices=["less", "mitsuba"])
     arguments = parser.parse_args()
     if not os.path.isdir(STAND):
         raise SystemExit(f"needs the benchmark stand in {os.path.normpath(STAND)}")
     samples, truth, photons, errors = [4, 8, 16, 32], 512, 500_000, [0.02, 0.01, 0.005]
     if arguments.quick:
-        samples, truth, photons, errors, arguments.repeats = [2, 4], 32, 20_000, [0.05, 0.03], 1
+        samples, truth, photons, errors, arguments.repeats = [2, 4], 32, None, [0.05, 0.03], 1
     with tempfile.TemporaryDirectory() as folder:
         sunfleck = Sunfleck(arguments.program, folder)
         workers = [
-            Worker(name, f"{name}_stand.py", arguments.out if os.path.isdir(arguments.out) else folder)
+            Worker(name, f"{name}_stand.py", folder)
             for name in ["less", "mitsuba"]
             if name not in arguments.without
         ]

@@ -59,7 +59,8 @@ def image(scene, samples):
     start = time.time()
     product = scene.simulate(less.OpticalImager(projection, bands=[850], quality=samples))
     seconds = time.time() - start
-    pixels = np.asarray(product.data, dtype=float).reshape(SIZE, SIZE)
+    # Its rows run from the south.
+    pixels = np.asarray(product.data, dtype=float).reshape(SIZE, SIZE)[::-1]
     return seconds, pixels * np.pi / np.cos(np.radians(30.0))
 
 

@@ -13,6 +13,9 @@ import sys
 import tempfile
 import time
 
+import llvm
+
+llvm.choose()
 import mitsuba as mi
 import numpy as np
 
