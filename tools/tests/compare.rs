@@ -126,6 +126,23 @@ fn the_reference_may_be_any_of_the_systems() {
     assert_eq!(products, ["brf_uc", "brf_co_sgl"]);
 }
 
+/// A limit for a product that a system does not measure is one for those that it does.
+#[test]
+fn limits_by_name_hold_for_what_a_system_measures() {
+    let folder = tempdir().unwrap();
+    let limits = "until: RelErrors({ \"brf\": 0.02, \"brf_uc\": 0.1 })";
+    let scene = LEAVES.replace("until: Samples(8192)", limits);
+    fs::write(folder.path().join("leaves.ron"), scene).unwrap();
+    let arguments = ["--systems", "backward,first_order", "--sensor", "views"];
+    let (code, _, stderr) = outcome(folder.path(), &arguments);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    let rows = rows(&folder.path().join("out/leaves_compare/compare_summary.csv"));
+    for row in rows.iter().filter(|row| row["system"] == "first_order") {
+        let error: f64 = row["median rel. error"].parse().unwrap();
+        assert!(error <= 0.1, "{row:?}");
+    }
+}
+
 #[test]
 fn what_cannot_be_compared_is_said() {
     let folder = folder();
