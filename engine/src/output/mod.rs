@@ -60,29 +60,31 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
     }
     let plan = names::plan(report);
     let mut staging = staging::Staging::open(folder)?;
+    let mut sizes = Vec::with_capacity(plan.len());
     for (sensor, planned) in report.sensors.iter().zip(&plan) {
+        let mut size = 0;
         for (product, names) in sensor.products.iter().zip(&planned.products) {
             let source = Source { report, sensor: &sensor.name, product };
-            if let Some(faces) = &product.faces {
-                staging.file(&names.ply(), |file| ply::write(&source, faces, file))?;
-                continue;
-            }
-            match &product.image {
-                None => staging.file(&names.csv(), |file| rows::write(&source, file))?,
-                Some(image) => {
-                    let [exr, img, hdr, png] = names.image();
-                    staging.file(&exr, |file| exr::write(&source, image, file))?;
-                    staging.file(&img, |file| envi::write_pixels(image, file))?;
-                    staging.file(&hdr, |file| envi::write_header(&source, image, file))?;
-                    staging.file(&png, |file| {
-                        let picture = Picture::of(image, &source.wavelengths(image));
-                        picture.encode(&source.provenance(), file)
-                    })?;
+            size += match (&product.faces, &product.image) {
+                (Some(faces), _) => {
+                    staging.file(&names.ply(), |file| ply::write(&source, faces, file))?
                 }
-            }
+                (None, None) => staging.file(&names.csv(), |file| rows::write(&source, file))?,
+                (None, Some(image)) => {
+                    let [exr, img, hdr, png] = names.image();
+                    staging.file(&exr, |file| exr::write(&source, image, file))?
+                        + staging.file(&img, |file| envi::write_pixels(image, file))?
+                        + staging.file(&hdr, |file| envi::write_header(&source, image, file))?
+                        + staging.file(&png, |file| {
+                            let picture = Picture::of(image, &source.wavelengths(image));
+                            picture.encode(&source.provenance(), file)
+                        })?
+                }
+            };
         }
+        sizes.push(size);
     }
-    staging.file("summary.json", |file| summary::write(report, &plan, file))?;
+    staging.file("summary.json", |file| summary::write(report, (&plan, &sizes), file))?;
     staging.commit()
 }
 
@@ -104,7 +106,7 @@ pub fn replace(file: &Path, text: &str) -> Result<(), OutputError> {
 /// # Errors
 /// If the folder cannot be made, or no file in it.
 pub fn probe(folder: &Path) -> Result<(), OutputError> {
-    staging::Staging::open(folder)?.file("summary.json", |_| Ok(()))
+    staging::Staging::open(folder)?.file("summary.json", |_| Ok(())).map(drop)
 }
 
 /// A product and what tells where it comes from.

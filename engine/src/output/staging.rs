@@ -42,12 +42,12 @@ impl Staging {
         Ok(staging)
     }
 
-    /// Fills a file that will be called `name`.
+    /// Fills a file that will be called `name`; returns its size in bytes.
     pub(super) fn file(
         &mut self,
         name: &str,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-    ) -> Result<(), OutputError> {
+    ) -> Result<u64, OutputError> {
         let target = self.folder.join(name);
         if target.is_dir() {
             return Err(OutputError::Taken { path: target });
@@ -59,9 +59,10 @@ impl Staging {
             fill(&mut writer)?;
             writer.flush()?;
             // Some file systems report a full disk only here.
-            writer.get_ref().sync_all()
+            writer.get_ref().sync_all()?;
+            Ok(writer.get_ref().metadata()?.len())
         };
-        write().map_err(|source| OutputError::Write { path: target, source })
+        write().map_err(|source: io::Error| OutputError::Write { path: target, source })
     }
 
     /// Gives all files their names; returns the paths in the order of writing.

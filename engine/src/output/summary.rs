@@ -10,9 +10,11 @@ use super::names::{ProductNames, SensorNames};
 use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport};
 
 /// Writes numbers so that they read back as the same f64; NaN becomes `null`.
+///
+/// - `sizes`: of the files of each sensor, bytes
 pub(super) fn write(
     report: &Report,
-    plan: &[SensorNames],
+    (plan, sizes): (&[SensorNames], &[u64]),
     file: &mut impl Write,
 ) -> io::Result<()> {
     let sensors = || report.sensors.iter().zip(plan);
@@ -29,7 +31,12 @@ pub(super) fn write(
         skipped: &report.skipped,
         warnings: &report.warnings,
         sensors: Ordered(sensors().map(|(s, n)| (n.key.as_str(), products(s, n))).collect()),
-        runs: Ordered(sensors().map(|(s, n)| (n.key.as_str(), Run::of(s))).collect()),
+        runs: Ordered(
+            sensors()
+                .zip(sizes)
+                .map(|((s, n), size)| (n.key.as_str(), Run::of(s, *size)))
+                .collect(),
+        ),
     };
     let mut serializer = serde_json::Serializer::with_formatter(&mut *file, OneKeyALine::default());
     summary.serialize(&mut serializer)?;
@@ -77,18 +84,21 @@ struct Run<'a> {
     samples: u64,
     ended_by: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
+    file_bytes: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     forecast: Option<Expected>,
     #[serde(skip_serializing_if = "Option::is_none")]
     energy_imbalance: Option<f64>,
 }
 
 impl<'a> Run<'a> {
-    fn of(sensor: &'a SensorReport) -> Self {
+    fn of(sensor: &'a SensorReport, size: u64) -> Self {
         let SensorReport { seconds, rays, samples, ref ended_by, energy_imbalance, .. } = *sensor;
         let Forecast { memory, files, .. } = sensor.forecast;
         let expected = Expected { seconds: sensor.forecast.seconds, memory, files };
         let forecast = sensor.forecast.is_long().then_some(expected);
-        Self { seconds, rays, samples, ended_by, forecast, energy_imbalance }
+        let file_bytes = forecast.is_some().then_some(size);
+        Self { seconds, rays, samples, ended_by, file_bytes, forecast, energy_imbalance }
     }
 }
 

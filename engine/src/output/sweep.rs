@@ -65,7 +65,7 @@ pub fn write_sweep(points: &[Point], folder: &Path) -> Result<PathBuf, OutputErr
         (Err(OutputError::Write { source, .. }), Some(path)) => {
             return Err(OutputError::Read { path, source });
         }
-        (written, _) => written?,
+        (written, _) => drop(written?),
     }
     Ok(staging.commit()?.remove(0))
 }

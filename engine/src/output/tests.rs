@@ -139,6 +139,8 @@ fn summary_tells_what_was_foretold_of_a_long_measurement() {
         "seconds": 745.25, "memory_bytes": 1_610_612_736, "file_bytes": 268_435_456
     });
     assert_eq!(plane["forecast"], foretold);
+    let table = paths[0].metadata().unwrap().len();
+    assert_eq!((paths.len(), plane["file_bytes"].as_u64()), (2, Some(table)));
 }
 
 #[test]
