@@ -11,7 +11,7 @@ use std::{error::Error, f64::consts::PI, fs, path::Path, time::Instant};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use sunfleck::{
-    accel::{Boundary, Domain, InstanceInput, MeshInput, Ray, Scene},
+    accel::{Batch, Boundary, Domain, Hit, InstanceInput, MeshInput, Ray, Scene},
     components::{Mesh, Part},
     geometry::basis,
 };
@@ -102,57 +102,80 @@ fn trace_row(scene: &Scene, corner: DVec2, row: u32, pixels: u32, samples: u32) 
         random.next();
     }
     let (mut sum, mut rays) = (0.0, 0);
-    for sample in 0..pixels * samples {
-        let across = DVec2::new(f64::from(sample / samples), f64::from(row));
-        let jitter = DVec2::new(random.next(), random.next());
-        let origin = (corner + 50.0 * (across + jitter) / f64::from(pixels)).extend(30.0);
-        let ray = Ray { origin, direction: -DVec3::Z, from: None };
-        let mut throughput = 1.0;
-        rays += 1;
-        let mut next = scene.closest(&ray).map(|hit| (hit, ray.direction));
-        for order in 0.. {
-            let Some((hit, from)) = next else { break };
-            let (rho, tau) =
-                (REFLECTANCE[hit.surface as usize], TRANSMITTANCE[hit.surface as usize]);
-            let normal = if hit.normal.dot(from) > 0.0 { -hit.normal } else { hit.normal };
-            let cos = normal.dot(sun());
-            let weight = if cos > 0.0 { rho * cos } else { -tau * cos };
-            let light = throughput * weight;
-            let shadow = (weight > 0.0).then(|| hit.leave(sun()));
-            throughput *= rho + tau;
-            let mut goes_on = true;
-            if order >= 5 {
-                goes_on = random.next() >= 0.05;
-                throughput /= 0.95;
-            }
-            let onward = (goes_on && throughput >= 1e-6).then(|| {
-                let through = random.next() * (rho + tau) >= rho;
-                let (u, turn) = (random.next(), 2.0 * PI * random.next());
-                let (sin, cos) = (turn as f32).sin_cos();
-                let up = if through { -(1.0 - u).sqrt() } else { (1.0 - u).sqrt() };
-                let (x, y) = basis(normal);
-                let direction = u.sqrt() * (f64::from(cos) * x + f64::from(sin) * y) + up * normal;
-                hit.leave(direction / direction.length())
+    let all: Vec<u32> = (0..pixels * samples).collect();
+    for together in all.chunks(64) {
+        let mut flights: Vec<Flight> = together
+            .iter()
+            .map(|sample| {
+                let across = DVec2::new(f64::from(sample / samples), f64::from(row));
+                let jitter = DVec2::new(random.next(), random.next());
+                let origin = (corner + 50.0 * (across + jitter) / f64::from(pixels)).extend(30.0);
+                let ray = Ray { origin, direction: -DVec3::Z, from: None };
+                Flight { order: 0, throughput: 1.0, light: 0.0, shadow: None, onward: Some(ray) }
+            })
+            .collect();
+        while !flights.is_empty() {
+            let shadows: Vec<Ray> = flights.iter().filter_map(|flight| flight.shadow).collect();
+            let onwards: Vec<Ray> = flights.iter().filter_map(|flight| flight.onward).collect();
+            let (mut dark, mut hits) = (vec![false; shadows.len()], vec![None; onwards.len()]);
+            scene.trace_each(Batch {
+                shadows: &shadows,
+                dark: &mut dark,
+                rays: &onwards,
+                hits: &mut hits,
             });
-            rays += u64::from(shadow.is_some()) + u64::from(onward.is_some());
-            let is_dark;
-            (is_dark, next) = match (shadow, onward) {
-                (Some(shadow), Some(onward)) => {
-                    let (is_dark, hit) = scene.occluded_and_closest(&shadow, &onward);
-                    (is_dark, hit.map(|hit| (hit, onward.direction)))
+            rays += (shadows.len() + onwards.len()) as u64;
+            let (mut dark, mut hits) = (dark.into_iter(), hits.into_iter());
+            flights.retain_mut(|flight| {
+                if flight.shadow.is_some() && dark.next() == Some(false) {
+                    sum += flight.light;
                 }
-                (Some(shadow), None) => (scene.occluded(&shadow), None),
-                (None, Some(onward)) => {
-                    (true, scene.closest(&onward).map(|hit| (hit, onward.direction)))
-                }
-                (None, None) => (true, None),
-            };
-            if !is_dark {
-                sum += light;
-            }
+                let Some(ray) = flight.onward else { return false };
+                let hit = hits.next().flatten();
+                hit.is_some_and(|hit| flight.meet(&hit, ray.direction, &mut random))
+            });
         }
     }
     (sum, rays)
+}
+
+/// A path and the rays that it waits for.
+struct Flight {
+    order: u32,
+    throughput: f64,
+    /// What the sun adds if nothing is on the shadow ray.
+    light: f64,
+    shadow: Option<Ray>,
+    onward: Option<Ray>,
+}
+
+impl Flight {
+    /// Is scattered; whether it waits for more.
+    fn meet(&mut self, hit: &Hit, from: DVec3, random: &mut Random) -> bool {
+        let (rho, tau) = (REFLECTANCE[hit.surface as usize], TRANSMITTANCE[hit.surface as usize]);
+        let normal = if hit.normal.dot(from) > 0.0 { -hit.normal } else { hit.normal };
+        let cos = normal.dot(sun());
+        let weight = if cos > 0.0 { rho * cos } else { -tau * cos };
+        self.light = self.throughput * weight;
+        self.shadow = (weight > 0.0).then(|| hit.leave(sun()));
+        self.throughput *= rho + tau;
+        let mut goes_on = true;
+        if self.order >= 5 {
+            goes_on = random.next() >= 0.05;
+            self.throughput /= 0.95;
+        }
+        self.order += 1;
+        self.onward = (goes_on && self.throughput >= 1e-6).then(|| {
+            let through = random.next() * (rho + tau) >= rho;
+            let (u, turn) = (random.next(), 2.0 * PI * random.next());
+            let (sin, cos) = (turn as f32).sin_cos();
+            let up = if through { -(1.0 - u).sqrt() } else { (1.0 - u).sqrt() };
+            let (x, y) = basis(normal);
+            let direction = u.sqrt() * (f64::from(cos) * x + f64::from(sin) * y) + up * normal;
+            hit.leave(direction / direction.length())
+        });
+        self.shadow.is_some() || self.onward.is_some()
+    }
 }
 
 fn read_tree(path: &Path) -> Result<Mesh, Box<dyn Error>> {

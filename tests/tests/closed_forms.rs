@@ -27,7 +27,7 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
     sky: {sky},
     boundary: {boundary},
     sensors: {{
-        "back": Directions(views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048)),
+        "back": Directions(system: Backward, views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048)),
         "forth": Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: Forward),
         "image": Orthographic(size_px: (8, 8), extent_m: (5.0, 5.0), samples_per_px: 16, measure: [Radiance, Brf]),
         "once": Directions(views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: FirstOrder, measure: [Orders]),
@@ -143,7 +143,7 @@ fn a_white_furnace_has_albedo_1() {
 #[test]
 fn a_white_furnace_under_an_isotropic_sky_looks_like_the_sky() {
     let leaf = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
-    let views = "Directions(views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: RelError(0.002))";
+    let views = "Directions(system: Backward, views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: RelError(0.002))";
     let report = furnace(leaf, "sky: Isotropic(irradiance: Constant(1.0)),", "0.05", views);
     let views = product(&report, "sensor", "hdrf");
     for index in 0..views.values.len() {
@@ -179,7 +179,7 @@ fn leaf_sheets_add_up_as_layers_do() {
     boundary: Periodic,
     sensors: {{
         "photons": Photons(per_m2: 10000.0, measure: [Albedo]),
-        "views": Directions(views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001)),
+        "views": Directions(system: Backward, views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001)),
     }},
 )"#
         ),

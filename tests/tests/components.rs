@@ -29,7 +29,7 @@ fn tile(object: &str, height: f64, view: &str) -> Report {
     sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)),
     boundary: Periodic,
     sensors: {{
-        "views": Directions(views: List([{view}]), until: Samples(20000), measure: [FourComponents, GapFraction]),
+        "views": Directions(system: Backward, views: List([{view}]), until: Samples(20000), measure: [FourComponents, GapFraction]),
         "image": Orthographic(size_px: (4, 1), extent_m: (4.0, 4.0), samples_per_px: 64, measure: [FourComponents, GapFraction]),
     }},
 )"#
@@ -109,7 +109,7 @@ fn gaps_between_random_discs_are_those_of_the_finite_formula() {
     terrain: Plane(size_m: ({side:?}, {side:?}), material: "leaf"),
     instances: [List(of: "discs", at_m: [(0.0, 0.0, 0.0)])],
     boundary: Periodic,
-    sensors: {{ "gaps": Directions(views: List([{}]), until: Samples(16384), measure: [GapFraction]) }},
+    sensors: {{ "gaps": Directions(system: Backward, views: List([{}]), until: Samples(16384), measure: [GapFraction]) }},
 )"#,
                 views.join(", ")
             ),
@@ -149,7 +149,7 @@ fn gaps_are_measured_in_the_dark() {
     bands: [(name: "a", center_nm: 660.0)],
     materials: { "soil": Lambertian(reflectance: Constant(0.3)) },
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sensors: { "gaps": Directions(views: List([(30.0, 0.0)]), measure: [MEASURES]) },
+    sensors: { "gaps": Directions(system: Backward, views: List([(30.0, 0.0)]), measure: [MEASURES]) },
 )"#;
     let dark = text.replace("MEASURES", "GapFraction");
     let report = measure(&dark, Path::new("."), &Options::default());

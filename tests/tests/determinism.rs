@@ -24,7 +24,7 @@ const SCENE: &str = r#"Scene(
     boundary: Periodic,
     sensors: {
         "image": Orthographic(size_px: (40, 33), extent_m: (5.0, 5.0), zenith_deg: 20.0, samples_per_px: 17),
-        "back": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02)),
+        "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02)),
         "forth": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02), system: Forward),
         "photons": Photons(per_m2: 5000.0, measure: [Albedo, BrfCells(40), Fapar(layer_m: 0.7), Fluxes(pixel_m: 0.5)]),
         "whole": Photons(per_m2: 500.0, measure: [Albedo, BrfCells(40), Absorbed(per: Triangle)], system: Analog),

@@ -97,7 +97,7 @@ fn plates_and_discs_exchange_by_their_view_factors() {
                 0.1 + height
             ),
             &format!(
-                "\"nadir\": Directions(views: List([(0.0, 0.0)]), until: RelError({wanted:?}), measure: [Radiance])"
+                "\"nadir\": Directions(system: Backward, views: List([(0.0, 0.0)]), until: RelError({wanted:?}), measure: [Radiance])"
             ),
         );
         let found = Estimate::of(product(&report, "nadir", "radiance"), 0);
@@ -137,7 +137,7 @@ fn an_isothermal_cavity_is_black_whatever_its_walls() {
         &materials,
         &[("x", "a", &x), ("y", "b", &y), ("z", "c", &z)],
         &format!("List(of: \"x\", {box_at}), List(of: \"y\", {box_at}), List(of: \"z\", {box_at})"),
-        "\"all\": Fisheye(size_px: (8, 8), position_m: (0.3, 0.4, 0.8), fov_deg: 340.0, samples_per_px: 2048, measure: [Radiance, BrightnessTemperature])",
+        "\"all\": Fisheye(size_px: (8, 8), position_m: (0.3, 0.4, 0.8), fov_deg: 340.0, samples_per_px: 4096, measure: [Radiance, BrightnessTemperature])",
     );
     for (band, nm) in BANDS.into_iter().enumerate() {
         let truth = planck(nm, 300.0);

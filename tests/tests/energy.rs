@@ -50,7 +50,7 @@ fn incident_energy_is_reflected_lost_absorbed_or_taken_by_roulette() {
         "whole": Photons(per_m2: 300.0, system: Analog),
         "forth": Directions(views: List([(20.0, 0.0)]), until: Samples(3000), system: Forward),
         "film": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 500, system: Forward),
-        "back": Directions(views: List([(20.0, 0.0)]), until: Samples(64)),
+        "back": Directions(system: Backward, views: List([(20.0, 0.0)]), until: Samples(64)),
     }},
 )"#
                     ),

@@ -24,7 +24,7 @@ fn forest(x: f64, sun_zenith_deg: f64, view_zenith_deg: f64) -> Report {
     sun: (zenith_deg: {sun_zenith_deg:?}, azimuth_deg: 110.0),
     boundary: Periodic,
     sensors: {{
-        "views": Directions(views: List([(0.0, 0.0), ({view_zenith_deg:?}, 77.0)]), until: Samples(65536)),
+        "views": Directions(system: Backward, views: List([(0.0, 0.0), ({view_zenith_deg:?}, 77.0)]), until: Samples(65536)),
         "photons": Photons(per_m2: 3000.0, measure: [Albedo]),
     }},
 )"#

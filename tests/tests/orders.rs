@@ -41,8 +41,8 @@ fn trees(boundary: &str) -> Report {
     sky: Fraction([0.3, 0.1]),
     boundary: {boundary},
     sensors: {{
-        "back": Directions(views: {views}, until: Samples(16000), measure: [Brf, Orders]),
-        "inside": Directions(views: List([{points}]), until: Samples(320), measure: [Brf, Orders]),
+        "back": Directions(system: Backward, views: {views}, until: Samples(16000), measure: [Brf, Orders]),
+        "inside": Directions(system: Backward, views: List([{points}]), until: Samples(320), measure: [Brf, Orders]),
         "forth": Directions(views: {views}, until: Samples(24000), measure: [Brf, Orders], system: Forward),
         "image": Orthographic(size_px: (4, 4), extent_m: (5.0, 5.0), samples_per_px: 256, measure: [Brf, Orders]),
         "film": Orthographic(size_px: (4, 4), extent_m: (5.0, 5.0), samples_per_px: 512, measure: [Brf, Orders], system: Forward),
@@ -246,7 +246,7 @@ fn a_highest_order_cuts_the_series_of_a_sheet() {
     transport: (max_order: {order}),
     sensors: {{
         "photons": Photons(per_m2: 500.0, measure: [Albedo]),
-        "back": Directions(views: List([(20.0, 90.0)]), until: Samples(16000)),
+        "back": Directions(system: Backward, views: List([(20.0, 90.0)]), until: Samples(16000)),
         "forth": Directions(views: List([(20.0, 90.0)]), until: Samples(16000), system: Forward),
     }},
 )"#
@@ -294,7 +294,7 @@ fn single_scattering_by_small_discs_is_that_of_a_turbid_medium() {
     boundary: Periodic,
     transport: (first_order_only: true),
     sensors: {{
-        "views": Directions(views: List([{}]), until: Samples(20000), measure: [Orders]),
+        "views": Directions(system: Backward, views: List([{}]), until: Samples(20000), measure: [Orders]),
         "photons": Photons(per_m2: 4000.0, measure: [Fapar(layer_m: 1.0)]),
     }},
 )"#,

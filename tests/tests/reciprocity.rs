@@ -145,8 +145,9 @@ fn sun_and_sensor_may_change_places() {
         let mut wood = Wood::new(number);
         let (a, b) = (wood.direction(), wood.direction());
         let brf = |sun, view| {
-            let views =
-                format!(r#""views": Directions(views: List([{view:?}]), until: Samples(65536))"#);
+            let views = format!(
+                r#""views": Directions(system: Backward, views: List([{view:?}]), until: Samples(65536))"#
+            );
             let report = wood.run(sun, "boundary: Periodic,", &views);
             let brf = product(&report, "views", "brf");
             [0, 1].map(|band| Estimate::of(brf, band))

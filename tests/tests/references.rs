@@ -155,7 +155,7 @@ fn measured(
             .collect();
         write!(
             sensors,
-            r#""views": Directions(views: List({views:?}), until: Samples({samples}), measure: [Brf, Orders])"#
+            r#""views": Directions(system: Backward, views: List({views:?}), until: Samples({samples}), measure: [Brf, Orders])"#
         )
         .expect("memory");
     }

@@ -94,7 +94,7 @@ fn forest(unit: f64, place: (f64, f64, f64), origin: (f64, f64, f64), quality: f
     sun: (zenith_deg: 40.0, azimuth_deg: 110.0),
     boundary: Periodic,
     sensors: {{
-        "views": Directions(views: List([(0.0, 0.0), (50.0, 77.0), (40.0, 110.0)]), until: Samples(4096)),
+        "views": Directions(system: Backward, views: List([(0.0, 0.0), (50.0, 77.0), (40.0, 110.0)]), until: Samples(4096)),
         "photons": Photons(per_m2: {:?}, measure: [Albedo]),
     }},
 )"#,
@@ -221,7 +221,7 @@ impl Sheets {
     boundary: Periodic,
     transport: (roulette: (after_order: 5, kill: {:?})),
     sensors: {{
-        "views": Directions(views: List([({:?}, 77.0)]), until: Samples({})),
+        "views": Directions(system: Backward, views: List([({:?}, 77.0)]), until: Samples({})),
         "photons": Photons(per_m2: {:?}, measure: [Albedo]),
     }},
 )"#,

@@ -100,7 +100,7 @@ fn a_disc_gives_the_horizontal_the_same_irradiance() {
     sun: (zenith_deg: 80.0, azimuth_deg: 130.0, disc_deg: 6.0),
     boundary: {boundary},
     sensors: {{
-        "back": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(256)),
+        "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(256)),
         "photons": Photons(per_m2: 100.0, measure: [Albedo, Fluxes(pixel_m: 10.0)]),
     }},
 )"#
@@ -193,7 +193,7 @@ fn both_systems_see_the_same_disc() {
     sky: Fraction([0.2]),
     boundary: {boundary},
     sensors: {{
-        "back": Directions(views: List([(0.0, 0.0), (55.0, 10.0), (60.0, 10.0), (60.0, 190.0)]), until: Samples(30000)),
+        "back": Directions(system: Backward, views: List([(0.0, 0.0), (55.0, 10.0), (60.0, 10.0), (60.0, 190.0)]), until: Samples(30000)),
         "forth": Directions(views: List([(0.0, 0.0), (55.0, 10.0), (60.0, 10.0), (60.0, 190.0)]), until: Samples(60000), system: Forward),
         "photons": Photons(per_m2: 1000.0, measure: [Albedo]),
     }},
@@ -227,7 +227,7 @@ fn a_sun_by_place_and_time_lights_as_one_by_angles() {
     sun: ({sun}),
     sensors: {{
         "photons": Photons(per_m2: 10.0, measure: [Fluxes(pixel_m: 5.0)]),
-        "plane": Directions(views: PrincipalPlane(max_deg: 10.0, step_deg: 10.0), until: Samples(32)),
+        "plane": Directions(system: Backward, views: PrincipalPlane(max_deg: 10.0, step_deg: 10.0), until: Samples(32)),
     }},
 )"#
             ),

@@ -21,7 +21,7 @@ const STAND: &str = r#"Scene(
     instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0), (3.0, 4.0, 0.0)])],
     sun: (zenith_deg: "=sza", azimuth_deg: 10.0),
     boundary: Periodic,
-    sensors: { "view": Directions(views: List([(0.0, 0.0)]), until: Samples(4096)) },
+    sensors: { "view": Directions(system: Backward, views: List([(0.0, 0.0)]), until: Samples(4096)) },
     transport: (seed: SEED),
 )"#;
 

@@ -91,7 +91,7 @@ fn a_level_raster_is_a_plane() {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("dem.asc"), grid(10, 10, |_, _| 7.0)).expect("a file");
     let sensors = r#"
-        "brf": Directions(views: CrossPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(4096)),
+        "brf": Directions(system: Backward, views: CrossPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(4096)),
         "photons": Photons(per_m2: 500.0, measure: [Albedo, Fapar(layer_m: 5.0)])"#;
     let of = |terrain: &str| {
         let stand =

@@ -42,7 +42,7 @@ fn an_isothermal_scene_looks_black_whatever_its_emissivity() {
     thermal_sky: BlackBody(300.0),
     boundary: Periodic,
     sensors: {
-        "views": Directions(views: List([(0.0, 0.0), (60.0, 90.0)]), until: Samples(30000), measure: [Radiance, BrightnessTemperature]),
+        "views": Directions(system: Backward, views: List([(0.0, 0.0), (60.0, 90.0)]), until: Samples(30000), measure: [Radiance, BrightnessTemperature]),
         "image": Orthographic(size_px: (4, 4), extent_m: (3.0, 3.0), samples_per_px: 512, measure: [BrightnessTemperature, Brf]),
     },
 )"#,
@@ -187,7 +187,7 @@ fn half_shaded_ground_has_the_mean_radiance() {
     instances: [List(of: "wall", at_m: [(0.0, 0.0, 0.0)])],
     sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)),
     boundary: Periodic,
-    sensors: { "views": Directions(views: List([(0.0, 0.0), (45.0, 270.0)]), until: Samples(100000), measure: [Radiance]) },
+    sensors: { "views": Directions(system: Backward, views: List([(0.0, 0.0), (45.0, 270.0)]), until: Samples(100000), measure: [Radiance]) },
 )"#,
         dir.path(),
         &Options::default(),
@@ -226,7 +226,7 @@ fn bands_choose_their_sources() {
     thermal_sky: Radiance(Constant(0.0001)),
     boundary: Periodic,
     sensors: {{
-        "views": Directions(views: List([(30.0, 0.0)]), until: Samples(2048), measure: [Radiance]),
+        "views": Directions(system: Backward, views: List([(30.0, 0.0)]), until: Samples(2048), measure: [Radiance]),
         "image": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 64, measure: [Radiance]),
     }},
 )"#
@@ -265,7 +265,7 @@ fn emitted_and_reflected_light_are_means_over_the_same_rectangle() {
     instances: [List(of: "speck", at_m: [(0.0, 0.0, 0.0)])],
     sun: (zenith_deg: 0.0, irradiance: Constant(0.01)),
     sensors: {{
-        "back": Directions(views: List([(45.0, 90.0)]), until: Samples(32768), measure: [Radiance]),
+        "back": Directions(system: Backward, views: List([(45.0, 90.0)]), until: Samples(32768), measure: [Radiance]),
         "forth": Directions(views: List([(45.0, 90.0)]), until: Samples(65536), measure: [Radiance], system: Forward),
         "photons": Photons(per_m2: 4096.0, measure: [RadianceViews(List([(45.0, 90.0)]))]),
     }},
@@ -295,7 +295,7 @@ fn a_material_that_is_seen_to_emit_needs_a_temperature() {
     bands: [(name: "tir", center_nm: 10000.0)],
     materials: { "soil": Lambertian(reflectance: Constant(0.1)) },
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sensors: { "views": Directions(views: List([(0.0, 0.0)]), measure: [BrightnessTemperature]) },
+    sensors: { "views": Directions(system: Backward, views: List([(0.0, 0.0)]), measure: [BrightnessTemperature]) },
 )"#;
     let reading = document::read_text("a.ron", text, &document::Options::default()).expect("text");
     assert!(reading.is_sound(), "{}", reading.render());

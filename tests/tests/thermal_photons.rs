@@ -43,7 +43,7 @@ fn trees(boundary: &str) -> Report {
     thermal_sky: BlackBody(250.0),
     boundary: {boundary},
     sensors: {{
-        "back": Directions(views: {views}, until: Samples(40000), measure: [Radiance]),
+        "back": Directions(system: Backward, views: {views}, until: Samples(40000), measure: [Radiance]),
         "forth": Directions(views: {views}, until: Samples(20000), measure: [Radiance], system: Forward),
         "image": Orthographic(size_px: (4, 4), extent_m: (4.0, 4.0), samples_per_px: 1024, measure: [Radiance, BrightnessTemperature]),
         "film": Orthographic(size_px: (4, 4), extent_m: (4.0, 4.0), samples_per_px: 1024, measure: [Radiance, BrightnessTemperature], system: Forward),

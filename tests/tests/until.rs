@@ -39,7 +39,7 @@ fn sensors(until: impl Fn(&str) -> String) -> String {
         "film": Orthographic(size_px: (5, 4), extent_m: (5.0, 5.0), zenith_deg: 20.0, system: Forward, until: {film}),
         "camera": Perspective(size_px: (17, 9), position_m: (-3.0, 2.5, 4.0), target_m: (2.0, 2.5, 0.5), fov_deg: (40.0, 30.0), until: {camera}),
         "eye": Fisheye(size_px: (16, 16), position_m: (2.5, 2.5, 0.2), measure: [Radiance, GapFraction], until: {eye}),
-        "back": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), measure: [Brf, Orders, FourComponents], until: {back}),
+        "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), measure: [Brf, Orders, FourComponents], until: {back}),
         "forth": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), measure: [Brf, Orders], system: Forward, until: {forth}),
         "photons": Photons(measure: [Albedo, BrfCells(12), Fapar(layer_m: 1.0), Orders], until: {photons}),
     "#

@@ -31,7 +31,7 @@ fn trees(boundary: &str, plane: &str, quality: f64) -> Report {
     sky: Fraction([0.3, 0.1]),
     boundary: {boundary},
     sensors: {{
-        "back": Directions({plane} views: {VIEWS}, until: Samples(20000), measure: [Brf, GapFraction]),
+        "back": Directions(system: Backward, {plane} views: {VIEWS}, until: Samples(20000), measure: [Brf, GapFraction]),
         "forth": Directions({plane} views: {VIEWS}, until: Samples(60000), system: Forward),
         "image": Orthographic({plane} size_px: (6, 5), extent_m: (8.0, 4.0), center_m: (4.0, 4.1), zenith_deg: 40.0, azimuth_deg: 280.0, samples_per_px: 512),
         "film": Orthographic({plane} size_px: (6, 5), extent_m: (8.0, 4.0), center_m: (4.0, 4.1), zenith_deg: 40.0, azimuth_deg: 280.0, samples_per_px: 2048, system: Forward),
@@ -184,7 +184,7 @@ fn a_plane_over_a_lambertian_plain_has_its_reflectance() {
     sky: Fraction([0.25]),
     boundary: {boundary},
     sensors: {{
-        "back": Directions(views: {VIEWS}, until: Samples(4096), virtual_plane: (center_m: (0.0, 4.0), size_m: (3.0, 1.7))),
+        "back": Directions(system: Backward, views: {VIEWS}, until: Samples(4096), virtual_plane: (center_m: (0.0, 4.0), size_m: (3.0, 1.7))),
         "photons": Photons(
             per_m2: 2000.0, virtual_plane: (center_m: (0.0, 4.0), size_m: (3.0, 1.7)),
             measure: [Albedo, BrfViews({VIEWS}), BrfCells(4), Fapar(layer_m: 1.0), Fluxes(pixel_m: 0.5)],
@@ -262,7 +262,7 @@ fn a_low_plane_is_left_only_by_what_comes_from_below_it() {
     boundary: {boundary},
     transport: (first_order_only: true),
     sensors: {{
-        "back": Directions(views: List([(0.0, 0.0)]), until: Samples(2048), virtual_plane: {plane}),
+        "back": Directions(system: Backward, views: List([(0.0, 0.0)]), until: Samples(2048), virtual_plane: {plane}),
         "forth": Directions(views: List([(0.0, 0.0)]), until: Samples(4096), virtual_plane: {plane}, system: Forward),
     }},
 )"#

@@ -25,4 +25,5 @@ mod tests;
 
 pub use error::BuildError;
 pub use scene::Scene;
+pub use trace::Batch;
 pub use types::{Boundary, Departure, Domain, Hit, InstanceInput, Memory, MeshInput, Ray};

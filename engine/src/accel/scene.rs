@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use crate::geometry::Bounds;
 
 use super::{
-    BuildError, Departure, Domain, Hit, InstanceInput, Memory, MeshInput, Ray,
+    Batch, BuildError, Departure, Domain, Hit, InstanceInput, Memory, MeshInput, Ray,
     instance::{self, Images, Record},
     mesh::{self, MeshTree, PARALLELOGRAM, outward},
     simd::Level,
@@ -142,35 +142,15 @@ impl Scene {
         self.any_in(Tiles::new(self, ray, distance))
     }
 
-    /// [`Self::occluded`] of one ray and [`Self::closest`] of another, in less time than one after
-    /// the other: what a path tracer asks for at each point, towards the sun and onwards.
-    #[must_use]
-    pub fn occluded_and_closest(&self, shadow: &Ray, onward: &Ray) -> (bool, Option<Hit>) {
-        let mut shadows = Tiles::new(self, shadow, f64::INFINITY);
-        let mut onwards = Tiles::new(self, onward, f64::INFINITY);
-        loop {
-            match (shadows.next(), onwards.next()) {
-                (Some(any), Some(closest)) => {
-                    let (blocker, found) = self.level.both(&any, &closest);
-                    let hit = found.map(|found| self.resolve(&closest, &found));
-                    match (blocker, hit) {
-                        (Some(_), Some(hit)) => return (true, Some(hit)),
-                        (Some(_), None) => return (true, self.closest_in(onwards)),
-                        (None, Some(hit)) => return (self.any_in(shadows), Some(hit)),
-                        (None, None) => {}
-                    }
-                }
-                (Some(any), None) => {
-                    return (self.level.occluded(&any) || self.any_in(shadows), None);
-                }
-                (None, Some(closest)) => {
-                    let found = self.level.closest(&closest);
-                    let hit = found.map(|found| self.resolve(&closest, &found));
-                    return (false, hit.or_else(|| self.closest_in(onwards)));
-                }
-                (None, None) => return (false, None),
-            }
-        }
+    /// [`Self::occluded`] of some rays and [`Self::closest`] of others, in less time than one after the
+    /// other: what many paths together ask for, towards the sun and onwards.
+    ///
+    /// # Panics
+    /// If there is not one place for each answer.
+    pub fn trace_each(&self, batch: Batch<'_>) {
+        let Batch { shadows, dark, rays, hits } = &batch;
+        assert!(shadows.len() == dark.len() && rays.len() == hits.len(), "one answer each");
+        self.level.each(self, batch);
     }
 
     fn closest_in(&self, mut tiles: Tiles<'_>) -> Option<Hit> {
@@ -236,7 +216,7 @@ impl Scene {
         (from.block.0, lanes)
     }
 
-    fn resolve(&self, query: &Query<'_>, found: &Found) -> Hit {
+    pub(super) fn resolve(&self, query: &Query<'_>, found: &Found) -> Hit {
         let mesh = self.mesh_of(found.record);
         let record = &self.records[found.record as usize];
         let object_from_world = DMat3::from_cols_array(&record.object_from_world.map(f64::from));

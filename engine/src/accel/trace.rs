@@ -16,11 +16,13 @@ use super::{
     ray::{BoxRay, MeshRay, WideRay, planar_distance},
     scene::Scene,
     simd::{Isa, Space, Stack},
+    tile::Tiles,
     tree::{Node, Ref},
-    types::Departure,
+    types::{Departure, Hit, Ray},
 };
 
 /// One ray in one tile.
+#[derive(Clone, Copy)]
 pub(super) struct Query<'a> {
     pub scene: &'a Scene,
     /// In the tile's frame.
@@ -46,45 +48,130 @@ pub(super) struct Found {
     pub id: u32,
 }
 
-/// The closest primitive on a ray, or any if `ANY`.
+/// The closest primitive on a ray, or any.
 #[inline(always)]
-pub(super) fn trace<I: Isa, const ANY: bool>(isa: I, query: &Query<'_>) -> Option<Found> {
+pub(super) fn trace<I: Isa>(isa: I, query: &Query<'_>, any: bool) -> Option<Found> {
     let mut space = Space::new();
-    let mut walk = Walk::<I, ANY>::new(isa, query, &mut space)?;
-    while walk.step(isa) {}
+    let mut walk = Walk::at_rest(isa, query.scene, &mut space);
+    if walk.aim(isa, *query, any) {
+        while walk.step(isa) {}
+    }
     walk.best.found
 }
 
-/// Any primitive on one ray and the closest on another, traced side by side.
+/// Rays that are traced side by side.
+const LINES: usize = 4;
+
+/// Rays, and where to write what is on them.
+#[derive(Debug)]
+pub struct Batch<'a> {
+    /// Rays of which any surface is asked for.
+    pub shadows: &'a [Ray],
+    /// Of each whether there is one.
+    pub dark: &'a mut [bool],
+    /// Rays of which the first surface is asked for.
+    pub rays: &'a [Ray],
+    /// That of each.
+    pub hits: &'a mut [Option<Hit>],
+}
+
+/// Traces rays side by side, as many as there are lines; a line that has come to its end takes the next.
 ///
-/// Each step of a walk waits for the one before: for a node, then for what its boxes say. Two
-/// walks that know nothing of each other fill each other's waiting time.
+/// Each step of a walk waits for the one before: for a node, then for what its boxes say. Walks that
+/// know nothing of each other fill each other's waiting time.
 #[inline(always)]
-pub(super) fn trace_both<I: Isa>(
-    isa: I,
-    any: &Query<'_>,
-    closest: &Query<'_>,
-) -> (Option<Found>, Option<Found>) {
-    let (mut any_space, mut closest_space) = (Space::new(), Space::new());
-    let mut any = Walk::<I, true>::new(isa, any, &mut any_space);
-    let mut closest = Walk::<I, false>::new(isa, closest, &mut closest_space);
-    let (mut any_goes, mut closest_goes) = (any.is_some(), closest.is_some());
-    // One loop for both and for what is left of either: the code of a step is long, and it should
-    // stand here once for each.
-    while any_goes || closest_goes {
-        if any_goes && let Some(walk) = &mut any {
-            any_goes = walk.step(isa);
-        }
-        if closest_goes && let Some(walk) = &mut closest {
-            closest_goes = walk.step(isa);
+pub(super) fn trace_each<I: Isa>(isa: I, scene: &Scene, batch: Batch<'_>) {
+    let Batch { shadows, dark, rays, hits } = batch;
+    dark.fill(false);
+    hits.fill(None);
+    let mut spaces: [Space; LINES] = std::array::from_fn(|_| Space::new());
+    // The closest hit takes longer to find: what is short comes last, when lines run empty.
+    let mut waiting = rays
+        .iter()
+        .enumerate()
+        .map(|(index, ray)| (index, ray, false))
+        .chain(shadows.iter().enumerate().map(|(index, ray)| (index, ray, true)));
+    let mut lines = spaces.each_mut().map(|space| Line {
+        walk: Walk::at_rest(isa, scene, space),
+        tiles: None,
+        index: 0,
+        goes: true,
+    });
+    for line in &mut lines {
+        line.goes = line.take_ray(isa, scene, &mut waiting);
+    }
+    let mut going = lines.iter().filter(|line| line.goes).count();
+    while going > 0 {
+        for line in &mut lines {
+            if !line.goes || line.walk.step(isa) {
+                continue;
+            }
+            let Some(found) = line.walk.best.found else {
+                line.goes = line.take_tile(isa) || line.take_ray(isa, scene, &mut waiting);
+                going -= usize::from(!line.goes);
+                continue;
+            };
+            if line.walk.any {
+                dark[line.index] = true;
+            } else {
+                hits[line.index] = Some(scene.resolve(&line.walk.query, &found));
+            }
+            line.goes = line.take_ray(isa, scene, &mut waiting);
+            going -= usize::from(!line.goes);
         }
     }
-    (any.and_then(|walk| walk.best.found), closest.and_then(|walk| walk.best.found))
+}
+
+/// One of the walks of [`trace_each`].
+struct Line<'a, I: Isa> {
+    walk: Walk<'a, I>,
+    /// The rest of its ray's way.
+    tiles: Option<Tiles<'a>>,
+    /// Which ray it is.
+    index: usize,
+    goes: bool,
+}
+
+impl<'a, I: Isa> Line<'a, I> {
+    /// Goes on with its ray in the next tile that holds anything; whether there is one.
+    #[inline(always)]
+    fn take_tile(&mut self, isa: I) -> bool {
+        let Some(tiles) = &mut self.tiles else { return false };
+        let any = self.walk.any;
+        // No closure: that would not be compiled for the instruction set.
+        for query in tiles.by_ref() {
+            if self.walk.aim(isa, query, any) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Goes on with the next ray that anything could be on; whether there is one.
+    #[inline(always)]
+    fn take_ray(
+        &mut self,
+        isa: I,
+        scene: &'a Scene,
+        waiting: &mut impl Iterator<Item = (usize, &'a Ray, bool)>,
+    ) -> bool {
+        for (index, ray, any) in waiting.by_ref() {
+            self.index = index;
+            self.tiles = Some(Tiles::new(scene, ray, f64::INFINITY));
+            self.walk.any = any;
+            if self.take_tile(isa) {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 /// The state of one ray's way through both levels of trees.
-struct Walk<'a, I: Isa, const ANY: bool> {
-    query: &'a Query<'a>,
+struct Walk<'a, I: Isa> {
+    query: Query<'a>,
+    /// Whether any primitive will do.
+    any: bool,
     stack: Stack<'a>,
     /// The ray in the space of the tree that it is in.
     boxes: BoxRay<I>,
@@ -112,28 +199,49 @@ struct Inside<'a, I: Isa> {
     skip: (u32, u32),
 }
 
-impl<'a, I: Isa, const ANY: bool> Walk<'a, I, ANY> {
+impl<'a, I: Isa> Walk<'a, I> {
+    /// One that has nothing to do until it is aimed.
     #[inline(always)]
-    fn new(isa: I, query: &'a Query<'a>, space: &'a mut Space) -> Option<Self> {
-        let scene = query.scene;
-        let enter = scene.clip(query.origin, query.direction, query.limit)?;
-        let start = query.origin + enter * query.direction - scene.center();
-        let direction = query.direction.as_vec3().to_array();
-        let world = BoxRay::new(isa, start.as_vec3().to_array(), direction);
-        let mut stack = Stack::new(space);
-        stack.push(scene.instances().root.0, 0.0);
-        Some(Self {
+    fn at_rest(isa: I, scene: &'a Scene, space: &'a mut Space) -> Self {
+        let (origin, direction) = (DVec3::ZERO, DVec3::Z);
+        let query = Query { scene, origin, direction, tile: [0; 2], from: None, limit: 0.0 };
+        let world = BoxRay::new(isa, [0.0; 3], [0.0, 0.0, 1.0]);
+        Self {
             query,
-            stack,
+            any: false,
+            stack: Stack::new(space),
             boxes: world,
             nodes: &scene.instances().nodes,
-            limit: limit_above(query.limit - enter),
+            limit: 0.0,
             base: 0,
-            best: Best { limit: query.limit, found: None },
-            enter,
+            best: Best { limit: 0.0, found: None },
+            enter: 0.0,
             world,
             inside: None,
-        })
+        }
+    }
+
+    /// Starts on a query; whether anything could be on its ray.
+    #[inline(always)]
+    fn aim(&mut self, isa: I, query: Query<'a>, any: bool) -> bool {
+        let scene = query.scene;
+        let Some(enter) = scene.clip(query.origin, query.direction, query.limit) else {
+            return false;
+        };
+        let start = query.origin + enter * query.direction - scene.center();
+        let direction = query.direction.as_vec3().to_array();
+        (self.query, self.any) = (query, any);
+        self.world = BoxRay::new(isa, start.as_vec3().to_array(), direction);
+        self.boxes = self.world;
+        self.nodes = &scene.instances().nodes;
+        self.limit = limit_above(query.limit - enter);
+        self.base = 0;
+        self.best = Best { limit: query.limit, found: None };
+        self.enter = enter;
+        self.inside = None;
+        self.stack.clear();
+        self.stack.push(scene.instances().root.0, 0.0);
+        true
     }
 
     /// Visits the newest entry of the stack; whether there is more to do.
@@ -161,21 +269,21 @@ impl<'a, I: Isa, const ANY: bool> Walk<'a, I, ANY> {
             return true;
         }
         self.visit(isa, at);
-        !ANY || self.best.found.is_none()
+        !self.any || self.best.found.is_none()
     }
 
     #[inline(always)]
     fn enter_mesh(&mut self, isa: I, record: u32, start: f64) {
         let scene = self.query.scene;
         let mesh = scene.mesh_of(record);
-        let Some(ray) = MeshRay::new(self.query, record, mesh, start) else { return };
+        let Some(ray) = MeshRay::new(&self.query, record, mesh, start) else { return };
         self.boxes = BoxRay::new(isa, ray.start_near, ray.direction_near);
         self.nodes = &mesh.tree.nodes;
         self.limit = limit_above(self.best.limit - ray.start).min(ray.beyond);
         self.base = self.stack.len();
         self.stack.push(mesh.tree.root.0, 0.0);
         let wide = WideRay::new(isa, &ray);
-        let skip = scene.skipped(self.query, record);
+        let skip = scene.skipped(&self.query, record);
         self.inside = Some(Inside { mesh, record, ray, wide, skip });
     }
 
@@ -204,7 +312,7 @@ impl<'a, I: Isa, const ANY: bool> Walk<'a, I, ANY> {
             wide.planar(isa, &mesh.planar[block.index()], self.limit, keep)
         };
         let record = *record;
-        if ANY && sure != 0 {
+        if self.any && sure != 0 {
             let (distance, lane, id) = (0.0, 0, 0);
             self.best.found = Some(Found { distance, record, block, lane, id });
             return;
@@ -220,13 +328,13 @@ impl<'a, I: Isa, const ANY: bool> Walk<'a, I, ANY> {
             } else {
                 let block = &mesh.planar[block.index()];
                 let id = block.id.0[lane & 7];
-                (planar_distance(self.query, record, ray, block, lane, is_sure), id)
+                (planar_distance(&self.query, record, ray, block, lane, is_sure), id)
             };
             let Some(distance) = distance else { continue };
             if distance > 0.0 {
                 let found = Found { distance, record, block, lane: lane as u8, id };
                 self.best.offer(self.query.scene, found);
-                if ANY && self.best.found.is_some() {
+                if self.any && self.best.found.is_some() {
                     return;
                 }
                 self.limit = limit_above(self.best.limit - ray.start).min(ray.beyond);

@@ -122,8 +122,8 @@ pub struct Directions {
     pub measure: Vec<ImageMeasure>,
     /// Only light that leaves through it counts.
     pub plane: Option<VirtualPlane>,
-    /// Which transport system estimates it.
-    pub system: System,
+    /// Which transport system estimates it; none if the one that takes fewer rays is to.
+    pub system: Option<System>,
 }
 
 /// What photons are counted for.

@@ -9,7 +9,7 @@ use crate::sampling::Key;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
     FluxLevel, GROUND_TERMS, Grain, Hemisphere, LayerCounter, Part, PartCounter, Projection,
-    ReferencePlane, Rows, Source, ViewCounter, photon_film,
+    ReferencePlane, Roulette, Rows, Source, ViewCounter, photon_film,
 };
 
 /// Photon packets of sun and sky, and of what emits, and what they are counted for.
@@ -34,11 +34,15 @@ impl<'a> PhotonRun<'a> {
             .iter()
             .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
             .collect();
-        let grain = if sensor.system == System::Analog { Grain::Photon } else { Grain::Packet };
+        let grain = if sensor.system == System::Analog {
+            Grain::Photon
+        } else {
+            Grain::Packet(Roulette::Gentle)
+        };
         let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
             (!asked.is_empty()).then(|| {
                 let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter> {
-                    let counter = kinds[index].1.counter();
+                    let counter = kinds[index].1.counter(stage, source, key);
                     match part {
                         None => counter,
                         Some(part) => Box::new(PartCounter { counter, part }),
@@ -263,11 +267,11 @@ impl Kind {
         }
     }
 
-    fn counter(&self) -> Box<dyn Counter> {
+    fn counter(&self, stage: &Stage, source: Source, key: Key) -> Box<dyn Counter> {
         match self {
             Self::Albedo(counter) => Box::new(counter.clone()),
             Self::Cells(counter) => Box::new(counter.clone()),
-            Self::Views(counter, _) => Box::new(counter.clone()),
+            Self::Views(counter, _) => Box::new(counter.clone().playing(stage, source, key)),
             Self::Layers(counter) => Box::new(counter.clone()),
             Self::Cones(counter) => Box::new(counter.clone()),
             Self::Absorbed(counter, _) => Box::new(counter.clone()),

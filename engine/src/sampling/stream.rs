@@ -72,6 +72,13 @@ impl Sampler {
         Self { randomisation, index, event: 0 }
     }
 
+    /// A number beside those of the next event, uniform in (0, 1), for what is decided about that
+    /// event and not about the path.
+    #[must_use]
+    pub fn aside(&self) -> f64 {
+        self.randomisation.index(!u64::from(self.event)).uniform(self.index)
+    }
+
     /// Numbers of the path's next event, each uniform in (0, 1).
     pub fn next_event(&mut self) -> [f64; 4] {
         let event = self.event;

@@ -40,7 +40,7 @@ impl Spawner<'_> {
                     until: stops(sensor),
                     measure: image_measures(measure),
                     plane: self.plane(virtual_plane.as_ref()),
-                    system: system_of(*system),
+                    system: system.map(system_of),
                 })
             }
             document::Sensor::Photons { per_m2, until: _, measure, virtual_plane, system } => {

@@ -77,6 +77,7 @@ impl Packet<'_> {
                 weight: all,
                 scattered: share(next.is_some()),
                 reflected: share(is_reflected),
+                u: sampler.aside(),
             });
             let Some(next) = next else { return };
             if is_last {

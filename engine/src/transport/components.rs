@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::directions::{projections, view_film};
-use super::{Camera, ReferencePlane, Rows, Tiles, ViewsOutcome, Walk};
+use super::walk::{Answer, Ask, Walk};
+use super::{Camera, ReferencePlane, Rows, Tiles, ViewsOutcome};
 use crate::accel::Ray;
 use crate::components::View;
 use crate::extract::Stage;
@@ -33,7 +34,7 @@ pub fn image_components_film<'a>(stage: &'a Stage, camera: &Camera, key: Key) ->
         Camera::Fisheye(camera) => camera.upright(),
         _ => None,
     };
-    let walk = move || FirstHit { upright, ..FirstHit::default() };
+    let walk = move || FirstHit::new(upright);
     Tiles::new((stage, camera.clone()), key, COMPONENT_COLUMNS, walk)
 }
 
@@ -50,7 +51,8 @@ impl<'a> ComponentsFilm<'a> {
     #[must_use]
     pub fn new(stage: &'a Stage, (views, plane): (&[View], &ReferencePlane), key: Key) -> Self {
         let projections = projections(stage, views, plane);
-        let film = view_film((stage, projections), COMPONENT_COLUMNS + 1, key, FirstHit::default);
+        let walk = || FirstHit::new(None);
+        let film = view_film((stage, projections), COMPONENT_COLUMNS + 1, key, walk);
         Self { film }
     }
 
@@ -62,7 +64,7 @@ impl<'a> ComponentsFilm<'a> {
 }
 
 /// A ray to the first surface and one from there to the sun.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct FirstHit {
     /// The columns, and behind them a 1 for what was met.
     columns: [f32; COMPONENT_COLUMNS + 1],
@@ -70,30 +72,61 @@ struct FirstHit {
     upright: Option<f64>,
     /// Cosine of that angle.
     cosine: f64,
-    rays: u64,
+    sampler: Sampler,
+    direction: DVec3,
+    /// Whether it waits for the sun, having met the ground or not.
+    waits: Option<bool>,
+    has_met: bool,
+}
+
+impl FirstHit {
+    fn new(upright: Option<f64>) -> Self {
+        Self {
+            columns: [0.0; COMPONENT_COLUMNS + 1],
+            upright,
+            cosine: 0.0,
+            sampler: Sampler::new(Key::new(0), 0),
+            direction: DVec3::ZERO,
+            waits: None,
+            has_met: false,
+        }
+    }
+
+    fn count(&mut self, is_sunlit: bool, is_ground: bool) -> Ask {
+        self.columns = [0.0; COMPONENT_COLUMNS + 1];
+        self.columns[2 * usize::from(!is_sunlit) + usize::from(!is_ground)] = 1.0;
+        self.columns[GAP_COLUMN] = f32::from(is_ground && self.direction.z < 0.0);
+        self.columns[COMPONENT_COLUMNS] = 1.0;
+        Ask::END
+    }
 }
 
 impl Walk for FirstHit {
-    fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
-        self.rays += 1;
+    fn start(&mut self, ray: &Ray, sampler: Sampler) {
+        (self.sampler, self.direction) = (sampler, ray.direction);
         self.cosine = ray.direction.z * self.upright.unwrap_or(0.0);
-        let hit = stage.geometry.closest(&ray);
-        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return false };
-        let is_sunlit = stage.light.sun.as_ref().is_some_and(|sun| {
-            let sun = sun.towards(sampler);
-            let seen_side_faces_it =
-                (hit.normal.dot(ray.direction) < 0.0) == (hit.normal.dot(sun) > 0.0);
-            seen_side_faces_it && {
-                self.rays += 1;
-                !stage.geometry.occluded(&hit.leave(sun))
-            }
-        });
+        (self.waits, self.has_met) = (None, false);
+    }
+
+    fn go_on(&mut self, stage: &Stage, Answer { is_lit, hit }: Answer) -> Ask {
+        if let Some(is_ground) = self.waits {
+            return self.count(is_lit, is_ground);
+        }
+        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return Ask::END };
+        self.has_met = true;
         let is_ground = stage.is_ground(&hit);
-        self.columns = [0.0; COMPONENT_COLUMNS + 1];
-        self.columns[2 * usize::from(!is_sunlit) + usize::from(!is_ground)] = 1.0;
-        self.columns[GAP_COLUMN] = f32::from(is_ground && ray.direction.z < 0.0);
-        self.columns[COMPONENT_COLUMNS] = 1.0;
-        true
+        let towards = stage.light.sun.as_ref().map(|sun| sun.towards(&mut self.sampler));
+        // The side that is seen must face it.
+        let front = hit.normal.dot(self.direction) < 0.0;
+        let Some(sun) = towards.filter(|sun| front == (hit.normal.dot(*sun) > 0.0)) else {
+            return self.count(false, is_ground);
+        };
+        self.waits = Some(is_ground);
+        Ask { shadow: Some(hit.leave(sun)), onward: None }
+    }
+
+    fn has_met(&self) -> bool {
+        self.has_met
     }
 
     fn see_sky(&mut self, _: &Stage, direction: DVec3) -> bool {
@@ -117,9 +150,5 @@ impl Walk for FirstHit {
             sums.add_at(cell, 2 * ring, self.columns[GAP_COLUMN].into());
             sums.add_at(cell, 2 * ring + 1, 1.0);
         }
-    }
-
-    fn rays(&self) -> u64 {
-        self.rays
     }
 }

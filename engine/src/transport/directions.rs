@@ -1,10 +1,13 @@
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::forward::photon_film;
 use super::rows::{Rows, Tracer};
+use super::walk::{Party, Walk};
 use super::{
-    Counter, FirstOrder, Grain, Part, PartCounter, Path, Projection, ReferencePlane, Source,
-    ThermalPath, ViewCounter, Walk, spectra,
+    Counter, FirstOrder, Grain, Part, PartCounter, Path, Projection, ReferencePlane, Roulette,
+    Source, ThermalPath, ViewCounter, spectra,
 };
 use crate::components::{System, View};
 use crate::extract::Stage;
@@ -82,7 +85,7 @@ impl<'a> DirectionsFilm<'a> {
         let places = (0..views.len()).map(each).collect();
         let film = match (system, source) {
             (System::Backward, Source::Reflected) => {
-                let path = move || Path::of_orders(stage.lanes(), orders);
+                let path = move || Path::new(stage.lanes(), orders);
                 view_film((stage, projections), columns, key, path)
             }
             (System::Backward, Source::Emitted) => {
@@ -93,15 +96,15 @@ impl<'a> DirectionsFilm<'a> {
                 view_film((stage, projections), columns, key, path)
             }
             (System::Forward | System::Analog, _) => {
-                let counter = ViewCounter::new(projections);
+                let counter = ViewCounter::new(projections).playing(stage, source, key);
                 let place = |(projection, cell): (&Projection, &usize)| {
                     (cell * bands..(cell + 1) * bands, projection.radiance_of_count(stage))
                 };
                 let cells = counter.projections().iter().zip(counter.first_cells());
                 let places = cells.map(place).collect();
                 let counters = in_parts(counter, orders);
-                let film =
-                    photon_film(stage, (source, Grain::Packet, plane.clone()), counters, key);
+                let of = (source, Grain::Packet(Roulette::Firm), plane.clone());
+                let film = photon_film(stage, of, counters, key);
                 return Self { film, places, apart: true, spectra };
             }
         };
@@ -179,21 +182,23 @@ impl<W: Walk, F: Fn() -> W + Sync> Tracer for Views<'_, F> {
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
         // All views share their points: differences between them have less noise.
         let stream = self.key.index(randomisation);
-        let mut walk = (self.walk)();
+        let mut party = Party::new(self.stage, &self.walk);
         let mut sums = Sums::new(self.projections.len(), self.columns);
         let mut rays = 0;
         for (view, projection) in self.projections.iter().enumerate() {
-            for index in samples.clone() {
+            let starts = samples.clone().filter_map(|index| {
                 let mut sampler = Sampler::new(stream, index);
                 let [u, v, ..] = sampler.next_event();
-                let ray = projection.ray(glam::DVec2::new(u, v));
-                if projection.admits(&ray, self.stage, &mut rays)
-                    && walk.trace(self.stage, ray, &mut sampler)
-                {
+                let ray = projection.ray(DVec2::new(u, v));
+                let is_admitted = projection.admits(&ray, self.stage, &mut rays);
+                is_admitted.then_some(((), ray, sampler))
+            });
+            party.follow(self.stage, starts, |(), walk| {
+                if walk.has_met() {
                     walk.add_to(&mut sums, view);
                 }
-            }
+            });
         }
-        (vec![sums], rays + walk.rays())
+        (vec![sums], rays + party.rays())
     }
 }

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::{Part, Walk};
+use super::Part;
+use super::walk::{Answer, Ask, Walk};
 use crate::accel::Ray;
 use crate::extract::{Light, Stage};
 use crate::film::Sums;
 use crate::geometry::basis;
-use crate::sampling::{Sampler, cosine_hemisphere};
+use crate::sampling::{Key, Sampler, cosine_hemisphere};
 
 /// Radiance over irradiance, `L / E` in sr⁻¹, of light that was scattered exactly once: what the first
 /// surface along a ray sends back of sun and sky. Neither a walk nor a choice of lobes nor roulette:
@@ -21,6 +22,9 @@ use crate::sampling::{Sampler, cosine_hemisphere};
 #[derive(Clone, Debug)]
 pub(super) struct FirstOrder {
     radiance: Vec<f32>,
+    sampler: Sampler,
+    direction: DVec3,
+    has_met: bool,
     part: Part,
     orders_apart: bool,
     rays: u64,
@@ -29,7 +33,15 @@ pub(super) struct FirstOrder {
 impl FirstOrder {
     /// For stages with this many lanes; with the parts apart if asked for.
     pub(super) fn new(lanes: usize, orders_apart: bool) -> Self {
-        Self { radiance: vec![0.0; lanes], part: Part::Uncollided, orders_apart, rays: 0 }
+        Self {
+            radiance: vec![0.0; lanes],
+            sampler: Sampler::new(Key::new(0), 0),
+            direction: DVec3::ZERO,
+            has_met: false,
+            part: Part::Uncollided,
+            orders_apart,
+            rays: 0,
+        }
     }
 
     /// Spectra in a row: the whole and, on request, its parts, of which no light is multiply scattered.
@@ -39,15 +51,18 @@ impl FirstOrder {
 }
 
 impl Walk for FirstOrder {
-    fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
+    fn start(&mut self, ray: &Ray, sampler: Sampler) {
         self.radiance.fill(0.0);
-        self.rays += 1;
-        let hit = stage.geometry.closest(&ray).filter(|hit| !stage.is_cut(hit));
-        let Some(hit) = hit else { return false };
+        (self.sampler, self.direction, self.has_met) = (sampler, ray.direction, false);
+    }
+
+    fn go_on(&mut self, stage: &Stage, Answer { hit, .. }: Answer) -> Ask {
+        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return Ask::END };
+        self.has_met = true;
         self.part = Part::of(1, stage.is_ground(&hit));
-        let wo = -ray.direction;
+        let wo = -self.direction;
         let bsdf = &stage.surface(&hit).bsdf;
-        let [of_sun, across_sun, of_sky, across_sky] = sampler.next_event();
+        let [of_sun, across_sun, of_sky, across_sky] = self.sampler.next_event();
         let mut add = |towards: DVec3, share: &[f32], scale: f64| {
             let Some(scattering) = bsdf.eval(hit.normal, wo, towards) else { return };
             self.rays += 1;
@@ -76,7 +91,11 @@ impl Walk for FirstOrder {
                 add(sky, &dome.share, 1.0);
             }
         }
-        true
+        Ask::END
+    }
+
+    fn has_met(&self) -> bool {
+        self.has_met
     }
 
     fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {

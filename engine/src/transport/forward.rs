@@ -101,13 +101,14 @@ pub(super) struct Packet<'a> {
     pub(super) before: Vec<f32>,
     /// Nothing at all.
     pub(super) dark: Vec<f32>,
-    /// What the strongest packets weigh when they start.
-    full: f32,
+    /// A packet that weighs less is played for.
+    weak: f32,
     grain: Grain,
     pub(super) rays: u64,
 }
 
 impl<'a> Packet<'a> {
+    /// The strongest weigh `full` when they start.
     fn new(
         stage: &'a Stage,
         counters: &'a [Box<dyn Counter>],
@@ -116,7 +117,11 @@ impl<'a> Packet<'a> {
         let dark = vec![0.0; stage.lanes()];
         let sums = counters.iter().map(|one| Sums::of_block(one.cells(), stage.bands)).collect();
         let (weight, before) = (dark.clone(), dark.clone());
-        Self { stage, counters, sums, weight, before, dark, full, grain, rays: 0 }
+        let weak = match grain {
+            Grain::Packet(roulette) => full * roulette.weak(),
+            Grain::Photon => 0.0,
+        };
+        Self { stage, counters, sums, weight, before, dark, weak, grain, rays: 0 }
     }
 
     /// Follows one of this weight that comes from outside.
@@ -132,9 +137,10 @@ impl<'a> Packet<'a> {
     /// Follows one of this weight that a surface emits.
     pub(super) fn emerge(&mut self, hit: &Hit, ray: Ray, sampler: &mut Sampler) {
         self.take_grain(sampler);
+        let u = sampler.aside();
         self.rays += show(
             (self.stage, self.counters, &mut self.sums),
-            &Event::Emission { hit, ray: &ray, weight: &self.weight },
+            &Event::Emission { hit, ray: &ray, weight: &self.weight, u },
         );
         // It has left a surface once, and has not been scattered.
         self.follow(ray, (1, self.stage.is_ground(hit)), sampler);
@@ -152,8 +158,8 @@ impl<'a> Packet<'a> {
         if self.grain == Grain::Photon {
             return self.follow_whole(ray, (left, ground), sampler);
         }
-        let Self { stage, counters, sums, weight, before, full, rays, .. } = self;
-        let (stage, full, most) = (*stage, *full, self.stage.rules.max_order.saturating_add(left));
+        let Self { stage, counters, sums, weight, before, weak, rays, .. } = self;
+        let (stage, weak, most) = (*stage, *weak, self.stage.rules.max_order.saturating_add(left));
         let mut show = |event: Event<'_>| show((stage, counters, sums), &event);
         let (mut order, mut met_ground) = (left, ground);
         loop {
@@ -183,6 +189,7 @@ impl<'a> Packet<'a> {
                 weight,
                 scattered,
                 reflected,
+                u: sampler.aside(),
             });
             met_ground |= stage.is_ground(&hit);
             before.copy_from_slice(weight);
@@ -196,7 +203,7 @@ impl<'a> Packet<'a> {
                     for (weight, factor) in weight.iter_mut().zip(next.spectrum) {
                         *weight *= factor * next.scale;
                     }
-                    roulette::survives(&stage.rules, order + 1 - left, full, weight, chance)
+                    roulette::survives(&stage.rules, order + 1 - left, weak, weight, chance)
                 });
             if !lives {
                 weight.fill(0.0);

@@ -2,9 +2,10 @@ use glam::DVec2;
 
 use super::directions::in_parts;
 use super::forward::photon_film;
+use super::walk::{Party, Traced};
 use super::{
-    Camera, FirstOrder, Grain, Path, Projection, ReferencePlane, Rows, Source, ThermalPath, Tiles,
-    Traced, ViewCounter, spectra,
+    Camera, FirstOrder, Grain, Path, Projection, ReferencePlane, Roulette, Rows, Source,
+    ThermalPath, Tiles, ViewCounter, spectra,
 };
 use crate::components::System;
 use crate::extract::Stage;
@@ -49,10 +50,12 @@ impl<'a> ImageFilm<'a> {
     ) -> Self {
         match (system, camera, source) {
             (System::Forward, Camera::Orthographic(projection), _) => {
-                let counter = ViewCounter::new(vec![projection.clone()]);
+                let counter =
+                    ViewCounter::new(vec![projection.clone()]).playing(stage, source, key);
                 let counters = in_parts(counter.clone(), orders);
                 let plane = ReferencePlane::of(None, stage);
-                let rows = photon_film(stage, (source, Grain::Packet, plane), counters, key);
+                let of = (source, Grain::Packet(Roulette::Firm), plane);
+                let rows = photon_film(stage, of, counters, key);
                 Self::Packets(rows, stage, counter)
             }
             (System::FirstOrder, _, _) => {
@@ -61,7 +64,7 @@ impl<'a> ImageFilm<'a> {
                 Self::Paths(Tiles::new((stage, camera.clone()), key, columns, path))
             }
             (_, _, Source::Reflected) => {
-                let path = move || Path::of_orders(stage.lanes(), orders);
+                let path = move || Path::new(stage.lanes(), orders);
                 let columns = stage.bands * spectra(orders);
                 Self::Paths(Tiles::new((stage, camera.clone()), key, columns, path))
             }
@@ -123,11 +126,12 @@ fn of_packets(rows: &Rows<'_>, stage: &Stage, projection: &Projection) -> ImageO
 /// benchmark of the ray engine should be fed with.
 #[must_use]
 pub fn path_rays(stage: &Stage, projection: &Projection, paths: u64, key: Key) -> Vec<Traced> {
-    let mut path = Path::logged(stage.lanes());
-    for index in 0..paths {
+    let mut party = Party::logged(|| Path::new(stage.lanes(), false));
+    let starts = (0..paths).map(|index| {
         let mut sampler = Sampler::new(key, index);
         let [u, v, ..] = sampler.next_event();
-        path.trace(stage, projection.ray(DVec2::new(u, v)), &mut sampler);
-    }
-    path.into_log()
+        ((), projection.ray(DVec2::new(u, v)), sampler)
+    });
+    party.follow(stage, starts, |(), _| {});
+    party.into_log()
 }

@@ -26,7 +26,7 @@ mod thermal;
 mod tiles;
 mod walk;
 
-pub use backward::{Path, Traced};
+use backward::Path;
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
 pub use components::{
     COMPONENT_COLUMNS, ComponentsFilm, GAP_COLUMN, GAP_RINGS, image_components_film,
@@ -43,11 +43,12 @@ pub use hemisphere::{Cell, Hemisphere};
 pub use image::{ImageFilm, ImageOutcome, path_rays};
 pub use parts::{Part, PartCounter, spectra};
 pub use plane::ReferencePlane;
+pub use roulette::Roulette;
 pub use rows::Rows;
 pub use share::Share;
 use thermal::ThermalPath;
 pub use tiles::Tiles;
-use walk::Walk;
+pub use walk::Traced;
 
 /// Independent randomisations of every measurement that has the samples for them. Their spread
 /// gives the standard error; with 32 the error of that error is 13 %.
@@ -65,8 +66,9 @@ pub enum Source {
 /// What light is followed as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grain {
-    /// Packets with power in every band, which lose a part of it wherever they are scattered.
-    Packet,
+    /// Packets with power in every band, which lose a part of it wherever they are scattered, and are
+    /// played for when little is left.
+    Packet(Roulette),
     /// Photons of one band, which are absorbed or scattered as a whole.
     Photon,
 }

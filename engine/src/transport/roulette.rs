@@ -1,26 +1,43 @@
 use crate::extract::Rules;
 
-/// Share of its full weight below which a path is played for, whatever its order. A path of less than
-/// this changes a result by less than its noise, so most of them may end; the others stand for them.
-const WEAK: f32 = 0.05;
+/// How early paths and packets that carry little are played for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Roulette {
+    /// Below 0.05 of what they started with: where results differ less from path to path than roulette
+    /// would make them differ.
+    Gentle,
+    /// Below 0.5: where each path brings one noisy contribution after the other. Paths in leaves stay
+    /// above it for several orders in the near infrared; those off soil or bark fall below at once.
+    /// What other shares are worth stands in `README.md`.
+    Firm,
+}
 
-/// Russian roulette: whether a path that was scattered `order` times goes on; `full` is the weight of
-/// one that has lost nothing. The throughput of one
+impl Roulette {
+    /// The share of its full weight below which one is played for.
+    pub(super) const fn weak(self) -> f32 {
+        match self {
+            Self::Gentle => 0.05,
+            Self::Firm => 0.5,
+        }
+    }
+}
+
+/// Russian roulette: whether a path that was scattered `order` times goes on. The throughput of one
 /// that does is divided by its chance to do so.
 ///
 /// Beyond `roulette_after` orders a path ends with the probability `roulette_kill` (LESS manual,
-/// section 2.1); at any order, one that no band carries much on ends in proportion.
+/// section 2.1); at any order, one that no band carries `weak` on ends in proportion.
 pub(super) fn survives(
     rules: &Rules,
     order: u32,
-    full: f32,
+    weak: f32,
     throughput: &mut [f32],
     u: f64,
 ) -> bool {
     let strongest = throughput.iter().copied().fold(0.0, f32::max);
     let constant =
         if order > rules.roulette_after { 1.0 - rules.roulette_kill as f32 } else { 1.0 };
-    let survival = constant.min(strongest / (full * WEAK));
+    let survival = constant.min(strongest / weak);
     if survival >= 1.0 {
         return true;
     }
@@ -36,7 +53,7 @@ pub(super) fn survives(
 
 #[cfg(test)]
 mod tests {
-    use super::survives;
+    use super::{Roulette, survives};
     use crate::extract::Rules;
 
     /// Over all outcomes the weight that goes on is the weight that came: exactly, because the
@@ -52,7 +69,7 @@ mod tests {
                     let on = survives(
                         &rules,
                         order,
-                        1.0,
+                        Roulette::Firm.weak(),
                         &mut throughput,
                         (f64::from(i) + 0.5) / f64::from(n),
                     );

@@ -6,7 +6,8 @@ use std::ops::Range;
 use glam::{DVec2, UVec2};
 
 use super::share::{restore_f64, restore_u64, save_f64, save_u64};
-use super::{Camera, Film, ImageOutcome, RANDOMISATIONS, Share, Walk, Watch, blocks};
+use super::walk::{Party, Walk};
+use super::{Camera, Film, ImageOutcome, RANDOMISATIONS, Share, Watch, blocks};
 use crate::extract::Stage;
 use crate::film::{Sums, ratio};
 use crate::sampling::{Key, Sampler};
@@ -107,7 +108,7 @@ impl<'a> Tiles<'a> {
         let size = camera.size();
         let zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
         let trace = move |tile: &mut Tile, samples: Range<u64>| {
-            trace_tile((stage, &camera), tile, samples, key, columns, walk())
+            trace_tile((stage, &camera), tile, samples, key, columns, &walk)
         };
         Self {
             size,
@@ -316,40 +317,39 @@ fn morton(at: UVec2) -> u64 {
     spread(at.x) | (spread(at.y) << 1)
 }
 
-fn trace_tile(
+fn trace_tile<W: Walk>(
     (stage, camera): (&Stage, &Camera),
     tile: &mut Tile,
     samples: Range<u64>,
     key: Key,
     columns: usize,
-    mut walk: impl Walk,
+    walk: impl Fn() -> W,
 ) -> (Sums, u64) {
     let scale = camera.size().as_dvec2().recip();
-    let mut zones = Sums::new(RANDOMISATIONS as usize, walk.zones());
+    let mut party = Party::new(stage, &walk);
+    let mut zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
     let (mut rays, mut found) = (0, Sums::new(1, columns));
     // Sample by sample, so that sums over the pixels are made in one order however rounds are cut.
     for sample in samples {
         let stream = key.index(sample);
         let row = (sample % u64::from(RANDOMISATIONS)) as usize;
-        for (pixel, at) in tile.pixels().enumerate() {
+        let starts = tile.pixels().enumerate().filter_map(|(pixel, at)| {
             let mut sampler = Sampler::new(stream, morton(at));
             let [u, v, ..] = sampler.next_event();
-            let on_film = (at.as_dvec2() + DVec2::new(u, v)) * scale;
-            let Some(ray) = camera.ray(on_film) else { continue };
-            if !camera.admits(&ray, stage, &mut rays) {
-                continue;
-            }
-            let is_seen = walk.trace(stage, ray, &mut sampler)
-                || camera.sees_sky() && walk.see_sky(stage, ray.direction);
-            if is_seen {
+            let ray = camera.ray((at.as_dvec2() + DVec2::new(u, v)) * scale)?;
+            let is_admitted = camera.admits(&ray, stage, &mut rays);
+            is_admitted.then_some(((pixel, ray.direction), ray, sampler))
+        });
+        party.follow(stage, starts, |(pixel, direction), walk| {
+            if walk.has_met() || camera.sees_sky() && walk.see_sky(stage, direction) {
                 found.clear();
                 walk.add_to(&mut found, 0);
                 tile.push(pixel, row, found.values());
                 walk.add_to_zones(&mut zones, row);
             }
-        }
+        });
     }
-    (zones, rays + walk.rays())
+    (zones, rays + party.rays())
 }
 
 #[cfg(test)]

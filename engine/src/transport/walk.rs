@@ -1,15 +1,23 @@
+//! Walks from a sensor into the scene, many side by side.
+
 use glam::DVec3;
 
-use super::Path;
-use crate::accel::Ray;
+use crate::accel::{Batch, Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::Sampler;
 
-/// Follows a ray from a sensor into the scene; one value is reused for many rays.
+/// Follows a ray from a sensor into the scene, from one question of the ray engine to the next; one
+/// value is reused for many rays.
 pub(super) trait Walk {
-    /// Follows the ray; whether it meets the scene at all.
-    fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool;
+    /// Sets out along a ray, the first that it waits for.
+    fn start(&mut self, ray: &Ray, sampler: Sampler);
+
+    /// Takes what was found on the rays that it waited for; returns those that it waits for now.
+    fn go_on(&mut self, stage: &Stage, answer: Answer) -> Ask;
+
+    /// Whether it has met the scene at all.
+    fn has_met(&self) -> bool;
 
     /// Takes what a ray in this direction, which met nothing, finds in the sky; whether it finds
     /// anything. For cameras that see the sky.
@@ -31,28 +39,146 @@ pub(super) trait Walk {
     /// Adds what the last ray found to sums over the whole image, shape `[cells, zones]`.
     fn add_to_zones(&self, _: &mut Sums, _: usize) {}
 
-    /// Rays traced so far.
-    fn rays(&self) -> u64;
+    /// Rays so far that it has traced by itself, without waiting.
+    fn rays(&self) -> u64 {
+        0
+    }
 }
 
-impl Walk for Path {
-    fn trace(&mut self, stage: &Stage, ray: Ray, sampler: &mut Sampler) -> bool {
-        self.trace(stage, ray, sampler)
+/// Rays that a walk waits for: none at its end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ask {
+    /// One of which it asks whether anything is in its way,
+    pub(super) shadow: Option<Ray>,
+    /// and one of which it asks what it meets first.
+    pub(super) onward: Option<Ray>,
+}
+
+impl Ask {
+    /// At the end of a walk.
+    pub(super) const END: Self = Self { shadow: None, onward: None };
+
+    fn is_end(&self) -> bool {
+        self.shadow.is_none() && self.onward.is_none()
+    }
+}
+
+/// What was found on the rays of an [`Ask`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answer {
+    /// Whether there was a shadow ray and nothing in its way.
+    pub(super) is_lit: bool,
+    /// What the ray onwards meets first, if there was one and it meets anything.
+    pub(super) hit: Option<Hit>,
+}
+
+/// A ray that was traced, for benchmarks of the ray engine.
+#[derive(Clone, Copy, Debug)]
+pub struct Traced {
+    /// The ray.
+    pub ray: Ray,
+    /// Whether any hit would do, as for a shadow ray, or the closest was asked for.
+    pub any: bool,
+}
+
+/// Walks that wait for their rays together: those are traced side by side, in less time than one after
+/// the other. What each finds does not depend on the others.
+pub(super) struct Party<W> {
+    walks: Vec<W>,
+    asks: Vec<Ask>,
+    rays: u64,
+    log: Option<Vec<Traced>>,
+}
+
+/// Most walks of a party: enough that the ray engine is seldom short of work when some have ended.
+const MOST: usize = 64;
+
+/// Lanes of all walks of a party, so that they stay in the cache.
+const LANES: usize = 2048;
+
+impl<W: Walk> Party<W> {
+    pub(super) fn new(stage: &Stage, walk: impl Fn() -> W) -> Self {
+        Self::of((LANES / stage.lanes().max(1)).clamp(4, MOST), walk)
     }
 
-    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
-        self.see_sky(stage, direction)
+    /// One walk after the other, with a log of its rays.
+    pub(super) fn logged(walk: impl Fn() -> W) -> Self {
+        Self { log: Some(Vec::new()), ..Self::of(1, walk) }
     }
 
-    fn values(&self) -> &[f32] {
-        self.radiance()
+    fn of(count: usize, walk: impl Fn() -> W) -> Self {
+        let walks = (0..count).map(|_| walk()).collect();
+        Self { walks, asks: vec![Ask::END; count], rays: 0, log: None }
     }
 
-    fn add_to(&self, sums: &mut Sums, cell: usize) {
-        self.add_to(sums, cell);
+    /// Rays traced so far.
+    pub(super) fn rays(&self) -> u64 {
+        self.rays + self.walks.iter().map(W::rays).sum::<u64>()
     }
 
-    fn rays(&self) -> u64 {
-        self.rays()
+    /// All rays so far, if they are logged.
+    pub(super) fn into_log(self) -> Vec<Traced> {
+        self.log.unwrap_or_default()
+    }
+
+    /// Follows each of these rays to the end of its walk and shows it, in their order.
+    pub(super) fn follow<T>(
+        &mut self,
+        stage: &Stage,
+        mut starts: impl Iterator<Item = (T, Ray, Sampler)>,
+        mut found: impl FnMut(T, &mut W),
+    ) {
+        let mut tags = Vec::with_capacity(self.walks.len());
+        loop {
+            let places = self.walks.iter_mut().zip(&mut self.asks);
+            for ((walk, ask), (tag, ray, sampler)) in places.zip(&mut starts) {
+                walk.start(&ray, sampler);
+                *ask = Ask { shadow: None, onward: Some(ray) };
+                tags.push(tag);
+            }
+            if tags.is_empty() {
+                return;
+            }
+            self.finish(stage, tags.len());
+            for (walk, tag) in self.walks.iter_mut().zip(tags.drain(..)) {
+                found(tag, walk);
+            }
+        }
+    }
+
+    /// Brings the first walks to their ends.
+    fn finish(&mut self, stage: &Stage, count: usize) {
+        let mut going: Vec<usize> = (0..count).collect();
+        let (mut shadows, mut rays) = (Vec::new(), Vec::new());
+        let (mut dark, mut hits) = (Vec::new(), Vec::new());
+        while !going.is_empty() {
+            shadows.clear();
+            rays.clear();
+            for ask in going.iter().map(|&walk| &self.asks[walk]) {
+                shadows.extend(ask.shadow);
+                rays.extend(ask.onward);
+                if let Some(log) = &mut self.log {
+                    log.extend(ask.shadow.map(|ray| Traced { ray, any: true }));
+                    log.extend(ask.onward.map(|ray| Traced { ray, any: false }));
+                }
+            }
+            self.rays += (shadows.len() + rays.len()) as u64;
+            dark.resize(shadows.len(), false);
+            hits.resize(rays.len(), None);
+            stage.geometry.trace_each(Batch {
+                shadows: &shadows,
+                dark: &mut dark,
+                rays: &rays,
+                hits: &mut hits,
+            });
+            let (mut dark, mut hits) = (dark.iter(), hits.iter());
+            going.retain(|&walk| {
+                let ask = &mut self.asks[walk];
+                let is_lit = ask.shadow.is_some() && dark.next() == Some(&false);
+                let hit = ask.onward.and_then(|_| *hits.next()?);
+                *ask = self.walks[walk].go_on(stage, Answer { is_lit, hit });
+                !ask.is_end()
+            });
+        }
     }
 }

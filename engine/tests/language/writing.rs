@@ -433,7 +433,7 @@ fn sensor() -> BoxedStrategy<Sensor> {
     ];
     prop_oneof![
         image_sensor(),
-        (views(), ends(), list(image()), virtual_plane(), system()).prop_map(
+        (views(), ends(), list(image()), virtual_plane(), option(system())).prop_map(
             |(views, until, measure, virtual_plane, system)| Sensor::Directions {
                 views,
                 until,

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
+use sunfleck::accel::{Batch, Ray};
 use sunfleck::extract::Stage;
 use sunfleck::run;
 use sunfleck::sampling::Key;
@@ -15,6 +16,9 @@ use crate::arguments::Rays;
 
 /// Rays that a thread takes at a time: enough that taking them costs nothing.
 const SHARE: usize = 4096;
+
+/// Rays of all paths that go on side by side.
+const TOGETHER: usize = 128;
 
 /// Rates of closest-hit and any-hit rays of paths that start straight down over the middle half of
 /// the scene, build time and memory.
@@ -83,22 +87,21 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// Traces rays as a path does: towards the sun and onwards at once.
+/// Traces rays as paths do: many at a time, those to the sun and those onwards.
 fn as_paths(stage: &Stage, rays: &[Traced]) {
-    let mut rays = rays.iter().peekable();
-    while let Some(Traced { ray, any }) = rays.next() {
-        match rays.peek() {
-            Some(next) if *any && !next.any => {
-                black_box(stage.geometry.occluded_and_closest(ray, &next.ray));
-                rays.next();
-            }
-            _ if *any => {
-                black_box(stage.geometry.occluded(ray));
-            }
-            _ => {
-                black_box(stage.geometry.closest(ray));
-            }
-        }
+    for together in rays.chunks(TOGETHER) {
+        let of_kind = |any: bool| -> Vec<Ray> {
+            together.iter().filter(|one| one.any == any).map(|one| one.ray).collect()
+        };
+        let (shadows, rays) = (of_kind(true), of_kind(false));
+        let (mut dark, mut hits) = (vec![false; shadows.len()], vec![None; rays.len()]);
+        stage.geometry.trace_each(Batch {
+            shadows: &shadows,
+            dark: &mut dark,
+            rays: &rays,
+            hits: &mut hits,
+        });
+        black_box((dark, hits));
     }
 }
 

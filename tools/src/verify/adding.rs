@@ -73,7 +73,7 @@ fn scene(sheets: &str) -> anyhow::Result<sunfleck::products::Report> {
         boundary: Periodic,
         sensors: {{
             "photons": Photons(per_m2: 30000.0, measure: [Albedo, Fapar(layer_m: 2.0)]),
-            "view": Directions(views: List([(60.0, 200.0)]), until: Samples(131072)),
+            "view": Directions(system: Backward, views: List([(60.0, 200.0)]), until: Samples(131072)),
         }},"#,
         leaf(LOWER),
         leaf(UPPER),

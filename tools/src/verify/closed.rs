@@ -21,7 +21,7 @@ fn plane() -> anyhow::Result<Vec<Finding>> {
         terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
         sun: (zenith_deg: 40.0, azimuth_deg: 200.0),
         sensors: {{
-            "back": Directions(views: List([(70.0, 30.0)]), until: Samples(2048)),
+            "back": Directions(system: Backward, views: List([(70.0, 30.0)]), until: Samples(2048)),
             "forth": Directions(views: List([(70.0, 30.0)]), until: Samples(2048), system: Forward),
             "image": Orthographic(size_px: (8, 8), extent_m: (5.0, 5.0), samples_per_px: 16),
             "photons": Photons(per_m2: 500.0, measure: [Albedo]),
@@ -102,7 +102,7 @@ fn shadow() -> anyhow::Result<Vec<Finding>> {
         boundary: Periodic,
         sensors: {{
             "nadir": Directions(
-                views: List([(0.0, 0.0)]), until: Samples(131072), measure: [Brf, FourComponents],
+                system: Backward, views: List([(0.0, 0.0)]), until: Samples(131072), measure: [Brf, FourComponents],
             ),
             "photons": Photons(per_m2: 32768.0, measure: [Fapar(layer_m: 1.0)]),
         }},"#
@@ -151,7 +151,7 @@ fn view_factors() -> anyhow::Result<Vec<Finding>> {
                 List(of: "hot", at_m: [(0.0, 0.0, 0.1)]), List(of: "glass", at_m: [(0.0, 0.0, 1.1)]),
             ],
             sensors: {{ "nadir": Directions(
-                views: List([(0.0, 0.0)]), until: Samples(262144), measure: [Radiance],
+                system: Backward, views: List([(0.0, 0.0)]), until: Samples(262144), measure: [Radiance],
             ) }},"#
         ))?;
         let found = value(&report, "nadir", "radiance", 0)?.scaled(1.0 / planck(10_000.0, 300.0));

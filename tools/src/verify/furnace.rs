@@ -28,7 +28,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     let mut findings = Vec::new();
     let report = scene(
         "sky: Isotropic(irradiance: Constant(1.0)),",
-        r#""views": Directions(views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: Samples(16384)),
+        r#""views": Directions(system: Backward, views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: Samples(16384)),
         "photons": Photons(per_m2: 8000.0, measure: [Albedo, Fapar(layer_m: 2.0)]),"#,
     )?;
     let views = ["nadir", "30°", "70°"];

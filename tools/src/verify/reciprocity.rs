@@ -18,7 +18,8 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
             let sensor = sensor.replace("VIEW", &view);
             measure(&forest((0.0, 0.0), &format!("{light} sensors: {{ \"one\": {sensor} }},")))
         };
-        let one = brf(a, b, "Directions(views: List(VIEW), until: Samples(524288))")?;
+        let one =
+            brf(a, b, "Directions(system: Backward, views: List(VIEW), until: Samples(524288))")?;
         let other = brf(b, a, "Photons(per_m2: 64000.0, measure: [BrfViews(List(VIEW))])")?;
         for (band, name) in ["red", "near infrared"].iter().enumerate() {
             let one = value(&one, "one", "brf", band)?;

@@ -13,7 +13,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
             "fisheye": Fisheye(
                 size_px: (24, 24), position_m: (2.0, 1.0, 0.1), samples_per_px: 16, measure: [GapFraction],
             ),
-            "back": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02)),
+            "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02)),
             "forth": Directions(
                 views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.03),
                 system: Forward,

@@ -15,7 +15,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     let sensors = r#"sun: (zenith_deg: 50.0, azimuth_deg: 10.0), sky: Fraction([0.3, 0.1]),
         sensors: {
             "image": Orthographic(size_px: (24, 20), cover: WholeScene, zenith_deg: 20.0, samples_per_px: 32),
-            "views": Directions(views: List([(0.0, 0.0), (40.0, 110.0)]), until: Samples(16384)),
+            "views": Directions(system: Backward, views: List([(0.0, 0.0), (40.0, 110.0)]), until: Samples(16384)),
             "photons": Photons(per_m2: 4000.0, measure: [Albedo, Fapar(layer_m: 1.0)]),
         },"#;
     let here = measure(&forest((0.0, 0.0), sensors))?;

@@ -95,8 +95,8 @@ fn layer(seed: u32) -> anyhow::Result<Vec<f64>> {
         transport: (seed: {seed}),
         sensors: {{
             "photons": Photons(per_m2: 10000.0, measure: [Albedo, Fapar(layer_m: {HEIGHT:?})]),
-            "brf": Directions(views: {}, until: Samples(8192)),
-            "gaps": Directions(views: {}, until: Samples(16384), measure: [GapFraction]),
+            "brf": Directions(system: Backward, views: {}, until: Samples(8192)),
+            "gaps": Directions(system: Backward, views: {}, until: Samples(16384), measure: [GapFraction]),
         }},"#,
         HEIGHT - RADIUS,
         views(&BRF_VIEWS),

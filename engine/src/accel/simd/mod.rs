@@ -15,7 +15,8 @@ mod stack;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use super::trace::{self, Found, Query};
+use super::scene::Scene;
+use super::trace::{self, Batch, Found, Query};
 
 use portable::Portable;
 pub(super) use stack::{Space, Stack};
@@ -115,7 +116,7 @@ impl Level {
     #[inline]
     pub(super) fn closest(self, query: &Query<'_>) -> Option<Found> {
         match self {
-            Self::Portable => trace::trace::<Portable, false>(Portable, query),
+            Self::Portable => trace::trace(Portable, query, false),
             // SAFETY: `detect` and `available` name a level only when the processor has it.
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => unsafe { x86::closest_avx2(query) },
@@ -125,21 +126,17 @@ impl Level {
         }
     }
 
-    /// Any primitive on one ray and the closest on another.
+    /// Answers a batch.
     #[inline]
-    pub(super) fn both(
-        self,
-        any: &Query<'_>,
-        closest: &Query<'_>,
-    ) -> (Option<Found>, Option<Found>) {
+    pub(super) fn each(self, scene: &Scene, batch: Batch<'_>) {
         match self {
-            Self::Portable => trace::trace_both(Portable, any, closest),
+            Self::Portable => trace::trace_each(Portable, scene, batch),
             // SAFETY: as in `closest`.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { x86::both_avx2(any, closest) },
+            Self::Avx2 => unsafe { x86::each_avx2(scene, batch) },
             // SAFETY: as in `closest`.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { x86::both_avx512(any, closest) },
+            Self::Avx512 => unsafe { x86::each_avx512(scene, batch) },
         }
     }
 
@@ -147,7 +144,7 @@ impl Level {
     #[inline]
     pub(super) fn occluded(self, query: &Query<'_>) -> bool {
         match self {
-            Self::Portable => trace::trace::<Portable, true>(Portable, query).is_some(),
+            Self::Portable => trace::trace(Portable, query, true).is_some(),
             // SAFETY: as in `closest`.
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => unsafe { x86::occluded_avx2(query) },

@@ -42,6 +42,11 @@ impl<'a> Stack<'a> {
     }
 
     #[inline(always)]
+    pub(in crate::accel) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    #[inline(always)]
     pub(in crate::accel) fn push(&mut self, item: u32, near: f32) {
         self.space.refs[self.len] = MaybeUninit::new(item);
         self.space.near[self.len] = MaybeUninit::new(near.to_bits());

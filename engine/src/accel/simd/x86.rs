@@ -3,7 +3,7 @@
 #[allow(clippy::wildcard_imports, reason = "a list of intrinsics says nothing")]
 use std::arch::x86_64::*;
 
-use super::{Found, Isa, Lanes, Query, Words, trace};
+use super::{Batch, Found, Isa, Lanes, Query, Scene, Words, trace};
 
 /// Proof that AVX2 and FMA are there: made only inside the two wrappers.
 #[derive(Clone, Copy)]
@@ -15,32 +15,32 @@ pub(super) struct Avx512(());
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn closest_avx2(query: &Query<'_>) -> Option<Found> {
-    trace::trace::<Avx2, false>(Avx2(()), query)
+    trace::trace(Avx2(()), query, false)
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn occluded_avx2(query: &Query<'_>) -> bool {
-    trace::trace::<Avx2, true>(Avx2(()), query).is_some()
+    trace::trace(Avx2(()), query, true).is_some()
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn both_avx2(any: &Query<'_>, closest: &Query<'_>) -> (Option<Found>, Option<Found>) {
-    trace::trace_both(Avx2(()), any, closest)
+pub(super) fn each_avx2(scene: &Scene, batch: Batch<'_>) {
+    trace::trace_each(Avx2(()), scene, batch);
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn both_avx512(any: &Query<'_>, closest: &Query<'_>) -> (Option<Found>, Option<Found>) {
-    trace::trace_both(Avx512(()), any, closest)
+pub(super) fn each_avx512(scene: &Scene, batch: Batch<'_>) {
+    trace::trace_each(Avx512(()), scene, batch);
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn closest_avx512(query: &Query<'_>) -> Option<Found> {
-    trace::trace::<Avx512, false>(Avx512(()), query)
+    trace::trace(Avx512(()), query, false)
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn occluded_avx512(query: &Query<'_>) -> bool {
-    trace::trace::<Avx512, true>(Avx512(()), query).is_some()
+    trace::trace(Avx512(()), query, true).is_some()
 }
 
 /// The methods that both instruction sets do alike.

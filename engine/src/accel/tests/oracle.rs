@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::{
-    accel::{Ray, Scene},
+    accel::{Batch, Ray, Scene},
     components::{Disc, Mesh},
 };
 
@@ -131,10 +131,13 @@ pub(super) fn check(
     let behind = scenes[0].closest(&back);
     for scene in scenes {
         assert_eq!(scene.closest(ray), hit, "instruction sets differ: {ray:?}");
-        let both = scene.occluded_and_closest(&back, ray);
-        assert_eq!(both, (behind.is_some(), hit), "side by side: {ray:?}");
-        let both = scene.occluded_and_closest(ray, &back);
-        assert_eq!(both, (hit.is_some(), behind), "side by side: {back:?}");
+        // More rays than lines, of both kinds.
+        let rays = [*ray, back, back, *ray, back, *ray];
+        let (mut dark, mut hits) = ([false; 6], [None; 6]);
+        scene.trace_each(Batch { shadows: &rays, dark: &mut dark, rays: &rays, hits: &mut hits });
+        let answers = [hit, behind, behind, hit, behind, hit];
+        assert_eq!(hits, answers, "side by side: {ray:?}");
+        assert_eq!(dark, answers.map(|hit| hit.is_some()), "side by side: {ray:?}");
         assert_eq!(scene.occluded(ray), hit.is_some(), "any hit: {ray:?}");
         if let Some(hit) = hit {
             assert!(scene.occluded_within(ray, hit.distance.next_up()), "{ray:?}");

@@ -5,11 +5,7 @@ use super::Report;
 
 /// Whether a sensor can be measured by the system that it asks for.
 pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
-    let (Sensor::Orthographic { system, .. }
-    | Sensor::Perspective { system, .. }
-    | Sensor::Fisheye { system, .. }
-    | Sensor::Directions { system, .. }
-    | Sensor::Photons { system, .. }) = *sensor;
+    let Some(system) = sensor.system() else { return };
     if let Sensor::Photons { measure, .. } = sensor
         && system == System::Analog
     {

@@ -112,8 +112,9 @@ choice! {
             measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
             /// Only light that leaves through it counts; it is what is seen.
             virtual_plane: Option<VirtualPlane> = None,
-            /// Which transport system estimates it.
-            system: System = System::Backward,
+            /// Which transport system estimates it; if absent the one that takes fewer rays: photon packets
+            /// for what a whole scene reflects, paths from the sensor for the rest.
+            system: Option<System> = None,
         },
         /// Photon packets from sun and sky, and from what surfaces and `thermal_sky` emit.
         Photons {
@@ -160,6 +161,18 @@ impl Sensor {
         }
     }
 
+    /// The transport system that it asks for.
+    #[must_use]
+    pub const fn system(&self) -> Option<System> {
+        match *self {
+            Self::Orthographic { system, .. }
+            | Self::Perspective { system, .. }
+            | Self::Fisheye { system, .. }
+            | Self::Photons { system, .. } => Some(system),
+            Self::Directions { system, .. } => system,
+        }
+    }
+
     /// The same sensor, and of what it is to report in a scene as much as a system can measure; `None`
     /// if that is nothing. Where that is not all, the loosest of limits to the errors of single products
     /// holds for every one that is left.
@@ -170,12 +183,8 @@ impl Sensor {
         match &mut sensor {
             Self::Orthographic { measure, system, .. }
             | Self::Perspective { measure, system, .. }
-            | Self::Fisheye { measure, system, .. }
-            | Self::Directions { measure, system, .. } => {
+            | Self::Fisheye { measure, system, .. } => {
                 measure.retain(|one| one.is_measured_by(by, scene));
-                if measure.is_empty() {
-                    return None;
-                }
                 *system = by;
             }
             Self::Photons { measure, system, .. } => {
@@ -188,6 +197,13 @@ impl Sensor {
                 }
                 *system = by;
             }
+            Self::Directions { measure, system, .. } => {
+                measure.retain(|one| one.is_measured_by(by, scene));
+                *system = Some(by);
+            }
+        }
+        if sensor.measures() == 0 {
+            return None;
         }
         if sensor.measures() < measures {
             sensor.loosen();

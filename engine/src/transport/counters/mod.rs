@@ -7,6 +7,7 @@ mod cones;
 mod energy;
 mod fluxes;
 mod layers;
+mod stakes;
 mod views;
 
 use glam::DVec3;
@@ -44,6 +45,8 @@ pub enum Event<'a> {
         ray: &'a Ray,
         /// Its weight: over all lines, directions follow Lambert's law.
         weight: &'a [f32],
+        /// A number of this event alone, uniform in (0, 1), for counters that play for rays.
+        u: f64,
     },
     /// It flies.
     Flight {
@@ -73,6 +76,8 @@ pub enum Event<'a> {
         scattered: &'a [f32],
         /// See above.
         reflected: &'a [f32],
+        /// A number of this event alone, uniform in (0, 1), for counters that play for rays.
+        u: f64,
     },
     /// It goes on after being scattered, or does not.
     Roulette {
