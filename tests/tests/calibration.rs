@@ -193,8 +193,8 @@ fn errors_of_directions_are_right() {
     assert_calibrated(&z.into_iter().enumerate().map(named).collect::<Vec<_>>());
 }
 
-/// *Scene*: an oblique image of the grove, 6 times, of 256 samples a pixel. *Expected*: calibrated radiances
-/// of pixels, reflected and emitted.
+/// *Scene*: an oblique image of the grove, 6 times each of 16 and of 256 samples a pixel. *Expected*:
+/// calibrated radiances of pixels, reflected and emitted.
 #[test]
 fn errors_of_pixels_are_right() {
     let image = |samples: u32| {
@@ -202,10 +202,12 @@ fn errors_of_pixels_are_right() {
             "Orthographic(size_px: (16, 16), cover: Some(WholeScene), zenith_deg: 30.0, azimuth_deg: 80.0, samples_per_px: {samples}, measure: [Radiance])"
         )
     };
-    let report = crowd(&image(2048), 6, &[("a", image(256))]);
-    let of_band = |band| {
-        let of = |product: &Product| pixels_in_band(product, band);
-        (format!("band {band}"), deviations(&report, ("a", "radiance"), of))
+    let report = crowd(&image(2048), 6, &[("few", image(16)), ("many", image(256))]);
+    let of = |kind: &str, band: usize| {
+        let of_band = |product: &Product| pixels_in_band(product, band);
+        (format!("{kind}, band {band}"), deviations(&report, (kind, "radiance"), of_band))
     };
-    assert_calibrated(&[0, 1, 2].map(of_band));
+    for kind in ["few", "many"] {
+        assert_calibrated(&[0, 1, 2].map(|band| of(kind, band)));
+    }
 }

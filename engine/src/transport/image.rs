@@ -18,7 +18,8 @@ pub struct ImageOutcome {
     /// Radiance of each pixel in the unit of its [`Source`], shape `[rows, columns, spectra, bands]` (the whole and, if asked
     /// for, its parts): the mean over the samples that met the scene; NaN where none did.
     pub pixels: Vec<f32>,
-    /// Its standard error; NaN of fewer than two such samples.
+    /// Its standard error, from its own samples and, where those are few, from those of the tile of 16 × 16
+    /// pixels around it; NaN of one sample a pixel.
     pub errors: Vec<f32>,
     /// Share of each pixel's samples that met the scene, shape `[rows, columns]`.
     pub coverage: Vec<f32>,

@@ -78,6 +78,23 @@ impl Tile {
         (low.y..high.y).flat_map(move |y| (low.x..high.x).map(move |x| UVec2::new(x, y)))
     }
 
+    /// Mean variance of one sample in its pixels, shape `[columns]`, of `n` samples of each; NaN where no
+    /// pixel has two.
+    fn variance(&self, n: f64) -> Vec<f64> {
+        let columns = self.sums.bands();
+        let (mut sums, mut weight) = (vec![0.0; columns], 0.0);
+        for (&hits, squares) in self.hits.iter().zip(self.squares.chunks(columns)) {
+            if hits > 1 {
+                let hits = hits as f64;
+                weight += hits - 1.0;
+                for (sum, squares) in sums.iter_mut().zip(squares) {
+                    *sum += (hits - 1.0) * of_ratio(*squares, hits, n);
+                }
+            }
+        }
+        sums.iter().map(|sum| sum / weight).collect()
+    }
+
     /// Takes one sample of a pixel in.
     ///
     /// Source: Welford (1962), "Note on a method for calculating corrected sums of squares and
@@ -95,6 +112,20 @@ impl Tile {
         }
         self.sums.add_cell(row, values);
     }
+}
+
+/// Samples that the mean variance of a tile's pixels is worth beside those of a pixel.
+///
+/// Few samples of a skewed quantity, such as a leaf that is seldom lit, tell too small a variance
+/// whenever they missed what is rare; the other pixels of the tile have seen it. With this weight the
+/// errors of pixels of the benchmark stand are right (z spreads by 0.92 to 1.04) at 16 samples, where
+/// by themselves they were too small (1.36 to 1.63), and from some hundred on it hardly counts.
+const SHARED: f64 = 8.0;
+
+/// Variance of one of the samples that met the scene, from the sum of squared deviations of `hits` of
+/// `n`: of a ratio whose counts are 0 or 1 (see `film::ratio`).
+fn of_ratio(squares: f64, hits: f64, n: f64) -> f64 {
+    if n > 1.0 { squares * n / ((n - 1.0) * hits) } else { f64::NAN }
 }
 
 impl<'a> Tiles<'a> {
@@ -164,6 +195,7 @@ impl<'a> Tiles<'a> {
             for (total, part) in counts.iter_mut().zip(&tile.counts) {
                 *total += part;
             }
+            let shared = tile.variance(n);
             for (pixel, at) in tile.pixels().enumerate() {
                 let hits = tile.hits[pixel] as f64;
                 if hits == 0.0 {
@@ -171,16 +203,13 @@ impl<'a> Tiles<'a> {
                 }
                 let to = (at.y * size.x + at.x) as usize;
                 outcome.coverage[to] = (hits / n) as f32;
-                // The error of a ratio whose counts are 0 or 1 (see `film::ratio`).
-                let of_squares = |squares: &f64| (squares * n / (n - 1.0)).sqrt() / hits;
                 let range = pixel * columns..(pixel + 1) * columns;
                 let values = tile.mean[range.clone()].iter().zip(&tile.squares[range]);
-                for (column, (mean, squares)) in values.enumerate() {
+                for (column, ((mean, squares), shared)) in values.zip(&shared).enumerate() {
                     outcome.pixels[to * columns + column] = *mean as f32;
-                    // One sample has no spread.
-                    if hits > 1.0 {
-                        outcome.errors[to * columns + column] = of_squares(squares) as f32;
-                    }
+                    let of_own = (hits - 1.0) * of_ratio(*squares, hits, n);
+                    let variance = (of_own + SHARED * shared) / (hits - 1.0 + SHARED);
+                    outcome.errors[to * columns + column] = (variance / hits).sqrt() as f32;
                 }
             }
         }
