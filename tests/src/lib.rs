@@ -38,6 +38,32 @@ pub fn measure(text: &str, folder: &Path, options: &Options) -> Report {
     }
 }
 
+/// Scene text of two leafy trees on a square of 5 m, one of them over its edge, in two bands under sun
+/// and sky; `sensors` are those that look at them.
+#[must_use]
+pub fn two_trees(boundary: &str, sensors: &str) -> String {
+    format!(
+        r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
+        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
+    }},
+    meshes: {{ "tree": Crown(
+        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
+        leaf: Square(side_m: 0.1), leaf_material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+    sky: Fraction([0.3, 0.1]),
+    boundary: {boundary},
+    sensors: {{ {sensors} }},
+)"#
+    )
+}
+
 /// A product of a sensor.
 ///
 /// # Panics

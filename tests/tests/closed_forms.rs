@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sunfleck::products::Report;
 use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, measure, product, two_trees};
 
 fn run(text: &str) -> Report {
     measure(text, Path::new("."), &Options::default())
@@ -203,26 +203,8 @@ fn leaf_sheets_add_up_as_layers_do() {
 #[test]
 fn energy_closes_and_cells_sum_to_the_albedo() {
     for boundary in ["Periodic", "Isolated"] {
-        let report = run(&format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
-    sky: Fraction([0.3, 0.1]),
-    boundary: {boundary},
-    sensors: {{ "photons": Photons(per_m2: 4000.0, measure: [Albedo, BrfCells(40), Fapar(layer_m: 0.7)]) }},
-)"#
-        ));
+        let sensors = r#""photons": Photons(per_m2: 4000.0, measure: [Albedo, BrfCells(40), Fapar(layer_m: 0.7)])"#;
+        let report = run(&two_trees(boundary, sensors));
         let energy = product(&report, "photons", "energy");
         let bands = 2;
         for band in 0..bands {

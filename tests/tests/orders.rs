@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use sunfleck::products::{Product, Report};
 use sunfleck::run::Options;
 use sunfleck::transport::Hemisphere;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, measure, product, two_trees};
 
 const PARTS: [&str; 3] = ["uc", "co_sgl", "mlt"];
 
@@ -22,25 +22,8 @@ static PERIODIC: LazyLock<Report> = LazyLock::new(|| trees("Periodic"));
 fn trees(boundary: &str) -> Report {
     let (points, _) = points_in_cells();
     let views = "List([(0.0, 0.0), (40.0, 100.0), (60.0, 190.0)])";
-    run(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
-    sky: Fraction([0.3, 0.1]),
-    boundary: {boundary},
-    sensors: {{
+    let sensors = format!(
+        r#"
         "back": Directions(system: Backward, views: {views}, until: Samples(16000), measure: [Brf, Orders]),
         "inside": Directions(system: Backward, views: List([{points}]), until: Samples(320), measure: [Brf, Orders]),
         "forth": Directions(views: {views}, until: Samples(24000), measure: [Brf, Orders], system: Forward),
@@ -52,11 +35,9 @@ fn trees(boundary: &str) -> Report {
             Fapar(layer_m: 0.7),
         ]),
         "layers": Photons(per_m2: 400.0, measure: [Fapar(layer_m: [-1.0, 0.0, 1.5, 9.0])]),
-    }},
-)"#
-        ),
-        Path::new("."),
-    )
+    "#
+    );
+    run(&two_trees(boundary, &sensors), Path::new("."))
 }
 
 /// Directions in each cell that is looked at.

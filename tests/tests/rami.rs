@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use sunfleck::document::{self, Scene};
+use sunfleck::document::{self, Scene, Sensor, System};
 use sunfleck::products::Report;
 use sunfleck::run::{Options, Unwatched, run};
 use sunfleck_tests::{Estimate, product, shared};
@@ -23,6 +23,12 @@ fn scene(name: &str, set: &[(&str, f64)], sensors: &[&str]) -> Scene {
     assert!(reading.is_sound(), "{}", reading.render());
     let mut scene = reading.scene;
     scene.sensors.retain(|name, _| sensors.contains(&name.as_str()));
+    // Views that share their packets would err together, and so would their mean.
+    let apart = |sensor: &Sensor| sensor.measured_by(System::Backward, &scene);
+    let apart: Vec<_> = scene.sensors.values().map(apart).collect();
+    for (sensor, apart) in scene.sensors.values_mut().zip(apart) {
+        *sensor = apart.unwrap_or_else(|| sensor.clone());
+    }
     scene
 }
 

@@ -2,32 +2,9 @@
 
 use std::path::Path;
 
-use sunfleck::products::{Report, SensorReport};
+use sunfleck::products::Report;
 use sunfleck::run::Options;
-use sunfleck_tests::measure;
-
-/// A scene with these sensors.
-fn scene(sensors: &str) -> String {
-    format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Rhombus(length_m: 0.1, width_m: 0.07), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
-    boundary: Periodic,
-    sensors: {{ {sensors} }},
-)"#
-    )
-}
+use sunfleck_tests::{measure, two_trees};
 
 /// Every kind of sensor, ending as `until` tells of its name.
 fn sensors(until: impl Fn(&str) -> String) -> String {
@@ -47,18 +24,7 @@ fn sensors(until: impl Fn(&str) -> String) -> String {
 }
 
 fn run(sensors: &str) -> Report {
-    measure(&scene(sensors), Path::new("."), &Options::default())
-}
-
-/// All numbers of a sensor, as bits.
-fn bits(sensor: &SensorReport) -> Vec<u64> {
-    let of_product = |product: &sunfleck::products::Product| {
-        let numbers = product.values.iter().chain(&product.standard_error).map(|v| v.to_bits());
-        let image = product.image.iter();
-        let pixels = image.flat_map(|image| image.values.iter().chain(&image.standard_error));
-        numbers.chain(pixels.map(|v| u64::from(v.to_bits()))).collect::<Vec<_>>()
-    };
-    sensor.products.iter().flat_map(of_product).collect()
+    measure(&two_trees("Periodic", sensors), Path::new("."), &Options::default())
 }
 
 /// *Scene*: two trees in a periodic scene, seen by every kind of sensor. *Expected*: each product's
@@ -90,7 +56,7 @@ fn a_sensor_goes_on_until_every_product_is_good_enough() {
     for (sensor, again) in report.sensors.iter().zip(&again.sensors) {
         if sensor.name != "film" {
             assert_eq!(again.samples, sensor.samples, "{}", sensor.name);
-            assert!(bits(again) == bits(sensor), "{}", sensor.name);
+            assert!(again.bits().eq(sensor.bits()), "{}", sensor.name);
         }
     }
 }
@@ -118,7 +84,7 @@ fn the_first_condition_that_holds_ends_it() {
 /// *Scene*: black soil, black leaves. *Expected*: what is 0 throughout is believed after many samples.
 #[test]
 fn a_black_scene_ends() {
-    let black = scene(r#""p": Photons(until: RelError(0.01))"#)
+    let black = two_trees("Periodic", r#""p": Photons(until: RelError(0.01))"#)
         .replace("0.1, 0.3", "0.0, 0.0")
         .replace("0.05, 0.5", "0.0, 0.0")
         .replace("0.03, 0.45", "0.0, 0.0");
@@ -129,7 +95,10 @@ fn a_black_scene_ends() {
 /// *Expected*: one error that names the sensor, the product and the nearest one that it reports.
 #[test]
 fn a_product_that_is_not_there_is_an_error() {
-    let wrong = scene(r#""p": Photons(measure: [Albedo], until: RelErrors({ "albdeo": 0.01 }))"#);
+    let wrong = two_trees(
+        "Periodic",
+        r#""p": Photons(measure: [Albedo], until: RelErrors({ "albdeo": 0.01 }))"#,
+    );
     let folder = std::env::temp_dir().join(format!("sunfleck-until-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let file = folder.join("wrong.ron");

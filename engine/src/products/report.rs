@@ -60,7 +60,22 @@ pub struct Product {
     pub faces: Option<Faces>,
 }
 
+impl SensorReport {
+    /// All its numbers and their errors as bits, which are the same in runs that are.
+    pub fn bits(&self) -> impl Iterator<Item = u64> {
+        self.products.iter().flat_map(Product::bits)
+    }
+}
+
 impl Product {
+    /// All its numbers and their errors as bits.
+    pub fn bits(&self) -> impl Iterator<Item = u64> {
+        let numbers = self.values.iter().chain(&self.standard_error).map(|value| value.to_bits());
+        let pixels =
+            self.image.iter().flat_map(|image| image.values.iter().chain(&image.standard_error));
+        numbers.chain(pixels.map(|value| value.to_bits().into()))
+    }
+
     /// Its values with their standard errors; of an image those of the pixels.
     fn estimates(&self) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
         let finite = |(value, _): &(f64, f64)| value.is_finite();

@@ -120,7 +120,7 @@ impl Tile {
 /// whenever they missed what is rare; the other pixels of the tile have seen it. With this weight the
 /// errors of pixels of the benchmark stand are right (z spreads by 0.92 to 1.04) at 16 samples, where
 /// by themselves they were too small (1.36 to 1.63), and from some hundred on it hardly counts.
-const SHARED: f64 = 8.0;
+const SHARED: f64 = 16.0;
 
 /// Variance of one of the samples that met the scene, from the sum of squared deviations of `hits` of
 /// `n`: of a ratio whose counts are 0 or 1 (see `film::ratio`).

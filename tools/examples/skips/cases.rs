@@ -235,7 +235,7 @@ fn bands(Setting { skips, .. }: &Setting<'_>) -> anyhow::Result<String> {
 
 fn first_order(Setting { skips, .. }: &Setting<'_>) -> anyhow::Result<String> {
     let keys = if *skips { "transport: (first_order_only: true)," } else { "" };
-    let sensors = STAND.sensors.replace("until", "measure: [Orders], until");
+    let sensors = STAND.sensors.replace("until", "system: Backward, measure: [Orders], until");
     Ok(Stand { keys, sensors: &sensors, ..STAND }.text())
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use sunfleck::products::{Product, Report};
+use sunfleck::products::{Product, Report, SensorReport};
 use sunfleck::{document, run};
 
 /// Bands of scenes whose surfaces are the same in all.
@@ -81,16 +81,7 @@ pub(super) fn value(
 
 /// All numbers of a report, as bits.
 pub(super) fn bits(report: &Report) -> Vec<u64> {
-    let products = report.sensors.iter().flat_map(|sensor| &sensor.products);
-    products
-        .flat_map(|product| {
-            let numbers = product.values.iter().chain(&product.standard_error);
-            let pixels = product.image.iter().flat_map(|image| {
-                image.values.iter().chain(&image.standard_error).map(|v| u64::from(v.to_bits()))
-            });
-            numbers.map(|v| v.to_bits()).chain(pixels).collect::<Vec<_>>()
-        })
-        .collect()
+    report.sensors.iter().flat_map(SensorReport::bits).collect()
 }
 
 /// How many numbers of two reports differ.
