@@ -350,12 +350,12 @@ impl Measurement for DirectionsRun<'_> {
 
 /// The system that finds what directions see with the fewest rays, unless the sensor names one.
 ///
-/// Packets serve all views at once: of 31 views of the benchmark stand they take a third of the rays
-/// of paths for the same error, of one view as many. But most packets miss a small plane, and what
+/// Packets serve all views at once: of 31 views they take half of the rays of paths for the same error,
+/// of one view as many or more (`transport/README.md`). But most packets miss a small plane, and what
 /// surfaces emit is seen at once from the sensor's side.
 fn system_of(sensor: &Directions, source: Source) -> System {
     let best = match source {
-        Source::Reflected if sensor.plane.is_none() => System::Forward,
+        Source::Reflected if sensor.plane.is_none() && sensor.views.len() > 1 => System::Forward,
         Source::Reflected | Source::Emitted => System::Backward,
     };
     sensor.system.unwrap_or(best)

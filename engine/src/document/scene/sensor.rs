@@ -113,7 +113,7 @@ choice! {
             /// Only light that leaves through it counts; it is what is seen.
             virtual_plane: Option<VirtualPlane> = None,
             /// Which transport system estimates it; if absent the one that takes fewer rays: photon packets
-            /// for what a whole scene reflects, paths from the sensor for the rest.
+            /// for what a whole scene reflects in several directions, paths from the sensor for the rest.
             system: Option<System> = None,
         },
         /// Photon packets from sun and sky, and from what surfaces and `thermal_sky` emit.
