@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Scattered, padded};
+use super::{Scattered, dot, padded};
 use crate::components::SurfaceOptics;
 use crate::geometry::basis;
 use crate::sampling::cosine_hemisphere;
@@ -78,11 +78,7 @@ impl BiLambertian {
         let reflected = &self.side(normal, wo).reflected;
         // Lobes are chosen by the power they would carry on, summed over the bands.
         let power = |lobe: &Lobe| -> f64 {
-            if lobe.is_black {
-                return 0.0;
-            }
-            let products = throughput.iter().zip(&*lobe.spectrum);
-            f64::from(products.map(|(weight, share)| weight * share).sum::<f32>())
+            if lobe.is_black { 0.0 } else { dot(throughput, &lobe.spectrum).into() }
         };
         let (back, through) = (power(reflected), power(&self.transmitted));
         let total = back + through;

@@ -6,10 +6,12 @@
 //! slices over lanes: bands, padded with zeros to whole groups of [`LANES`].
 
 mod bilambertian;
+mod lanes;
 
 use glam::DVec3;
 
 pub use bilambertian::BiLambertian;
+pub(crate) use lanes::{dot, largest, largest_product};
 
 /// Bands are padded to multiples of this, so that loops over them need no remainder.
 pub const LANES: usize = 8;

@@ -110,7 +110,7 @@ fn of_packets(rows: &Rows<'_>, stage: &Stage, projection: &Projection) -> ImageO
     // The total counts what all pixels together see.
     let of_total = |spectra: &[&[f64]]| -> Vec<f64> {
         let scale = per_count / pixels as f64;
-        let totals = spectra.iter().flat_map(|values| &values[pixels * stage.bands..]);
+        let totals = spectra.iter().flat_map(|values| &values[values.len() - stage.bands..]);
         totals.map(|value| value * scale).collect()
     };
     ImageOutcome {

@@ -1,4 +1,5 @@
 use crate::extract::Rules;
+use crate::scattering::largest;
 
 /// How early paths and packets that carry little are played for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +35,7 @@ pub(super) fn survives(
     throughput: &mut [f32],
     u: f64,
 ) -> bool {
-    let strongest = throughput.iter().copied().fold(0.0, f32::max);
+    let strongest = largest(throughput);
     let constant =
         if order > rules.roulette_after { 1.0 - rules.roulette_kill as f32 } else { 1.0 };
     let survival = constant.min(strongest / weak);

@@ -1,6 +1,7 @@
 use super::AlbedoCounter;
 use crate::extract::Stage;
 use crate::sampling::Key;
+use crate::scattering::{largest_product, padded};
 use crate::transport::{Film, Grain, ReferencePlane, Roulette, Source, photon_film};
 
 /// What a contribution to a radiance is measured by before a ray is spent on whether it arrives: the
@@ -10,7 +11,7 @@ use crate::transport::{Film, Grain, ReferencePlane, Roulette, Source, photon_fil
 /// So many weak ones cost no more than the few that they amount to.
 #[derive(Clone, Debug)]
 pub(super) struct Stakes {
-    /// 1 over the mean in each band; the largest number where nothing leaves, so that whatever
+    /// 1 over the mean in each lane; the largest number where nothing leaves, so that whatever
     /// does is looked at.
     per_mean: Box<[f32]>,
 }
@@ -32,13 +33,12 @@ impl Stakes {
         film.trace(PILOT, &|_| {});
         let leaves = film.spread(1);
         let per_mean = leaves.mean().iter().map(|mean| (mean.recip() as f32).min(f32::MAX));
-        Self { per_mean: per_mean.collect() }
+        Self { per_mean: padded(per_mean) }
     }
 
-    /// The largest share of the mean that a band of a contribution amounts to.
-    pub(super) fn share(&self, contribution: impl Iterator<Item = f32>) -> f32 {
-        let shares = contribution.zip(&self.per_mean).map(|(value, per_mean)| value * per_mean);
-        shares.fold(0.0, f32::max)
+    /// The largest share of the mean that a lane of a contribution amounts to.
+    pub(super) fn share(&self, contribution: &[f32]) -> f32 {
+        largest_product(contribution, &self.per_mean)
     }
 
     /// The chance with which a contribution of this share counts.

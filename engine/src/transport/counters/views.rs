@@ -12,7 +12,7 @@ use crate::transport::{Projection, Source};
 
 /// Virtual photons: at each scattering or emission, the power that a surface sends towards each of several
 /// parallel projections, per steradian (LESS manual eq. 7); cells are the pixels of each projection
-/// and then their total, one projection after the other.
+/// and, of more than one, then their total, one projection after the other.
 ///
 /// A cell's sum is `Σ w f cos θ V`, per steradian. Of virtual photons that would bring less than the mean
 /// that leaves the scene, a ray is traced for as many as they amount to, and those count in full.
@@ -33,7 +33,7 @@ impl ViewCounter {
             .iter()
             .map(|projection| {
                 let first = cells;
-                cells += projection.pixels() + 1;
+                cells += projection.pixels() + usize::from(projection.pixels() > 1);
                 first
             })
             .collect();
@@ -82,26 +82,14 @@ impl Counter for ViewCounter {
             }
             _ => None,
         };
-        let value = |spectrum: Option<&[f32]>, lane: usize| {
-            weight[lane] * spectrum.map_or(1.0, |spectrum| spectrum[lane])
-        };
-        // Both sides of a leaf have one spectrum or two, however many views there are.
-        let mut last: Option<(*const f32, f32)> = None;
-        let mut share = |spectrum: Option<&[f32]>| {
-            let name = spectrum.map_or(std::ptr::null(), <[f32]>::as_ptr);
-            let known = last.filter(|(known, _)| *known == name);
-            let values = || (0..stage.bands).map(|lane| value(spectrum, lane));
-            let find = || self.stakes.as_ref().map_or(f32::MAX, |stakes| stakes.share(values()));
-            let (_, share) = *last.insert(known.unwrap_or_else(|| (name, find())));
-            f64::from(share)
-        };
-        let mut picks = Vec::new();
-        let mut rays = Vec::new();
+        let mut sent = Sent::default();
+        let (mut picks, mut rays) = (Vec::new(), Vec::new());
         for (projection, &first) in self.projections.iter().zip(&self.first_cells) {
             let Some(spectrum) = factor(projection.towards) else { continue };
+            let side = sent.side(weight, spectrum, self.stakes.as_ref());
             let cosine = hit.normal.dot(projection.towards).abs();
             // What it would add to the reflectance factor, over the mean of that.
-            let chance = Stakes::chance(share(spectrum) * cosine / projection.towards.z);
+            let chance = Stakes::chance(sent.sides[side].1 * cosine / projection.towards.z);
             // One number for all views: those chosen are as many as the chances sum to, or one more,
             // and the same whatever part of the scene they show.
             u += chance;
@@ -110,7 +98,7 @@ impl Counter for ViewCounter {
             }
             u -= 1.0;
             if projection.shows(hit.point, stage) {
-                picks.push((projection, first, spectrum, cosine / (chance * PI)));
+                picks.push((projection, first, side, cosine / (chance * PI)));
                 rays.push(hit.leave(projection.towards));
             }
         }
@@ -118,13 +106,41 @@ impl Counter for ViewCounter {
         let batch = Batch { shadows: &rays, dark: &mut dark, rays: &[], hits: &mut [] };
         stage.geometry.trace_each(batch);
         let seen = picks.into_iter().zip(&dark).filter(|(_, is_dark)| !**is_dark);
-        for ((projection, first, spectrum, scale), _) in seen {
+        for ((projection, first, side, scale), _) in seen {
+            let power = &sent.sides[side].0;
             projection.for_each_pixel(hit.point, stage, |pixel| {
-                for cell in [first + pixel, first + projection.pixels()] {
-                    sums.add_with(cell, |lane| f64::from(value(spectrum, lane)) * scale);
+                sums.add(first + pixel, power, scale);
+                if projection.pixels() > 1 {
+                    sums.add(first + projection.pixels(), power, scale);
                 }
             });
         }
         rays.len() as u64
+    }
+}
+
+/// What a surface sends on to its sides: one spectrum or two, however many views there are.
+#[derive(Default)]
+struct Sent {
+    names: Vec<*const f32>,
+    /// Weight that is sent, shape `[lanes]`, and the share of the mean that it amounts to.
+    sides: Vec<(Vec<f32>, f64)>,
+}
+
+impl Sent {
+    /// The side that sends this share of a weight; all of it if there is none.
+    fn side(&mut self, weight: &[f32], share: Option<&[f32]>, stakes: Option<&Stakes>) -> usize {
+        let name = share.map_or(std::ptr::null(), <[f32]>::as_ptr);
+        if let Some(known) = self.names.iter().position(|known| *known == name) {
+            return known;
+        }
+        let sent: Vec<f32> = match share {
+            Some(share) => weight.iter().zip(share).map(|(weight, share)| weight * share).collect(),
+            None => weight.to_vec(),
+        };
+        let of_mean = stakes.map_or(f32::MAX, |stakes| stakes.share(&sent));
+        self.names.push(name);
+        self.sides.push((sent, of_mean.into()));
+        self.names.len() - 1
     }
 }
