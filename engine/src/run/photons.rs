@@ -42,7 +42,7 @@ impl<'a> PhotonRun<'a> {
         let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
             (!asked.is_empty()).then(|| {
                 let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter> {
-                    let counter = kinds[index].1.counter(stage, source, key);
+                    let counter = kinds[index].1.playing(stage, source, key);
                     match part {
                         None => counter,
                         Some(part) => Box::new(PartCounter { counter, part }),
@@ -267,11 +267,19 @@ impl Kind {
         }
     }
 
-    fn counter(&self, stage: &Stage, source: Source, key: Key) -> Box<dyn Counter> {
+    /// Its counter for packets of a source.
+    fn playing(&self, stage: &Stage, source: Source, key: Key) -> Box<dyn Counter> {
+        match self {
+            Self::Views(counter, _) => Box::new(counter.clone().playing(stage, source, key)),
+            _ => self.counter(),
+        }
+    }
+
+    fn counter(&self) -> Box<dyn Counter> {
         match self {
             Self::Albedo(counter) => Box::new(counter.clone()),
             Self::Cells(counter) => Box::new(counter.clone()),
-            Self::Views(counter, _) => Box::new(counter.clone().playing(stage, source, key)),
+            Self::Views(counter, _) => Box::new(counter.clone()),
             Self::Layers(counter) => Box::new(counter.clone()),
             Self::Cones(counter) => Box::new(counter.clone()),
             Self::Absorbed(counter, _) => Box::new(counter.clone()),
