@@ -63,7 +63,7 @@ mod tests {
     fn roulette_keeps_the_mean_weight() {
         let rules = Rules { seed: 1, roulette_after: 5, roulette_kill: 0.05, max_order: u32::MAX };
         for (order, weight) in [(0, 1.0_f32), (6, 1.0), (1, 0.02), (9, 0.001)] {
-            let n = 200_000;
+            let n = 2_000_000;
             let carried: f64 = (0..n)
                 .map(|i| {
                     let mut throughput = [weight, weight / 2.0];
