@@ -66,7 +66,8 @@ mod tests {
             let n = 2_000_000;
             let carried: f64 = (0..n)
                 .map(|i| {
-                    let mut throughput = [weight, weight / 2.0];
+                    let mut throughput = [0.0; 8];
+                    throughput[..2].copy_from_slice(&[weight, weight / 2.0]);
                     let on = survives(
                         &rules,
                         order,
