@@ -4,7 +4,7 @@ use super::LANES;
 
 /// `Σ a b` of spectra of whole groups of lanes.
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
-    debug_assert!(a.len() % LANES == 0 && a.len() == b.len(), "whole groups of lanes");
+    debug_assert!(a.len().is_multiple_of(LANES) && a.len() == b.len(), "whole groups of lanes");
     let mut sums = [0.0; LANES];
     for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
         for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
@@ -16,7 +16,7 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
 
 /// The largest of a spectrum of whole groups of lanes, and 0.
 pub(crate) fn largest(spectrum: &[f32]) -> f32 {
-    debug_assert!(spectrum.len() % LANES == 0, "whole groups of lanes");
+    debug_assert!(spectrum.len().is_multiple_of(LANES), "whole groups of lanes");
     largest_of(spectrum.as_chunks::<LANES>().0.iter().copied())
 }
 
