@@ -207,14 +207,15 @@ impl Forecast {
 impl fmt::Display for Forecast {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { seconds, memory, files, .. } = *self;
-        let (time, unit) = match seconds {
-            ..120.0 => (seconds, "s"),
-            120.0..7200.0 => (seconds / 60.0, "min"),
-            7200.0..172_800.0 => (seconds / 3600.0, "h"),
-            _ => (seconds / 86_400.0, "days"),
+        let time = match seconds {
+            ..1.0 => "less than a second".to_owned(),
+            1.0..120.0 => format!("about {seconds:.0} s"),
+            120.0..7200.0 => format!("about {:.0} min", seconds / 60.0),
+            7200.0..172_800.0 => format!("about {:.0} h", seconds / 3600.0),
+            _ => format!("about {:.0} days", seconds / 86_400.0),
         };
         let [memory, files] = [memory, files].map(data_size);
-        write!(f, "about {time:.0} {unit}, {memory} of memory, {files} of files")
+        write!(f, "{time}, {memory} of memory, {files} of files")
     }
 }
 
@@ -286,6 +287,7 @@ mod tests {
     #[test]
     fn a_forecast_is_told_in_units_of_people() {
         let of = |seconds, memory, files| Forecast { seconds, memory, files }.to_string();
+        assert_eq!(of(0.4, 0, 1), "less than a second, 0 B of memory, 1 B of files");
         assert_eq!(of(12.4, 3 << 29, 2048), "about 12 s, 1.5 GiB of memory, 2.0 KiB of files");
         assert_eq!(of(600.0, 5 << 20, 12), "about 10 min, 5.0 MiB of memory, 12 B of files");
         assert_eq!(of(7200.0, 0, 1023), "about 2 h, 0 B of memory, 1023 B of files");

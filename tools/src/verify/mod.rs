@@ -161,7 +161,8 @@ pub(crate) fn verify(
         });
         show(&format!("{report:#}\n"))?;
     } else if failed.is_empty() {
-        show(&format!("{} checks passed in {seconds:.1} s\n", outcomes.len()))?;
+        let plural = if outcomes.len() == 1 { "" } else { "s" };
+        show(&format!("{} check{plural} passed in {seconds:.1} s\n", outcomes.len()))?;
     } else {
         show(&format!("failed: {}; {seconds:.1} s in all\n", failed.join(", ")))?;
     }
