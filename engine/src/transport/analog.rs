@@ -1,7 +1,7 @@
 //! Photons as quanta: the slow truth that the estimators of packets are checked against.
 
 use super::counters::Event;
-use super::forward::{Packet, show};
+use super::forward::{Packet, fly, show};
 use crate::accel::Ray;
 use crate::sampling::Sampler;
 
@@ -46,18 +46,9 @@ impl Packet<'_> {
         whole[band] = 1.0;
         let whole = &*whole;
         loop {
-            *rays += 1;
-            let hit = stage.geometry.closest(&ray);
-            let distance = hit.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
-            *rays += show(Event::Flight { ray: &ray, distance, weight: all });
-            let Some(hit) = hit else {
-                *rays += show(Event::Escape { ray: &ray, order, met_ground, weight: all });
-                return;
-            };
-            if stage.is_cut(&hit) {
-                *rays += show(Event::Buried { weight: all });
-                return;
-            }
+            let (hit, traced) = fly(stage, &mut show, &ray, (order, met_ground), all);
+            *rays += traced;
+            let Some(hit) = hit else { return };
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
             let [lobe, u, v, chance] = sampler.next_event();
@@ -77,7 +68,7 @@ impl Packet<'_> {
                 weight: all,
                 scattered: share(next.is_some()),
                 reflected: share(is_reflected),
-                u: sampler.aside(),
+                sampler,
             });
             let Some(next) = next else { return };
             if is_last {

@@ -137,10 +137,9 @@ impl<'a> Packet<'a> {
     /// Follows one of this weight that a surface emits.
     pub(super) fn emerge(&mut self, hit: &Hit, ray: Ray, sampler: &mut Sampler) {
         self.take_grain(sampler);
-        let u = sampler.aside();
         self.rays += show(
             (self.stage, self.counters, &mut self.sums),
-            &Event::Emission { hit, ray: &ray, weight: &self.weight, u },
+            &Event::Emission { hit, ray: &ray, weight: &self.weight, sampler },
         );
         // It has left a surface once, and has not been scattered.
         self.follow(ray, (1, self.stage.is_ground(hit)), sampler);
@@ -163,18 +162,9 @@ impl<'a> Packet<'a> {
         let mut show = |event: Event<'_>| show((stage, counters, sums), &event);
         let (mut order, mut met_ground) = (left, ground);
         loop {
-            *rays += 1;
-            let hit = stage.geometry.closest(&ray);
-            let distance = hit.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
-            *rays += show(Event::Flight { ray: &ray, distance, weight });
-            let Some(hit) = hit else {
-                *rays += show(Event::Escape { ray: &ray, order, met_ground, weight });
-                return;
-            };
-            if stage.is_cut(&hit) {
-                *rays += show(Event::Buried { weight });
-                return;
-            }
+            let (hit, traced) = fly(stage, &mut show, &ray, (order, met_ground), weight);
+            *rays += traced;
+            let Some(hit) = hit else { return };
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
             let is_last = order >= most;
@@ -189,7 +179,7 @@ impl<'a> Packet<'a> {
                 weight,
                 scattered,
                 reflected,
-                u: sampler.aside(),
+                sampler,
             });
             met_ground |= stage.is_ground(&hit);
             before.copy_from_slice(weight);
@@ -213,6 +203,25 @@ impl<'a> Packet<'a> {
             order += 1;
             ray = hit.leave(next.direction);
         }
+    }
+}
+
+/// Lets a packet of this history and weight fly; returns what it meets, if it does not end, and the number
+/// of rays that this took.
+pub(super) fn fly(
+    stage: &Stage,
+    show: &mut impl FnMut(Event<'_>) -> u64,
+    ray: &Ray,
+    (order, met_ground): (u32, bool),
+    weight: &[f32],
+) -> (Option<Hit>, u64) {
+    let hit = stage.geometry.closest(ray);
+    let distance = hit.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
+    let flight = 1 + show(Event::Flight { ray, distance, weight });
+    match hit {
+        None => (None, flight + show(Event::Escape { ray, order, met_ground, weight })),
+        Some(hit) if stage.is_cut(&hit) => (None, flight + show(Event::Buried { weight })),
+        Some(hit) => (Some(hit), flight),
     }
 }
 

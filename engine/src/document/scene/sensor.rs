@@ -192,9 +192,6 @@ impl Sensor {
                 if !measure.iter().any(PhotonMeasure::is_radiance) {
                     measure.retain(|one| *one != PhotonMeasure::BrightnessTemperature);
                 }
-                if measure.is_empty() {
-                    return None;
-                }
                 *system = by;
             }
             Self::Directions { measure, system, .. } => {

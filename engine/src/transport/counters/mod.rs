@@ -15,6 +15,7 @@ use glam::DVec3;
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
+use crate::sampling::Sampler;
 
 pub use absorbed::AbsorbedCounter;
 pub use albedo::AlbedoCounter;
@@ -45,8 +46,8 @@ pub enum Event<'a> {
         ray: &'a Ray,
         /// Its weight: over all lines, directions follow Lambert's law.
         weight: &'a [f32],
-        /// A number of this event alone, uniform in (0, 1), for counters that play for rays.
-        u: f64,
+        /// Where it draws from, for counters that play for rays with a number aside.
+        sampler: &'a Sampler,
     },
     /// It flies.
     Flight {
@@ -76,8 +77,8 @@ pub enum Event<'a> {
         scattered: &'a [f32],
         /// See above.
         reflected: &'a [f32],
-        /// A number of this event alone, uniform in (0, 1), for counters that play for rays.
-        u: f64,
+        /// Where it draws from, for counters that play for rays with a number aside.
+        sampler: &'a Sampler,
     },
     /// It goes on after being scattered, or does not.
     Roulette {

@@ -65,9 +65,9 @@ impl Counter for ViewCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let (hit, weight, mut u) = match event {
-            Event::Arrival { is_last: false, hit, weight, u, .. }
-            | Event::Emission { hit, weight, u, .. } => (*hit, *weight, *u),
+        let (hit, weight, sampler) = match event {
+            Event::Arrival { is_last: false, hit, weight, sampler, .. }
+            | Event::Emission { hit, weight, sampler, .. } => (*hit, *weight, *sampler),
             _ => return 0,
         };
         // π f towards the view, or 1 on the side that emits.
@@ -82,6 +82,7 @@ impl Counter for ViewCounter {
             }
             _ => None,
         };
+        let mut u = sampler.aside();
         let mut sent = Sent::default();
         let (mut picks, mut rays) = (Vec::new(), Vec::new());
         for (projection, &first) in self.projections.iter().zip(&self.first_cells) {
