@@ -4,13 +4,13 @@ use super::Stage;
 use crate::accel::Hit;
 use crate::components::{BlackBody, Emission, MaterialId, SceneId};
 use crate::sampling::Sampler;
-use crate::scattering::padded;
+use crate::scattering::{Spectrum, padded};
 
 /// What surfaces and the sky emit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thermal {
     /// 1 in bands that hold emitted radiance, 0 in others, shape `[lanes]`.
-    pub bands: Box<[f32]>,
+    pub bands: Spectrum,
     /// Radiance of the sky, W m⁻² sr⁻¹ nm⁻¹, shape `[lanes]`.
     pub sky: Box<[f32]>,
     /// Warmth of each surface, by the id that hits carry.
@@ -48,7 +48,7 @@ impl Thermal {
             })
             .collect();
         Some(Self {
-            bands: padded(emission.bands.iter().map(|&emits| f32::from(emits))),
+            bands: Spectrum::new(emission.bands.iter().map(|&emits| f32::from(emits))),
             sky: lanes(&emission.sky),
             surfaces,
         })

@@ -53,12 +53,11 @@ impl Sums {
         values.saturating_mul(touched)
     }
 
-    /// Forgets all that was added.
-    pub fn clear(&mut self) {
-        self.values.fill(0.0);
-    }
-
-    fn cell(&mut self, cell: usize) -> &mut [f64] {
+    /// The sums of a cell, shape `[bands]`, to be added to.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn cell_mut(&mut self, cell: usize) -> &mut [f64] {
         let row = self.touched.as_mut().map_or(cell, |touched| {
             let (row, is_new) = touched.insert_full(cell);
             if is_new {
@@ -74,7 +73,7 @@ impl Sums {
     /// # Panics
     /// If there is no such cell.
     pub fn add(&mut self, cell: usize, spectrum: &[f32], scale: f64) {
-        for (sum, &value) in self.cell(cell).iter_mut().zip(spectrum) {
+        for (sum, &value) in self.cell_mut(cell).iter_mut().zip(spectrum) {
             *sum += f64::from(value) * scale;
         }
     }
@@ -84,7 +83,7 @@ impl Sums {
     /// # Panics
     /// If there is no such cell.
     pub fn add_with(&mut self, cell: usize, f: impl Fn(usize) -> f64) {
-        for (lane, sum) in self.cell(cell).iter_mut().enumerate() {
+        for (lane, sum) in self.cell_mut(cell).iter_mut().enumerate() {
             *sum += f(lane);
         }
     }
@@ -94,15 +93,7 @@ impl Sums {
     /// # Panics
     /// If there is no such cell or band.
     pub fn add_at(&mut self, cell: usize, band: usize, value: f64) {
-        self.cell(cell)[band] += value;
-    }
-
-    /// Adds sums of one cell, shape `[bands]`.
-    ///
-    /// # Panics
-    /// If there is no such cell.
-    pub fn add_cell(&mut self, cell: usize, values: &[f64]) {
-        self.add_with(cell, |band| values[band]);
+        self.cell_mut(cell)[band] += value;
     }
 
     /// Adds other sums of the same shape, cell by cell.
@@ -113,7 +104,9 @@ impl Sums {
         assert_eq!(self.bands, other.bands, "one shape");
         if let Some(touched) = &other.touched {
             for (&cell, values) in touched.iter().zip(other.values.chunks_exact(self.bands)) {
-                self.add_cell(cell, values);
+                for (sum, value) in self.cell_mut(cell).iter_mut().zip(values) {
+                    *sum += value;
+                }
             }
             return;
         }

@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Scattered, dot, padded};
+use super::{Scattered, Spectrum};
 use crate::components::SurfaceOptics;
 use crate::geometry::basis;
 use crate::sampling::cosine_hemisphere;
@@ -13,28 +13,15 @@ use crate::sampling::cosine_hemisphere;
 pub struct BiLambertian {
     front: Side,
     back: Side,
-    transmitted: Lobe,
+    transmitted: Spectrum,
 }
 
+/// Shares of the light that arrives on one side.
 #[derive(Clone, Debug, PartialEq)]
 struct Side {
-    reflected: Lobe,
-    /// ρ + τ of light that arrives on this side.
-    scattered: Box<[f32]>,
-}
-
-/// A share of the incident light, shape `[lanes]`.
-#[derive(Clone, Debug, PartialEq)]
-struct Lobe {
-    spectrum: Box<[f32]>,
-    is_black: bool,
-}
-
-impl Lobe {
-    fn new(spectrum: &[f32]) -> Self {
-        let is_black = spectrum.iter().all(|&value| value == 0.0);
-        Self { spectrum: padded(spectrum.iter().copied()), is_black }
-    }
+    reflected: Spectrum,
+    /// ρ + τ.
+    scattered: Spectrum,
 }
 
 impl BiLambertian {
@@ -43,43 +30,41 @@ impl BiLambertian {
     pub fn new(optics: &SurfaceOptics) -> Self {
         let tau = optics.transmittance();
         let side = |rho: &[f32]| Side {
-            reflected: Lobe::new(rho),
+            reflected: Spectrum::new(rho.iter().copied()),
             // ρ + τ = 1 may round to an ulp above 1, which would absorb less than nothing.
-            scattered: padded(rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0))),
+            scattered: Spectrum::new(rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0))),
         };
-        Self { front: side(optics.front()), back: side(optics.back()), transmitted: Lobe::new(tau) }
+        let transmitted = Spectrum::new(tau.iter().copied());
+        Self { front: side(optics.front()), back: side(optics.back()), transmitted }
     }
 
     fn side(&self, normal: DVec3, wo: DVec3) -> &Side {
         if normal.dot(wo) >= 0.0 { &self.front } else { &self.back }
     }
 
-    pub(super) fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&[f32]> {
+    pub(super) fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&Spectrum> {
         let same_side = (normal.dot(wo) >= 0.0) == (normal.dot(wi) >= 0.0);
         let lobe = if same_side { &self.side(normal, wo).reflected } else { &self.transmitted };
-        (!lobe.is_black).then_some(&*lobe.spectrum)
+        (!lobe.is_black()).then_some(lobe)
     }
 
-    pub(super) fn scattered(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+    pub(super) fn scattered(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
         &self.side(normal, wo).scattered
     }
 
-    pub(super) fn reflected(&self, normal: DVec3, wo: DVec3) -> &[f32] {
-        &self.side(normal, wo).reflected.spectrum
+    pub(super) fn reflected(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
+        &self.side(normal, wo).reflected
     }
 
     pub(super) fn sample(
         &self,
         normal: DVec3,
         wo: DVec3,
-        throughput: &[f32],
+        power: impl Fn(&Spectrum) -> f32,
         [lobe, u, v]: [f64; 3],
     ) -> Option<Scattered<'_>> {
         let reflected = &self.side(normal, wo).reflected;
-        // Lobes are chosen by the power they would carry on, summed over the bands.
-        let power = |lobe: &Lobe| -> f64 {
-            if lobe.is_black { 0.0 } else { dot(throughput, &lobe.spectrum).into() }
-        };
+        let power = |lobe: &Spectrum| f64::from(if lobe.is_black() { 0.0 } else { power(lobe) });
         let (back, through) = (power(reflected), power(&self.transmitted));
         let total = back + through;
         if total <= 0.0 {
@@ -92,14 +77,14 @@ impl BiLambertian {
         let (tangent, bitangent) = basis(outward);
         let local = cosine_hemisphere(u, v);
         let direction = tangent * local.x + bitangent * local.y + outward * local.z;
-        Some(Scattered { direction, spectrum: &chosen.spectrum, scale: (1.0 / probability) as f32 })
+        Some(Scattered { direction, spectrum: chosen, scale: (1.0 / probability) as f32 })
     }
 
     /// Density of `sample`, sr⁻¹, for tests: `P(lobe) |cos θ| / π`.
     #[must_use]
     pub fn pdf(&self, normal: DVec3, wo: DVec3, wi: DVec3, throughput: &[f32]) -> f64 {
-        let power = |lobe: &Lobe| -> f64 {
-            throughput.iter().zip(&*lobe.spectrum).map(|(w, s)| f64::from(w * s)).sum()
+        let power = |lobe: &Spectrum| -> f64 {
+            throughput.iter().zip(lobe.iter()).map(|(w, s)| f64::from(w * s)).sum()
         };
         let (back, through) = (power(&self.side(normal, wo).reflected), power(&self.transmitted));
         let same_side = (normal.dot(wo) >= 0.0) == (normal.dot(wi) >= 0.0);

@@ -1,12 +1,20 @@
-//! Sums and maxima over lanes, in an order that a processor can take eight at a time.
+//! Sums, maxima and products over lanes, in an order that a processor can take eight at a time.
+
+use std::array::from_fn;
 
 use super::LANES;
+
+/// Does work on lanes with the widest registers that the processor has. What it calls is compiled for them
+/// as far as it is inlined. Results are the same, bit for bit.
+pub(crate) fn widely<R>(work: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(work)
+}
 
 /// `Σ a b` of spectra of whole groups of lanes.
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     debug_assert!(a.len().is_multiple_of(LANES) && a.len() == b.len(), "whole groups of lanes");
     let mut sums = [0.0; LANES];
-    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+    for (a, b) in groups(a).zip(groups(b)) {
         for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
             *sum += a * b;
         }
@@ -17,13 +25,54 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
 /// The largest of a spectrum of whole groups of lanes, and 0.
 pub(crate) fn largest(spectrum: &[f32]) -> f32 {
     debug_assert!(spectrum.len().is_multiple_of(LANES), "whole groups of lanes");
-    largest_of(spectrum.as_chunks::<LANES>().0.iter().copied())
+    largest_of(groups(spectrum).copied())
 }
 
 /// The largest of `a b` of spectra of whole groups of lanes, and 0.
 pub(crate) fn largest_product(a: &[f32], b: &[f32]) -> f32 {
-    let pairs = a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0);
-    largest_of(pairs.map(|(a, b)| std::array::from_fn(|lane| a[lane] * b[lane])))
+    largest_of(groups(a).zip(groups(b)).map(|(a, b)| from_fn(|lane| a[lane] * b[lane])))
+}
+
+/// `t ← t f c`, as far as `f` goes.
+#[inline(always)]
+pub(crate) fn multiply(t: &mut [f32], f: &[f32], c: f32) {
+    for (t, f) in groups_mut(t).zip(groups(f)) {
+        *t = from_fn(|lane| t[lane] * (f[lane] * c));
+    }
+}
+
+/// `sum ← sum + t f s c`, as far as `f` and `s` go.
+#[inline(always)]
+pub(crate) fn add_lit(sum: &mut [f32], t: &[f32], (f, s, c): (&[f32], &[f32], f32)) {
+    for ((sum, t), (f, s)) in groups_mut(sum).zip(groups(t)).zip(groups(f).zip(groups(s))) {
+        *sum = from_fn(|lane| sum[lane] + t[lane] * s[lane] * f[lane] * c);
+    }
+}
+
+/// `sum ← sum + t s c`, as far as `s` goes.
+#[inline(always)]
+pub(crate) fn add_seen(sum: &mut [f32], t: &[f32], (s, c): (&[f32], f32)) {
+    for ((sum, t), s) in groups_mut(sum).zip(groups(t)).zip(groups(s)) {
+        *sum = from_fn(|lane| sum[lane] + t[lane] * s[lane] * c);
+    }
+}
+
+/// `sum ← sum + t (1 - f) s`, as far as `f` and `s` go.
+#[inline(always)]
+pub(crate) fn add_emitted(sum: &mut [f32], t: &[f32], (f, s): (&[f32], &[f32])) {
+    for ((sum, t), (f, s)) in groups_mut(sum).zip(groups(t)).zip(groups(f).zip(groups(s))) {
+        *sum = from_fn(|lane| sum[lane] + t[lane] * (1.0 - f[lane]) * s[lane]);
+    }
+}
+
+#[inline(always)]
+fn groups(values: &[f32]) -> impl Iterator<Item = &[f32; LANES]> {
+    values.as_chunks().0.iter()
+}
+
+#[inline(always)]
+fn groups_mut(values: &mut [f32]) -> impl Iterator<Item = &mut [f32; LANES]> {
+    values.as_chunks_mut().0.iter_mut()
 }
 
 fn largest_of(groups: impl Iterator<Item = [f32; LANES]>) -> f32 {

@@ -7,11 +7,15 @@
 
 mod bilambertian;
 mod lanes;
+mod spectrum;
 
 use glam::DVec3;
 
 pub use bilambertian::BiLambertian;
-pub(crate) use lanes::{dot, largest, largest_product};
+pub(crate) use lanes::{
+    add_emitted, add_lit, add_seen, dot, largest, largest_product, multiply, widely,
+};
+pub use spectrum::Spectrum;
 
 /// Bands are padded to multiples of this, so that loops over them need no remainder.
 pub const LANES: usize = 8;
@@ -28,47 +32,48 @@ pub enum Bsdf {
 pub struct Scattered<'a> {
     /// Where the path goes on.
     pub direction: DVec3,
-    /// Spectral part of the weight, shape `[lanes]`.
-    pub spectrum: &'a [f32],
+    /// Spectral part of the weight.
+    pub spectrum: &'a Spectrum,
     /// Part of the weight that all bands share.
     pub scale: f32,
 }
 
 impl Bsdf {
-    /// `π f(wi, wo)`, shape `[lanes]`; `None` where it is zero in every band, so that nobody traces
+    /// `π f(wi, wo)`; `None` where it is zero in every band, so that nobody traces
     /// a shadow ray for it.
     #[must_use]
-    pub fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&[f32]> {
+    pub fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&Spectrum> {
         match self {
             Self::BiLambertian(model) => model.eval(normal, wo, wi),
         }
     }
 
-    /// A direction for a path of this throughput, shape `[lanes]`; `None` where all is absorbed.
+    /// A direction for a path; `None` where all is absorbed. Lobes are chosen in proportion to the
+    /// `power` that each would carry on.
     #[must_use]
     pub fn sample(
         &self,
         normal: DVec3,
         wo: DVec3,
-        throughput: &[f32],
+        power: impl Fn(&Spectrum) -> f32,
         u: [f64; 3],
     ) -> Option<Scattered<'_>> {
         match self {
-            Self::BiLambertian(model) => model.sample(normal, wo, throughput, u),
+            Self::BiLambertian(model) => model.sample(normal, wo, power, u),
         }
     }
 
-    /// Share of the light from `wo` that is scattered at all, `DHR + DHT`, shape `[lanes]`.
+    /// Share of the light from `wo` that is scattered at all, `DHR + DHT`.
     #[must_use]
-    pub fn scattered(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+    pub fn scattered(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
         match self {
             Self::BiLambertian(model) => model.scattered(normal, wo),
         }
     }
 
-    /// Share of the light from `wo` that is scattered back to its side, shape `[lanes]`.
+    /// Share of the light from `wo` that is scattered back to its side.
     #[must_use]
-    pub fn reflected(&self, normal: DVec3, wo: DVec3) -> &[f32] {
+    pub fn reflected(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
         match self {
             Self::BiLambertian(model) => model.reflected(normal, wo),
         }

@@ -53,7 +53,9 @@ impl Packet<'_> {
             let bsdf = &stage.surface(&hit).bsdf;
             let [lobe, u, v, chance] = sampler.next_event();
             let survives = chance < f64::from(bsdf.scattered(hit.normal, wo)[band]);
-            let next = survives.then(|| bsdf.sample(hit.normal, wo, all, [lobe, u, v])).flatten();
+            let next = survives
+                .then(|| bsdf.sample(hit.normal, wo, |lobe| lobe[band], [lobe, u, v]))
+                .flatten();
             let is_reflected = next.as_ref().is_some_and(|next| {
                 (hit.normal.dot(wo) >= 0.0) == (hit.normal.dot(next.direction) >= 0.0)
             });

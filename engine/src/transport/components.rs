@@ -1,8 +1,11 @@
 //! What a sensor sees first: sunlit or shaded, ground or canopy.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::directions::{projections, view_film};
+use super::history::Block;
 use super::walk::{Answer, Ask, Walk};
 use super::{Camera, ReferencePlane, Rows, Tiles, ViewsOutcome};
 use crate::accel::Ray;
@@ -101,7 +104,7 @@ impl FirstHit {
     }
 }
 
-impl Walk for FirstHit {
+impl Walk<'_> for FirstHit {
     fn start(&mut self, ray: &Ray, sampler: Sampler) {
         (self.sampler, self.direction) = (sampler, ray.direction);
         self.cosine = ray.direction.z * self.upright.unwrap_or(0.0);
@@ -136,8 +139,10 @@ impl Walk for FirstHit {
         direction.z > 0.0
     }
 
-    fn values(&self) -> &[f32] {
-        &self.columns
+    fn show(&self, bands: Range<usize>, found: &mut [Block]) {
+        for (found, column) in found.iter_mut().flatten().zip(&self.columns[bands]) {
+            *found = f64::from(*column);
+        }
     }
 
     fn zones(&self) -> usize {

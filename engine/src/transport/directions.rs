@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::forward::photon_film;
 use super::rows::{Rows, Tracer};
-use super::walk::{Party, Walk};
+use super::walk::{Party, Walk, show_each};
 use super::{
     Counter, FirstOrder, Grain, Part, PartCounter, Path, Projection, ReferencePlane, Roulette,
     Source, ThermalPath, ViewCounter, spectra,
@@ -85,14 +85,14 @@ impl<'a> DirectionsFilm<'a> {
         let places = (0..views.len()).map(each).collect();
         let film = match (system, source) {
             (System::Backward, Source::Reflected) => {
-                let path = move || Path::new(stage.lanes(), orders);
+                let path = move || Path::new(stage.bands, orders);
                 view_film((stage, projections), columns, key, path)
             }
             (System::Backward, Source::Emitted) => {
                 view_film((stage, projections), columns, key, || ThermalPath::new(stage))
             }
             (System::FirstOrder, _) => {
-                let path = move || FirstOrder::new(stage.lanes(), orders);
+                let path = move || FirstOrder::new(orders);
                 view_film((stage, projections), columns, key, path)
             }
             (System::Forward | System::Analog, _) => {
@@ -153,7 +153,7 @@ pub(super) fn projections(
 }
 
 /// What walks from each view find, shape `[views, columns]`.
-pub(super) fn view_film<'a, W: Walk>(
+pub(super) fn view_film<'a, W: Walk<'a>>(
     (stage, projections): (&'a Stage, Vec<Projection>),
     columns: usize,
     key: Key,
@@ -170,7 +170,7 @@ struct Views<'a, F> {
     walk: F,
 }
 
-impl<W: Walk, F: Fn() -> W + Sync> Tracer for Views<'_, F> {
+impl<'a, W: Walk<'a>, F: Fn() -> W + Sync> Tracer for Views<'a, F> {
     fn shapes(&self) -> Vec<(usize, usize)> {
         vec![(self.projections.len(), self.columns)]
     }
@@ -182,7 +182,7 @@ impl<W: Walk, F: Fn() -> W + Sync> Tracer for Views<'_, F> {
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
         // All views share their points: differences between them have less noise.
         let stream = self.key.index(randomisation);
-        let mut party = Party::new(self.stage, &self.walk);
+        let mut party = Party::new(&self.walk);
         let mut sums = Sums::new(self.projections.len(), self.columns);
         let mut rays = 0;
         for (view, projection) in self.projections.iter().enumerate() {
@@ -193,10 +193,19 @@ impl<W: Walk, F: Fn() -> W + Sync> Tracer for Views<'_, F> {
                 let is_admitted = projection.admits(&ray, self.stage, &mut rays);
                 is_admitted.then_some(((), ray, sampler))
             });
-            party.follow(self.stage, starts, |(), walk| {
-                if walk.has_met() {
-                    walk.add_to(&mut sums, view);
-                }
+            party.follow(self.stage, starts, |_, walks| {
+                let cell = sums.cell_mut(view);
+                let met = walks.iter().filter(|walk| walk.has_met());
+                show_each(
+                    &met,
+                    cell.len(),
+                    #[inline(always)]
+                    |_, columns, found| {
+                        for (sum, found) in cell[columns].iter_mut().zip(found) {
+                            *sum += found;
+                        }
+                    },
+                );
             });
         }
         (vec![sums], rays + party.rays())

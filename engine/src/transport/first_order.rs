@@ -1,12 +1,14 @@
 //! Light that was scattered once, by integration alone.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::Part;
+use super::history::{BLOCK, Block, History};
 use super::walk::{Answer, Ask, Walk};
 use crate::accel::Ray;
 use crate::extract::{Light, Stage};
-use crate::film::Sums;
 use crate::geometry::basis;
 use crate::sampling::{Key, Sampler, cosine_hemisphere};
 
@@ -20,8 +22,8 @@ use crate::sampling::{Key, Sampler, cosine_hemisphere};
 /// surface at the same angle. So `f |cos θ| / pdf` is `π f` of whichever side it is: without noise but
 /// for what hides the sky.
 #[derive(Clone, Debug)]
-pub(super) struct FirstOrder {
-    radiance: Vec<f32>,
+pub(super) struct FirstOrder<'a> {
+    history: History<'a>,
     sampler: Sampler,
     direction: DVec3,
     has_met: bool,
@@ -30,11 +32,11 @@ pub(super) struct FirstOrder {
     rays: u64,
 }
 
-impl FirstOrder {
-    /// For stages with this many lanes; with the parts apart if asked for.
-    pub(super) fn new(lanes: usize, orders_apart: bool) -> Self {
+impl FirstOrder<'_> {
+    /// With the parts apart if asked for.
+    pub(super) fn new(orders_apart: bool) -> Self {
         Self {
-            radiance: vec![0.0; lanes],
+            history: History::default(),
             sampler: Sampler::new(Key::new(0), 0),
             direction: DVec3::ZERO,
             has_met: false,
@@ -50,29 +52,25 @@ impl FirstOrder {
     }
 }
 
-impl Walk for FirstOrder {
+impl<'a> Walk<'a> for FirstOrder<'a> {
     fn start(&mut self, ray: &Ray, sampler: Sampler) {
-        self.radiance.fill(0.0);
+        self.history.clear();
         (self.sampler, self.direction, self.has_met) = (sampler, ray.direction, false);
     }
 
-    fn go_on(&mut self, stage: &Stage, Answer { hit, .. }: Answer) -> Ask {
+    fn go_on(&mut self, stage: &'a Stage, Answer { hit, .. }: Answer) -> Ask {
         let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return Ask::END };
         self.has_met = true;
         self.part = Part::of(1, stage.is_ground(&hit));
         let wo = -self.direction;
         let bsdf = &stage.surface(&hit).bsdf;
         let [of_sun, across_sun, of_sky, across_sky] = self.sampler.next_event();
-        let mut add = |towards: DVec3, share: &[f32], scale: f64| {
+        let mut add = |towards: DVec3, share: &'a [f32], scale: f64| {
             let Some(scattering) = bsdf.eval(hit.normal, wo, towards) else { return };
             self.rays += 1;
-            if stage.geometry.occluded(&hit.leave(towards)) {
-                return;
-            }
-            let scale = (scale * Light::RADIANCE_OF_SHARE) as f32;
-            for (radiance, (share, f)) in self.radiance.iter_mut().zip(share.iter().zip(scattering))
-            {
-                *radiance += share * f * scale;
+            if !stage.geometry.occluded(&hit.leave(towards)) {
+                let scale = (scale * Light::RADIANCE_OF_SHARE) as f32;
+                self.history.light(scattering, share, scale);
             }
         };
         if let Some(beam) = &stage.light.beam {
@@ -98,35 +96,30 @@ impl Walk for FirstOrder {
         self.has_met
     }
 
-    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+    fn see_sky(&mut self, stage: &'a Stage, direction: DVec3) -> bool {
         if direction.z <= 0.0 {
             return false;
         }
-        self.radiance.fill(0.0);
+        self.history.clear();
         self.part = Part::Uncollided;
         if let Some(dome) = &stage.light.dome {
-            for (radiance, share) in self.radiance.iter_mut().zip(&*dome.share) {
-                *radiance = share * Light::RADIANCE_OF_SHARE as f32;
-            }
+            self.history.see(&dome.share, Light::RADIANCE_OF_SHARE as f32);
         }
         true
     }
 
-    fn values(&self) -> &[f32] {
-        &self.radiance
+    fn spectra(&self) -> usize {
+        Self::spectra(self.orders_apart)
     }
 
-    /// Adds the whole and, with orders apart, its parts in a row.
-    fn add_to(&self, sums: &mut Sums, cell: usize) {
-        if !self.orders_apart {
-            return sums.add(cell, &self.radiance, 1.0);
+    /// The whole and, with orders apart, its parts in a row.
+    #[inline(always)]
+    fn show(&self, bands: Range<usize>, found: &mut [Block]) {
+        let [whole, parts @ ..] = found else { return };
+        self.history.light_of(self.history.len(), bands, whole);
+        for (part, values) in Part::ALL.iter().zip(parts) {
+            *values = if *part == self.part { *whole } else { [0.0; BLOCK] };
         }
-        let bands = sums.bands() / Self::spectra(true);
-        sums.add_with(cell, |channel| {
-            let (spectrum, lane) = (channel / bands, channel % bands);
-            let of_part = |spectrum: usize| Part::ALL[spectrum - 1] == self.part;
-            if spectrum == 0 || of_part(spectrum) { self.radiance[lane].into() } else { 0.0 }
-        });
     }
 
     fn rays(&self) -> u64 {

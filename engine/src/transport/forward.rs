@@ -9,6 +9,7 @@ use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
+use crate::scattering::dot;
 
 /// Photon packets of sun and sky, or lines along which surfaces and the sky emit some; every event is
 /// shown to every counter. The first of its sums is that of the [`EnergyCounter`].
@@ -183,17 +184,18 @@ impl<'a> Packet<'a> {
             });
             met_ground |= stage.is_ground(&hit);
             before.copy_from_slice(weight);
-            for (weight, share) in before.iter_mut().zip(scattered) {
+            for (weight, share) in before.iter_mut().zip(scattered.iter()) {
                 *weight *= share;
             }
             let [lobe, u, v, chance] = sampler.next_event();
-            let next = bsdf.sample(hit.normal, wo, weight, [lobe, u, v]);
+            let next = bsdf.sample(hit.normal, wo, |lobe| dot(weight, lobe), [lobe, u, v]);
             let lives = !is_last
                 && next.is_some_and(|next| {
-                    for (weight, factor) in weight.iter_mut().zip(next.spectrum) {
+                    for (weight, factor) in weight.iter_mut().zip(next.spectrum.iter()) {
                         *weight *= factor * next.scale;
                     }
-                    roulette::survives(&stage.rules, order + 1 - left, weak, weight, chance)
+                    roulette::survivor_gain(&stage.rules, order + 1 - left, weak, weight, chance)
+                        .is_some()
                 });
             if !lives {
                 weight.fill(0.0);

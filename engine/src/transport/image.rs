@@ -60,12 +60,12 @@ impl<'a> ImageFilm<'a> {
                 Self::Packets(rows, stage, counter)
             }
             (System::FirstOrder, _, _) => {
-                let path = move || FirstOrder::new(stage.lanes(), orders);
+                let path = move || FirstOrder::new(orders);
                 let columns = stage.bands * FirstOrder::spectra(orders);
                 Self::Paths(Tiles::new((stage, camera.clone()), key, columns, path))
             }
             (_, _, Source::Reflected) => {
-                let path = move || Path::new(stage.lanes(), orders);
+                let path = move || Path::new(stage.bands, orders);
                 let columns = stage.bands * spectra(orders);
                 Self::Paths(Tiles::new((stage, camera.clone()), key, columns, path))
             }
@@ -127,12 +127,12 @@ fn of_packets(rows: &Rows<'_>, stage: &Stage, projection: &Projection) -> ImageO
 /// benchmark of the ray engine should be fed with.
 #[must_use]
 pub fn path_rays(stage: &Stage, projection: &Projection, paths: u64, key: Key) -> Vec<Traced> {
-    let mut party = Party::logged(|| Path::new(stage.lanes(), false));
+    let mut party = Party::logged(|| Path::new(stage.bands, false));
     let starts = (0..paths).map(|index| {
         let mut sampler = Sampler::new(key, index);
         let [u, v, ..] = sampler.next_event();
         ((), projection.ray(DVec2::new(u, v)), sampler)
     });
-    party.follow(stage, starts, |(), _| {});
+    party.follow(stage, starts, |_, _| {});
     party.into_log()
 }

@@ -16,6 +16,7 @@ mod forward;
 mod glow;
 mod growth;
 mod hemisphere;
+mod history;
 mod image;
 mod parts;
 mod plane;

@@ -23,38 +23,38 @@ impl Roulette {
     }
 }
 
-/// Russian roulette: whether a path that was scattered `order` times goes on. The throughput of one
-/// that does is divided by its chance to do so.
+/// Russian roulette: of a path that was scattered `order` times and goes on, what its throughput is to be
+/// multiplied with, 1 over its chance to do so. The outline of the throughput already is.
 ///
 /// Beyond `roulette_after` orders a path ends with the probability `roulette_kill` (LESS manual,
 /// section 2.1); at any order, one that no band carries `weak` on ends in proportion.
-pub(super) fn survives(
+pub(super) fn survivor_gain(
     rules: &Rules,
     order: u32,
     weak: f32,
     throughput: &mut [f32],
     u: f64,
-) -> bool {
+) -> Option<f32> {
     let strongest = largest(throughput);
     let constant =
         if order > rules.roulette_after { 1.0 - rules.roulette_kill as f32 } else { 1.0 };
     let survival = constant.min(strongest / weak);
     if survival >= 1.0 {
-        return true;
+        return Some(1.0);
     }
     if u >= f64::from(survival) {
-        return false;
+        return None;
     }
     let gain = 1.0 / survival;
     for weight in throughput {
         *weight *= gain;
     }
-    true
+    Some(gain)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Roulette, survives};
+    use super::{Roulette, survivor_gain};
     use crate::extract::Rules;
 
     /// Over all outcomes the weight that goes on is the weight that came: exactly, because the
@@ -68,14 +68,14 @@ mod tests {
                 .map(|i| {
                     let mut throughput = [0.0; 8];
                     throughput[..2].copy_from_slice(&[weight, weight / 2.0]);
-                    let on = survives(
+                    let gain = survivor_gain(
                         &rules,
                         order,
                         Roulette::Firm.weak(),
                         &mut throughput,
                         (f64::from(i) + 0.5) / f64::from(n),
                     );
-                    if on { f64::from(throughput[0]) } else { 0.0 }
+                    if gain.is_some() { f64::from(throughput[0]) } else { 0.0 }
                 })
                 .sum::<f64>()
                 / f64::from(n);

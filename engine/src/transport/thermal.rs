@@ -1,10 +1,14 @@
+use std::ops::Range;
+
 use glam::DVec3;
 
+use super::history::{Block, History};
 use super::walk::{Answer, Ask, Walk};
 use super::{Roulette, roulette};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
+use crate::scattering::{Spectrum, dot, multiply};
 
 /// A random walk from the sensor that gathers what surfaces and the sky emit, W m⁻² sr⁻¹ nm⁻¹; 0 in
 /// bands that hold no emission.
@@ -13,9 +17,10 @@ use crate::sampling::{Key, Sampler};
 /// and the sky adds its radiance where the walk leaves the scene. Nothing of the sun is in it. `T` is
 /// the sunlit temperature where the sun is visible from the point, on whichever side.
 #[derive(Clone, Debug)]
-pub(super) struct ThermalPath {
-    throughput: Vec<f32>,
-    radiance: Vec<f32>,
+pub(super) struct ThermalPath<'a> {
+    history: History<'a>,
+    /// A bound of the throughput: the product of the outlines.
+    outline: Vec<f32>,
     sampler: Sampler,
     /// Where the ray goes that the path waits for.
     direction: DVec3,
@@ -24,12 +29,11 @@ pub(super) struct ThermalPath {
     rays: u64,
 }
 
-impl ThermalPath {
+impl<'a> ThermalPath<'a> {
     pub(super) fn new(stage: &Stage) -> Self {
-        let dark = vec![0.0; stage.lanes()];
         Self {
-            throughput: dark.clone(),
-            radiance: dark,
+            history: History::default(),
+            outline: vec![0.0; Spectrum::outline_of(stage.bands)],
             sampler: Sampler::new(Key::new(0), 0),
             direction: DVec3::ZERO,
             order: 0,
@@ -38,55 +42,46 @@ impl ThermalPath {
         }
     }
 
-    /// Adds what the surface emits towards `-direction`.
-    fn add_surface(&mut self, stage: &Stage, thermal: &Thermal, hit: &Hit, scattered: &[f32]) {
-        let (black, rays) = thermal.black_body(stage, hit, &mut self.sampler);
-        self.rays += rays;
-        let paths = self.radiance.iter_mut().zip(&self.throughput);
-        for ((radiance, weight), (black, scattered)) in paths.zip(black.iter().zip(scattered)) {
-            *radiance += weight * (1.0 - scattered) * black;
-        }
-    }
-
     /// The ray on which the path goes on, if it does.
-    fn scatter(&mut self, stage: &Stage, thermal: &Thermal, hit: &Hit) -> Option<Ray> {
+    fn scatter(&mut self, stage: &'a Stage, thermal: &'a Thermal, hit: &Hit) -> Option<Ray> {
         let bsdf = &stage.surface(hit).bsdf;
         let wo = -self.direction;
-        self.add_surface(stage, thermal, hit, bsdf.scattered(hit.normal, wo));
+        let (black, rays) = thermal.black_body(stage, hit, &mut self.sampler);
+        self.rays += rays;
+        self.history.emit(bsdf.scattered(hit.normal, wo), black);
         if self.order == stage.rules.max_order {
             return None;
         }
         self.order += 1;
         let [lobe, u, v, chance] = self.sampler.next_event();
-        let scattered = bsdf.sample(hit.normal, wo, &self.throughput, [lobe, u, v])?;
-        for (weight, factor) in self.throughput.iter_mut().zip(scattered.spectrum) {
-            *weight *= factor * scattered.scale;
-        }
+        let outline = &mut self.outline;
+        let power = |lobe: &Spectrum| dot(outline, lobe.outline());
+        let scattered = bsdf.sample(hit.normal, wo, power, [lobe, u, v])?;
+        multiply(outline, scattered.spectrum.outline(), scattered.scale);
         // What surfaces emit differs little from path to path.
         let weak = Roulette::Gentle.weak();
-        roulette::survives(&stage.rules, self.order, weak, &mut self.throughput, chance)
-            .then(|| hit.leave(scattered.direction))
+        let gain = roulette::survivor_gain(&stage.rules, self.order, weak, outline, chance)?;
+        self.history.scatter(scattered.spectrum, scattered.scale * gain);
+        Some(hit.leave(scattered.direction))
     }
 }
 
-impl Walk for ThermalPath {
+impl<'a> Walk<'a> for ThermalPath<'a> {
     fn start(&mut self, ray: &Ray, sampler: Sampler) {
-        self.radiance.fill(0.0);
+        self.history.clear();
         (self.sampler, self.direction) = (sampler, ray.direction);
         (self.order, self.has_met) = (0, false);
     }
 
-    fn go_on(&mut self, stage: &Stage, Answer { hit, .. }: Answer) -> Ask {
+    fn go_on(&mut self, stage: &'a Stage, Answer { hit, .. }: Answer) -> Ask {
         let Some(thermal) = &stage.thermal else { return Ask::END };
         if !self.has_met {
-            self.throughput.copy_from_slice(&thermal.bands);
+            self.outline.copy_from_slice(thermal.bands.outline());
+            self.history.scatter(&thermal.bands, 1.0);
         }
         let Some(hit) = hit else {
             if self.has_met && self.direction.z > 0.0 {
-                let paths = self.radiance.iter_mut().zip(&self.throughput);
-                for ((radiance, weight), sky) in paths.zip(&*thermal.sky) {
-                    *radiance += weight * sky;
-                }
+                self.history.see(&thermal.sky, 1.0);
             }
             return Ask::END;
         };
@@ -103,14 +98,17 @@ impl Walk for ThermalPath {
         self.has_met
     }
 
-    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+    fn see_sky(&mut self, stage: &'a Stage, direction: DVec3) -> bool {
         let Some(thermal) = &stage.thermal else { return false };
-        self.radiance.copy_from_slice(&thermal.sky);
+        self.history.clear();
+        self.history.see(&thermal.sky, 1.0);
         direction.z > 0.0
     }
 
-    fn values(&self) -> &[f32] {
-        &self.radiance
+    #[inline(always)]
+    fn show(&self, bands: Range<usize>, found: &mut [Block]) {
+        let [found, ..] = found else { return };
+        self.history.light_of(self.history.len(), bands, found);
     }
 
     fn rays(&self) -> u64 {

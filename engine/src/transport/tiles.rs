@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::{DVec2, UVec2};
 
 use super::share::{restore_f64, restore_u64, save_f64, save_u64};
-use super::walk::{Party, Walk};
+use super::walk::{Party, Walk, show_each};
 use super::{Camera, Film, ImageOutcome, RANDOMISATIONS, Share, Watch, blocks};
 use crate::extract::Stage;
 use crate::film::{Sums, ratio};
@@ -95,22 +95,42 @@ impl Tile {
         sums.iter().map(|sum| sum / weight).collect()
     }
 
-    /// Takes one sample of a pixel in.
+    /// Takes in what walks found, a sample of a pixel and of a row of sums each.
     ///
     /// Source: Welford (1962), "Note on a method for calculating corrected sums of squares and
     /// products".
-    fn push(&mut self, pixel: usize, row: usize, values: &[f64]) {
-        self.hits[pixel] += 1;
-        self.counts[row] += 1;
-        let hits = self.hits[pixel] as f64;
-        let range = pixel * values.len()..(pixel + 1) * values.len();
-        let moments = self.mean[range.clone()].iter_mut().zip(&mut self.squares[range]);
-        for ((mean, squares), value) in moments.zip(values) {
-            let before = value - *mean;
-            *mean += before / hits;
-            *squares += before * (value - *mean);
-        }
-        self.sums.add_cell(row, values);
+    fn push<'w, 'a: 'w, W: Walk<'a> + 'w>(
+        &mut self,
+        walks: &(impl Iterator<Item = &'w W> + Clone),
+        samples: &[(usize, usize)],
+    ) {
+        let Self { hits, mean, squares, sums, counts, .. } = self;
+        let shares: Vec<f64> = samples
+            .iter()
+            .map(|&(pixel, row)| {
+                hits[pixel] += 1;
+                counts[row] += 1;
+                1.0 / hits[pixel] as f64
+            })
+            .collect();
+        let all = sums.bands();
+        show_each(
+            walks,
+            all,
+            #[inline(always)]
+            |sample, columns, found| {
+                let ((pixel, row), share) = (samples[sample], shares[sample]);
+                let range = pixel * all + columns.start..pixel * all + columns.end;
+                let moments = mean[range.clone()].iter_mut().zip(&mut squares[range]);
+                let sums = &mut sums.cell_mut(row)[columns];
+                for (((mean, squares), sum), value) in moments.zip(sums).zip(found) {
+                    let before = value - *mean;
+                    *mean += before * share;
+                    *squares += before * (value - *mean);
+                    *sum += value;
+                }
+            },
+        );
     }
 }
 
@@ -130,7 +150,7 @@ fn of_ratio(squares: f64, hits: f64, n: f64) -> f64 {
 
 impl<'a> Tiles<'a> {
     /// No sample yet, of walks whose first `columns` values count.
-    pub(super) fn new<W: Walk>(
+    pub(super) fn new<W: Walk<'a>>(
         (stage, camera): (&'a Stage, Camera),
         key: Key,
         columns: usize,
@@ -139,7 +159,7 @@ impl<'a> Tiles<'a> {
         let size = camera.size();
         let zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
         let trace = move |tile: &mut Tile, samples: Range<u64>| {
-            trace_tile((stage, &camera), tile, samples, key, columns, &walk)
+            trace_tile((stage, &camera), tile, samples, key, &walk)
         };
         Self {
             size,
@@ -346,37 +366,49 @@ fn morton(at: UVec2) -> u64 {
     spread(at.x) | (spread(at.y) << 1)
 }
 
-fn trace_tile<W: Walk>(
-    (stage, camera): (&Stage, &Camera),
+fn trace_tile<'a, W: Walk<'a>>(
+    (stage, camera): (&'a Stage, &Camera),
     tile: &mut Tile,
     samples: Range<u64>,
     key: Key,
-    columns: usize,
     walk: impl Fn() -> W,
 ) -> (Sums, u64) {
     let scale = camera.size().as_dvec2().recip();
-    let mut party = Party::new(stage, &walk);
+    let mut party = Party::new(&walk);
     let mut zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
-    let (mut rays, mut found) = (0, Sums::new(1, columns));
-    // Sample by sample, so that sums over the pixels are made in one order however rounds are cut.
-    for sample in samples {
-        let stream = key.index(sample);
-        let row = (sample % u64::from(RANDOMISATIONS)) as usize;
-        let starts = tile.pixels().enumerate().filter_map(|(pixel, at)| {
+    let mut rays = 0;
+    // Of each pixel all samples that have rows of their own: its values stay in the cache. Sums over the
+    // pixels are made in one order however rounds are cut.
+    let rows = u64::from(RANDOMISATIONS);
+    let ends = (samples.start / rows + 1..).map(|round| (round * rows).min(samples.end));
+    let mut from = samples.start;
+    for to in ends {
+        let streams: Vec<(usize, Key)> =
+            (from..to).map(|sample| ((sample % rows) as usize, key.index(sample))).collect();
+        let places = tile.pixels().enumerate();
+        let starts = places.flat_map(|(pixel, at)| streams.iter().map(move |of| (pixel, at, of)));
+        let starts = starts.filter_map(|(pixel, at, &(row, stream))| {
             let mut sampler = Sampler::new(stream, morton(at));
             let [u, v, ..] = sampler.next_event();
             let ray = camera.ray((at.as_dvec2() + DVec2::new(u, v)) * scale)?;
             let is_admitted = camera.admits(&ray, stage, &mut rays);
-            is_admitted.then_some(((pixel, ray.direction), ray, sampler))
+            is_admitted.then_some((((pixel, row), ray.direction), ray, sampler))
         });
-        party.follow(stage, starts, |(pixel, direction), walk| {
-            if walk.has_met() || camera.sees_sky() && walk.see_sky(stage, direction) {
-                found.clear();
-                walk.add_to(&mut found, 0);
-                tile.push(pixel, row, found.values());
-                walk.add_to_zones(&mut zones, row);
+        party.follow(stage, starts, |tags, walks| {
+            let (mut shown, mut samples) = (Vec::new(), Vec::new());
+            for (&(sample, direction), walk) in tags.iter().zip(walks) {
+                if walk.has_met() || camera.sees_sky() && walk.see_sky(stage, direction) {
+                    walk.add_to_zones(&mut zones, sample.1);
+                    shown.push(&*walk);
+                    samples.push(sample);
+                }
             }
+            tile.push(&shown.iter().copied(), &samples);
         });
+        if to == samples.end {
+            break;
+        }
+        from = to;
     }
     (zones, rays + party.rays())
 }

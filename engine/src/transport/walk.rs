@@ -1,35 +1,39 @@
 //! Walks from a sensor into the scene, many side by side.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
+use super::history::{BLOCK, Block, blocks};
 use crate::accel::{Batch, Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::Sampler;
+use crate::scattering::widely;
 
 /// Follows a ray from a sensor into the scene, from one question of the ray engine to the next; one
 /// value is reused for many rays.
-pub(super) trait Walk {
+pub(super) trait Walk<'a> {
     /// Sets out along a ray, the first that it waits for.
     fn start(&mut self, ray: &Ray, sampler: Sampler);
 
     /// Takes what was found on the rays that it waited for; returns those that it waits for now.
-    fn go_on(&mut self, stage: &Stage, answer: Answer) -> Ask;
+    fn go_on(&mut self, stage: &'a Stage, answer: Answer) -> Ask;
 
     /// Whether it has met the scene at all.
     fn has_met(&self) -> bool;
 
     /// Takes what a ray in this direction, which met nothing, finds in the sky; whether it finds
     /// anything. For cameras that see the sky.
-    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool;
+    fn see_sky(&mut self, stage: &'a Stage, direction: DVec3) -> bool;
 
-    /// What the last ray found, shape `[columns]` or longer.
-    fn values(&self) -> &[f32];
-
-    /// Adds what the last ray found to a cell.
-    fn add_to(&self, sums: &mut Sums, cell: usize) {
-        sums.add(cell, self.values(), 1.0);
+    /// Number of spectra that it finds.
+    fn spectra(&self) -> usize {
+        1
     }
+
+    /// Writes down what the last ray found in these bands of each of its spectra.
+    fn show(&self, bands: Range<usize>, found: &mut [Block]);
 
     /// Columns of what is summed over the whole image alone.
     fn zones(&self) -> usize {
@@ -43,6 +47,34 @@ pub(super) trait Walk {
     fn rays(&self) -> u64 {
         0
     }
+}
+
+/// Shows what each of these walks found in columns of shape `[spectra, bands]`: block by block of bands, and
+/// in each block walk by walk, so that what takes it stays in the cache. Receives the number of the walk, the
+/// columns, and what it found in them.
+#[inline(always)]
+pub(super) fn show_each<'w, 'a, W: Walk<'a> + 'w>(
+    walks: &(impl Iterator<Item = &'w W> + Clone),
+    columns: usize,
+    mut take: impl FnMut(usize, Range<usize>, &[f64]),
+) {
+    let Some(spectra) = walks.clone().next().map(W::spectra) else { return };
+    let bands = columns / spectra;
+    let mut found = vec![[0.0; BLOCK]; spectra];
+    widely(
+        #[inline(always)]
+        || {
+            for block in blocks(bands) {
+                for (number, walk) in walks.clone().enumerate() {
+                    walk.show(block.clone(), &mut found);
+                    for (spectrum, found) in found.iter().enumerate() {
+                        let start = spectrum * bands + block.start;
+                        take(number, start..start + block.len(), &found[..block.len()]);
+                    }
+                }
+            }
+        },
+    );
 }
 
 /// Rays that a walk waits for: none at its end.
@@ -93,12 +125,9 @@ pub(super) struct Party<W> {
 /// Most walks of a party: enough that the ray engine is seldom short of work when some have ended.
 const MOST: usize = 64;
 
-/// Lanes of all walks of a party, so that they stay in the cache.
-const LANES: usize = 2048;
-
-impl<W: Walk> Party<W> {
-    pub(super) fn new(stage: &Stage, walk: impl Fn() -> W) -> Self {
-        Self::of((LANES / stage.lanes().max(1)).clamp(4, MOST), walk)
+impl<W> Party<W> {
+    pub(super) fn new(walk: impl Fn() -> W) -> Self {
+        Self::of(MOST, walk)
     }
 
     /// One walk after the other, with a log of its rays.
@@ -111,22 +140,24 @@ impl<W: Walk> Party<W> {
         Self { walks, asks: vec![Ask::END; count], rays: 0, log: None }
     }
 
+    /// All rays so far, if they are logged.
+    pub(super) fn into_log(self) -> Vec<Traced> {
+        self.log.unwrap_or_default()
+    }
+}
+
+impl<'a, W: Walk<'a>> Party<W> {
     /// Rays traced so far.
     pub(super) fn rays(&self) -> u64 {
         self.rays + self.walks.iter().map(W::rays).sum::<u64>()
     }
 
-    /// All rays so far, if they are logged.
-    pub(super) fn into_log(self) -> Vec<Traced> {
-        self.log.unwrap_or_default()
-    }
-
-    /// Follows each of these rays to the end of its walk and shows it, in their order.
+    /// Follows each of these rays to the end of its walk and shows those of each party, in their order.
     pub(super) fn follow<T>(
         &mut self,
-        stage: &Stage,
+        stage: &'a Stage,
         mut starts: impl Iterator<Item = (T, Ray, Sampler)>,
-        mut found: impl FnMut(T, &mut W),
+        mut found: impl FnMut(&[T], &mut [W]),
     ) {
         let mut tags = Vec::with_capacity(self.walks.len());
         loop {
@@ -140,14 +171,13 @@ impl<W: Walk> Party<W> {
                 return;
             }
             self.finish(stage, tags.len());
-            for (walk, tag) in self.walks.iter_mut().zip(tags.drain(..)) {
-                found(tag, walk);
-            }
+            found(&tags, &mut self.walks[..tags.len()]);
+            tags.clear();
         }
     }
 
     /// Brings the first walks to their ends.
-    fn finish(&mut self, stage: &Stage, count: usize) {
+    fn finish(&mut self, stage: &'a Stage, count: usize) {
         let mut going: Vec<usize> = (0..count).collect();
         let (mut shadows, mut rays) = (Vec::new(), Vec::new());
         let (mut dark, mut hits) = (Vec::new(), Vec::new());

@@ -73,7 +73,7 @@ impl Counter for ViewCounter {
         // π f towards the view, or 1 on the side that emits.
         let factor = |towards: DVec3| match event {
             Event::Arrival { wo, .. } => {
-                stage.surface(hit).bsdf.eval(hit.normal, *wo, towards).map(Some)
+                stage.surface(hit).bsdf.eval(hit.normal, *wo, towards).map(|f| Some(&**f))
             }
             Event::Emission { ray, .. } => {
                 let is_same_side =
