@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use sunfleck::products::Report;
-use sunfleck::run::Options;
+use sunfleck::run::{Options, Unwatched, check_file, run_file};
 use sunfleck_tests::{measure, two_trees};
 
 /// Every kind of sensor, ending as `until` tells of its name.
@@ -92,7 +92,8 @@ fn a_black_scene_ends() {
     assert!((1 << 17..1 << 18).contains(&report.sensors[0].samples), "{:?}", report.sensors[0]);
 }
 
-/// *Expected*: one error that names the sensor, the product and the nearest one that it reports.
+/// *Expected*: one error that names the sensor, the product and the nearest one that it reports, and is the
+/// same where the scene is run and where it is only checked.
 #[test]
 fn a_product_that_is_not_there_is_an_error() {
     let wrong = two_trees(
@@ -103,10 +104,11 @@ fn a_product_that_is_not_there_is_an_error() {
     std::fs::create_dir_all(&folder).expect("a folder");
     let file = folder.join("wrong.ron");
     std::fs::write(&file, wrong).expect("a scene");
-    let failure = sunfleck::run::run_file(&file, &Options::default(), &sunfleck::run::Unwatched)
-        .expect_err("an error");
+    let failure = run_file(&file, &Options::default(), &Unwatched).expect_err("an error");
+    let checked = check_file(&file, &Options::default()).expect_err("an error");
     std::fs::remove_dir_all(&folder).expect("the folder is there");
     let text = failure.to_string();
+    assert_eq!(text, checked.to_string());
     for part in ["no product `albdeo`", "wrong.ron:", "did you mean `albedo`?", "sensors.p.until"] {
         assert!(text.contains(part), "{part} in {text}");
     }

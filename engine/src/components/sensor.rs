@@ -13,6 +13,24 @@ pub enum Sensor {
     Photons(Photons),
 }
 
+impl Sensor {
+    /// What ends its measurement.
+    #[must_use]
+    pub fn until(&self) -> &[Stop] {
+        match self {
+            Self::Image(sensor) => &sensor.until,
+            Self::Directions(sensor) => &sensor.until,
+            Self::Photons(sensor) => &sensor.until,
+        }
+    }
+
+    /// Whether products are named in that.
+    #[must_use]
+    pub fn names_products(&self) -> bool {
+        self.until().iter().any(|stop| matches!(stop, Stop::RelErrors(_)))
+    }
+}
+
 /// A transport system: how a product is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum System {

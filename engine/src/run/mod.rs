@@ -2,6 +2,7 @@
 
 mod advice;
 mod again;
+mod check;
 mod checkpoint;
 mod failure;
 mod forecast;
@@ -19,7 +20,7 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::accel::Boundary;
-use crate::components::{Projection, Sensor, TerrainPatch};
+use crate::components::{Projection, TerrainPatch};
 use crate::document::{self, Diagnostic, Reading, Scene};
 use crate::extract::{Rules, Setting, Stage, extract};
 use crate::products::{BandSources, Context, Report, SensorReport};
@@ -117,16 +118,26 @@ pub fn run_file(
     })
 }
 
-/// Reads and spawns a scene file without running it; returns what its author should know.
+/// Reads and spawns a scene file without tracing it; returns what its author should know. The ray
+/// engine's trees are built only if some sensor names products, which are known no earlier.
 ///
 /// # Errors
 /// All that is wrong with the scene, rendered for a person.
 pub fn check_file(path: &Path, options: &Options) -> Result<Vec<String>, Failure> {
     let reading = read(path, options)?;
-    let folder = folder_of(path);
+    let build = || {
+        let spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
+        let sensors = sensors::in_order(&spawned.world);
+        if !sensors.iter().any(|(_, sensor)| sensor.names_products()) {
+            return Ok(spawned);
+        }
+        let stage = extract(&spawned.world, &setting(&reading.scene), None)?;
+        let context = context(&reading.scene, &stage);
+        check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
+        Ok(spawned)
+    };
     let spawned = in_pool(options, || {
-        spawn(&reading.scene, folder)
-            .map_err(|problems| Failure::Scene(reading.source.render(&problems)))
+        build().map_err(|failure: Failure| failure.with_source(&reading.source))
     })?;
     let warnings = reading.diagnostics.iter().chain(&spawned.warnings);
     let mut texts: Vec<String> =
@@ -289,14 +300,7 @@ fn measure(
 ) -> Result<Vec<SensorReport>, Failure> {
     let scene = (stage, context);
     let sensors = sensors::in_order(world);
-    sensors::check_memory(&sensors, scene, options, keeper)?;
-    let check = |(name, sensor): &(String, Sensor)| {
-        sensors::check(name, sensor, scene, options.quality, keeper)
-    };
-    let problems: Vec<Diagnostic> = sensors.iter().flat_map(check).collect();
-    if !problems.is_empty() {
-        return Err(Failure::Problems(problems));
-    }
+    check::check(&sensors, scene, options, keeper)?;
     let reports = sensors
         .iter()
         .map(|(name, sensor)| sensors::measure(name, sensor, scene, options, keeper, progress));
