@@ -23,9 +23,6 @@ use sunfleck_tests::{measure, product, shared};
 /// Standard errors that a value may be off: two-sided significance 6e-5 of Student's t.
 const MOST: f64 = 4.66;
 
-/// Packets that tell the BRF in one direction about as well as one path.
-const PACKETS_A_PATH: f64 = 10.0;
-
 /// Layers drawn.
 const LAYERS: u32 = 32;
 
@@ -167,9 +164,8 @@ fn measured(
             .iter()
             .map(|view| (view.zenith, SUN_AZIMUTH_DEG + view.relative_azimuth))
             .collect();
-        // Paths by default; by packets, of which each serves all views, all rows take a fraction of the time.
-        let (system, samples) =
-            if is_full() { ("Forward", PACKETS_A_PATH * samples) } else { ("Backward", samples) };
+        // A packet, which serves all views, tells each about as much as a path of its own.
+        let system = if is_full() { "Forward" } else { "Backward" };
         write!(
             sensors,
             r#""views": Directions(system: {system}, views: List({views:?}), until: Samples({samples}), measure: [Brf, Orders])"#
