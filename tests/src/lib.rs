@@ -64,6 +64,31 @@ pub fn two_trees(boundary: &str, sensors: &str) -> String {
     )
 }
 
+/// Scene text of horizontal sheets of leaf, reflectance `r` and transmittance `t`, at these heights over soil
+/// of reflectance `s`, wider than the tile that repeats; `keys` are the sensors and what else it holds.
+#[must_use]
+pub fn sheets((r, t, s): (f64, f64, f64), heights_m: &[f64], keys: &str) -> String {
+    let at: Vec<_> = heights_m.iter().map(|height| (4.0, 4.0, *height)).collect();
+    format!(
+        r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 660.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Constant({s:?})),
+        "leaf": Leaf(reflectance: Constant({r:?}), transmittance: Constant({t:?})),
+    }},
+    meshes: {{ "sheet": Faces(
+        faces_m: [[(-10.0, -10.0, 0.0), (10.0, -10.0, 0.0), (10.0, 10.0, 0.0), (-10.0, 10.0, 0.0)]], material: "leaf",
+    ) }},
+    terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
+    instances: [List(of: "sheet", at_m: {at:?})],
+    sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
+    boundary: Periodic,
+    {keys}
+)"#
+    )
+}
+
 /// A product of a sensor.
 ///
 /// # Panics

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sunfleck::products::Report;
 use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product, two_trees};
+use sunfleck_tests::{Estimate, measure, product, sheets, two_trees};
 
 fn run(text: &str) -> Report {
     measure(text, Path::new("."), &Options::default())
@@ -157,35 +157,12 @@ fn a_white_furnace_under_an_isotropic_sky_looks_like_the_sky() {
 #[test]
 fn leaf_sheets_add_up_as_layers_do() {
     let (r, t, s) = (0.45, 0.45, 0.2);
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(
-        dir.path().join("sheet.obj"),
-        "g sheet\nv -10 -10 0\nv 10 -10 0\nv 10 10 0\nv -10 10 0\nf 1 2 3 4\n",
-    )
-    .expect("a file");
-    let report = measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant({s})),
-        "leaf": Leaf(reflectance: Constant({r}), transmittance: Constant({t})),
-    }},
-    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
-    terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
-    instances: [List(of: "sheet", at_m: [(4.0, 4.0, 1.0), (4.0, 4.0, 2.0)])],
-    sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
-    boundary: Periodic,
-    sensors: {{
+    let sensors = r#"sensors: {
         "photons": Photons(per_m2: 10000.0, measure: [Albedo]),
         "views": Directions(system: Backward, views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001)),
-    }},
-)"#
-        ),
-        dir.path(),
-        &Options::default(),
-    );
+    },"#;
+    let scene = sheets((r, t, s), &[1.0, 2.0], sensors);
+    let report = measure(&scene, Path::new("."), &Options::default());
     // Lambertian layers: what they send out is diffuse whatever came in.
     let below = r + t * t * s / (1.0 - r * s);
     let both = r + t * t * below / (1.0 - r * below);

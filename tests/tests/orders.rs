@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use sunfleck::products::{Product, Report};
 use sunfleck::run::Options;
 use sunfleck::transport::Hemisphere;
-use sunfleck_tests::{Estimate, measure, product, two_trees};
+use sunfleck_tests::{Estimate, measure, product, sheets, two_trees};
 
 const PARTS: [&str; 3] = ["uc", "co_sgl", "mlt"];
 
@@ -202,38 +202,17 @@ fn absorption_and_transmission_account_for_all_light() {
 #[test]
 fn a_highest_order_cuts_the_series_of_a_sheet() {
     let (r, t, s) = (0.45, 0.35, 0.2);
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(
-        dir.path().join("sheet.obj"),
-        "g sheet\nv -10 -10 0\nv 10 -10 0\nv 10 10 0\nv -10 10 0\nf 1 2 3 4\n",
-    )
-    .expect("a file");
     let series = [r, 0.0, t * s * t, 0.0, t * s * r * s * t];
     for order in 1..=5 {
-        let report = run(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant({s})),
-        "leaf": Leaf(reflectance: Constant({r}), transmittance: Constant({t})),
-    }},
-    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
-    terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
-    instances: [List(of: "sheet", at_m: [(4.0, 4.0, 1.0)])],
-    sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
-    boundary: Periodic,
-    transport: (max_order: {order}),
+        let keys = format!(
+            r#"transport: (max_order: {order}),
     sensors: {{
         "photons": Photons(per_m2: 500.0, measure: [Albedo]),
         "back": Directions(system: Backward, views: List([(20.0, 90.0)]), until: Samples(16000)),
         "forth": Directions(views: List([(20.0, 90.0)]), until: Samples(16000), system: Forward),
-    }},
-)"#
-            ),
-            dir.path(),
+    }},"#
         );
+        let report = run(&sheets((r, t, s), &[1.0], &keys), Path::new("."));
         let expected: f64 = series[..order].iter().sum();
         for (sensor, name) in [("photons", "albedo"), ("back", "brf"), ("forth", "brf")] {
             let one = Estimate::of(product(&report, sensor, name), 0);
