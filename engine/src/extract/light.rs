@@ -5,7 +5,7 @@ use hecs::World;
 
 use crate::components::{Sky, Sun};
 use crate::sampling::{Sampler, concentric_disc};
-use crate::scattering::padded;
+use crate::scattering::Spectrum;
 
 /// What lights a stage, in units of the total irradiance on the horizontal plane, band by band.
 ///
@@ -30,8 +30,8 @@ pub struct Beam {
     pub direction: DVec3,
     /// The sun's disc; without one its light is parallel.
     pub disc: Option<Disc>,
-    /// Its share of the total horizontal irradiance, shape `[lanes]`.
-    pub share: Box<[f32]>,
+    /// Its share of the total horizontal irradiance.
+    pub share: Spectrum,
 }
 
 /// A solar disc of even radiance, wholly above the horizon.
@@ -84,8 +84,8 @@ impl Beam {
 /// The isotropic sky.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dome {
-    /// Its share of the total horizontal irradiance, shape `[lanes]`; its radiance is this over π.
-    pub share: Box<[f32]>,
+    /// Its share of the total horizontal irradiance; its radiance is this over π.
+    pub share: Spectrum,
 }
 
 impl Light {
@@ -101,13 +101,12 @@ impl Light {
             beam_irradiance.iter().zip(&sky_irradiance).map(|(sun, sky)| sun + sky).collect();
         // A band without any light has no share of it: all it can measure is zero.
         let share = |part: &[f64]| {
-            padded(
+            Spectrum::new(
                 part.iter()
                     .zip(&irradiance)
                     .map(|(&part, &total)| if total > 0.0 { (part / total) as f32 } else { 0.0 }),
             )
         };
-        let shines = |share: &[f32]| share.iter().any(|&s| s > 0.0);
         let beam_share = share(&beam_irradiance);
         let sky_share = share(&sky_irradiance);
         let sun = sun.map(|sun| Beam {
@@ -116,9 +115,9 @@ impl Light {
             share: beam_share,
         });
         Self {
-            beam: sun.clone().filter(|beam| shines(&beam.share)),
+            beam: sun.clone().filter(|beam| !beam.share.is_black()),
             sun,
-            dome: shines(&sky_share).then_some(Dome { share: sky_share }),
+            dome: (!sky_share.is_black()).then_some(Dome { share: sky_share }),
             irradiance,
         }
     }

@@ -53,11 +53,11 @@ impl Sums {
         values.saturating_mul(touched)
     }
 
-    /// The sums of a cell, shape `[bands]`, to be added to.
+    /// Where the sums of a cell start among [`Self::values_mut`]; they stay there.
     ///
     /// # Panics
     /// If there is no such cell.
-    pub fn cell_mut(&mut self, cell: usize) -> &mut [f64] {
+    pub fn start(&mut self, cell: usize) -> usize {
         let row = self.touched.as_mut().map_or(cell, |touched| {
             let (row, is_new) = touched.insert_full(cell);
             if is_new {
@@ -65,27 +65,17 @@ impl Sums {
             }
             row
         });
-        &mut self.values[row * self.bands..(row + 1) * self.bands]
+        assert!((row + 1) * self.bands <= self.values.len(), "there is such a cell");
+        row * self.bands
     }
 
-    /// Adds `spectrum · scale` to a cell; of `spectrum`, padded or not, the bands count.
+    /// The sums of a cell, shape `[bands]`, to be added to.
     ///
     /// # Panics
     /// If there is no such cell.
-    pub fn add(&mut self, cell: usize, spectrum: &[f32], scale: f64) {
-        for (sum, &value) in self.cell_mut(cell).iter_mut().zip(spectrum) {
-            *sum += f64::from(value) * scale;
-        }
-    }
-
-    /// Adds `f(lane)` to each band of a cell.
-    ///
-    /// # Panics
-    /// If there is no such cell.
-    pub fn add_with(&mut self, cell: usize, f: impl Fn(usize) -> f64) {
-        for (lane, sum) in self.cell_mut(cell).iter_mut().enumerate() {
-            *sum += f(lane);
-        }
+    pub fn cell_mut(&mut self, cell: usize) -> &mut [f64] {
+        let start = self.start(cell);
+        &mut self.values[start..start + self.bands]
     }
 
     /// Adds a value to one band of a cell.
@@ -148,8 +138,10 @@ mod tests {
         let fill = |sums: &mut Sums, seed: usize| {
             for step in 0..1000 {
                 let cell = (step * step * 7919 + seed) % 97 * (cells / 97);
-                sums.add_with(cell, |band| 1.0 / (1 + step + band) as f64);
-                sums.add(cell, &[0.1, 0.7, 0.0], 1e-3 * seed as f64);
+                for (band, sum) in sums.cell_mut(cell).iter_mut().enumerate() {
+                    *sum += 1.0 / (1 + step + band) as f64;
+                    *sum += [0.1, 0.7][band] * 1e-3 * seed as f64;
+                }
             }
         };
         let (mut sparse, mut dense) = (Sums::new(cells, 2), Sums::new(cells, 2));

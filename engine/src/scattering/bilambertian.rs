@@ -22,6 +22,8 @@ struct Side {
     reflected: Spectrum,
     /// ρ + τ.
     scattered: Spectrum,
+    /// 1 - ρ - τ.
+    absorbed: Spectrum,
 }
 
 impl BiLambertian {
@@ -29,10 +31,14 @@ impl BiLambertian {
     #[must_use]
     pub fn new(optics: &SurfaceOptics) -> Self {
         let tau = optics.transmittance();
-        let side = |rho: &[f32]| Side {
-            reflected: Spectrum::new(rho.iter().copied()),
+        let side = |rho: &[f32]| {
             // ρ + τ = 1 may round to an ulp above 1, which would absorb less than nothing.
-            scattered: Spectrum::new(rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0))),
+            let scattered = rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0));
+            Side {
+                reflected: Spectrum::new(rho.iter().copied()),
+                absorbed: Spectrum::new(scattered.clone().map(|scattered| 1.0 - scattered)),
+                scattered: Spectrum::new(scattered),
+            }
         };
         let transmitted = Spectrum::new(tau.iter().copied());
         Self { front: side(optics.front()), back: side(optics.back()), transmitted }
@@ -50,6 +56,10 @@ impl BiLambertian {
 
     pub(super) fn scattered(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
         &self.side(normal, wo).scattered
+    }
+
+    pub(super) fn absorbed(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
+        &self.side(normal, wo).absorbed
     }
 
     pub(super) fn reflected(&self, normal: DVec3, wo: DVec3) -> &Spectrum {

@@ -28,9 +28,16 @@ pub(crate) fn largest(spectrum: &[f32]) -> f32 {
     largest_of(groups(spectrum).copied())
 }
 
-/// The largest of `a b` of spectra of whole groups of lanes, and 0.
-pub(crate) fn largest_product(a: &[f32], b: &[f32]) -> f32 {
-    largest_of(groups(a).zip(groups(b)).map(|(a, b)| from_fn(|lane| a[lane] * b[lane])))
+/// The largest of the product of spectra of whole groups of lanes, all of one length, and 0.
+pub(crate) fn largest_product<const N: usize>(spectra: [&[f32]; N]) -> f32 {
+    let groups = spectra.map(|spectrum| spectrum.as_chunks::<LANES>().0);
+    let count = groups.iter().map(|groups| groups.len()).min().unwrap_or(0);
+    largest_of((0..count).map(|group| {
+        groups.iter().fold([1.0; LANES], |product, factor| {
+            let factor = &factor[group];
+            from_fn(|lane| product[lane] * factor[lane])
+        })
+    }))
 }
 
 /// `t ← t f c`, as far as `f` goes.
@@ -54,14 +61,6 @@ pub(crate) fn add_lit(sum: &mut [f32], t: &[f32], (f, s, c): (&[f32], &[f32], f3
 pub(crate) fn add_seen(sum: &mut [f32], t: &[f32], (s, c): (&[f32], f32)) {
     for ((sum, t), s) in groups_mut(sum).zip(groups(t)).zip(groups(s)) {
         *sum = from_fn(|lane| sum[lane] + t[lane] * s[lane] * c);
-    }
-}
-
-/// `sum ← sum + t (1 - f) s`, as far as `f` and `s` go.
-#[inline(always)]
-pub(crate) fn add_emitted(sum: &mut [f32], t: &[f32], (f, s): (&[f32], &[f32])) {
-    for ((sum, t), (f, s)) in groups_mut(sum).zip(groups(t)).zip(groups(f).zip(groups(s))) {
-        *sum = from_fn(|lane| sum[lane] + t[lane] * (1.0 - f[lane]) * s[lane]);
     }
 }
 
@@ -98,7 +97,7 @@ mod tests {
             let mut spectrum = of(|i| 0.5 - i);
             spectrum[peak] = 7.0;
             assert_eq!(largest(&spectrum), 7.0);
-            assert_eq!(largest_product(&spectrum, &of(|_| 2.0)), 14.0);
+            assert_eq!(largest_product([&spectrum, &of(|_| 2.0), &of(|_| 0.5)]), 7.0);
         }
         assert_eq!(largest(&[-1.0; 8]), 0.0);
     }

@@ -12,9 +12,7 @@ mod spectrum;
 use glam::DVec3;
 
 pub use bilambertian::BiLambertian;
-pub(crate) use lanes::{
-    add_emitted, add_lit, add_seen, dot, largest, largest_product, multiply, widely,
-};
+pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, widely};
 pub use spectrum::Spectrum;
 
 /// Bands are padded to multiples of this, so that loops over them need no remainder.
@@ -68,6 +66,14 @@ impl Bsdf {
     pub fn scattered(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
         match self {
             Self::BiLambertian(model) => model.scattered(normal, wo),
+        }
+    }
+
+    /// Share of it that is not scattered, `1 - DHR - DHT`.
+    #[must_use]
+    pub fn absorbed(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
+        match self {
+            Self::BiLambertian(model) => model.absorbed(normal, wo),
         }
     }
 

@@ -4,49 +4,59 @@ use super::counters::Event;
 use super::forward::{Packet, fly, show};
 use crate::accel::Ray;
 use crate::sampling::Sampler;
+use crate::scattering::Spectrum;
 
-/// Puts the power of all bands into one, chosen in proportion to the power of each: all photons carry
-/// the same, and each band's power is kept in the mean.
-pub(super) fn take_one_band(weight: &mut [f32], sampler: &mut Sampler) {
-    let total: f64 = weight.iter().copied().map(f64::from).sum();
-    let [pick, ..] = sampler.next_event();
-    let mut left = pick * total;
-    let chosen = weight.iter().position(|&power| {
-        left -= f64::from(power);
-        left < 0.0
-    });
-    weight.fill(0.0);
-    if let Some(band) = chosen {
-        weight[band] = total as f32;
+impl<'a> Packet<'a> {
+    /// Puts the power of all bands into one, chosen in proportion to the power of each: all photons carry
+    /// the same, and each band's power is kept in the mean.
+    pub(super) fn start_whole(&mut self, weight: &[(&'a Spectrum, f32)], sampler: &mut Sampler) {
+        let power = |band: usize| -> f64 {
+            weight.iter().map(|(spectrum, factor)| spectrum[band] * factor).product::<f32>().into()
+        };
+        let bands = self.stage.bands;
+        let total: f64 = (0..bands).map(power).sum();
+        let [pick, ..] = sampler.next_event();
+        let mut left = pick * total;
+        self.band = (0..bands).find(|&band| {
+            left -= power(band);
+            left < 0.0
+        });
+        // What is written down counts in this band alone.
+        let share = if self.band.is_some() { self.whole } else { self.nothing };
+        self.tally.scatter(share, total as f32);
+        self.outline.fill(0.0);
+        if let Some(band) = self.band {
+            self.outline[Spectrum::place(band, bands)] = total as f32;
+        }
     }
-}
 
-impl Packet<'_> {
-    /// Follows a photon that has left so many surfaces, until it ends. At each surface it is reflected
-    /// with the probability `ρ`, transmitted with `τ`, and absorbed otherwise: as a whole, so that
-    /// nothing is weighed, expected or played for.
+    /// Follows a photon that has left so many surfaces, until it ends.
+    pub(super) fn follow_whole(&mut self, ray: Ray, history: (u32, bool), sampler: &mut Sampler) {
+        let band = self.band.unwrap_or_default();
+        if self.band.is_some() {
+            self.follow_in(band, ray, history, sampler);
+        }
+        self.tally.settle(band..band + 1);
+    }
+
+    /// At each surface a photon is reflected with the probability `ρ`, transmitted with `τ`, and absorbed
+    /// otherwise: as a whole, so that nothing is weighed, expected or played for.
     ///
     /// The lobes of a surface are drawn exactly: the weight of a drawn direction, `f |cos θ| / pdf`
     /// over `ρ + τ`, is 1.
-    pub(super) fn follow_whole(
+    fn follow_in(
         &mut self,
+        band: usize,
         mut ray: Ray,
         (left, ground): (u32, bool),
         sampler: &mut Sampler,
     ) {
-        let Some(band) = self.weight.iter().position(|&power| power > 0.0) else { return };
-        let Self { stage, counters, sums, weight, before, dark, rays, .. } = self;
-        let (stage, counters) = (*stage, *counters);
+        let Self { stage, counters, tally, outline, whole, nothing, rays, .. } = self;
+        let (stage, counters, whole, nothing) = (*stage, *counters, *whole, *nothing);
         let most = stage.rules.max_order.saturating_add(left);
-        let mut show = |event: Event<'_>| show((stage, counters, sums), &event);
         let (mut order, mut met_ground) = (left, ground);
-        // Share of the photon that goes on: all of it in its band, or nothing.
-        let (all, whole, nothing) = (&*weight, &mut *before, &**dark);
-        whole.fill(0.0);
-        whole[band] = 1.0;
-        let whole = &*whole;
         loop {
-            let (hit, traced) = fly(stage, &mut show, &ray, (order, met_ground), all);
+            let (hit, traced) = fly((stage, counters, tally), &ray, (order, met_ground));
             *rays += traced;
             let Some(hit) = hit else { return };
             let wo = -ray.direction;
@@ -61,22 +71,20 @@ impl Packet<'_> {
             });
             let share = |is_whole: bool| if is_whole { whole } else { nothing };
             let is_last = order >= most;
-            *rays += show(Event::Arrival {
+            let event = Event::Arrival {
                 hit: &hit,
                 wo,
                 order,
                 met_ground,
                 is_last,
-                weight: all,
+                outline,
                 scattered: share(next.is_some()),
                 reflected: share(is_reflected),
                 sampler,
-            });
-            let Some(next) = next else { return };
-            if is_last {
-                *rays += show(Event::Roulette { expected: all, kept: nothing });
-                return;
-            }
+            };
+            *rays += show((stage, counters, tally), &event);
+            let Some(next) = next.filter(|_| !is_last) else { return };
+            *rays += show((stage, counters, tally), &Event::Departure);
             met_ground |= stage.is_ground(&hit);
             order += 1;
             ray = hit.leave(next.direction);

@@ -17,7 +17,7 @@ use crate::scattering::{Spectrum, dot, multiply};
 #[derive(Clone, Debug)]
 pub(super) struct Path<'a> {
     history: History<'a>,
-    /// A bound of the throughput: the product of the outlines.
+    /// Outline of the throughput: the product of those of all that it met.
     outline: Vec<f32>,
     /// The step that counts if the sun is seen.
     sunlight: Option<usize>,

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::accel::Ray;
 use crate::extract::{Disc, Stage};
 use crate::sampling::{Sampler, cosine_hemisphere};
+use crate::scattering::Spectrum;
 
 /// Where photon packets of sun and sky start, so that every point of the scene is lit as it would be
 /// in the open.
@@ -20,8 +21,8 @@ pub(super) struct Emission {
     /// Chance that a packet is the sun's.
     sun_chance: f64,
     /// Weight of a packet in each lane, over its gain and chance.
-    sun_share: Box<[f32]>,
-    sky_share: Box<[f32]>,
+    sun_share: Spectrum,
+    sky_share: Spectrum,
     sun: DVec3,
     disc: Option<Disc>,
     /// Area of the scene's rectangle, m².
@@ -79,11 +80,9 @@ impl Emission {
             face.sun_until /= sun_power;
             face.sky_until /= sky_power;
         }
-        let share = |share: Option<&[f32]>| -> Box<[f32]> {
-            share.map_or_else(|| vec![0.0; stage.lanes()].into(), Into::into)
-        };
-        let sun_share = share(stage.light.beam.as_ref().map(|beam| &*beam.share));
-        let sky_share = share(stage.light.dome.as_ref().map(|dome| &*dome.share));
+        let dark = || Spectrum::new(vec![0.0; stage.bands]);
+        let sun_share = stage.light.beam.as_ref().map_or_else(dark, |beam| beam.share.clone());
+        let sky_share = stage.light.dome.as_ref().map_or_else(dark, |dome| dome.share.clone());
         let sun_gain = sun_power / (stage.area() * sun.z);
         let sky_gain = sky_power / stage.area();
         // Packets go where the power is, summed over the bands.
@@ -104,9 +103,9 @@ impl Emission {
         }
     }
 
-    /// Starts a packet: its ray, and its weight in each lane, in units of the power that falls on
-    /// the scene's rectangle over the number of packets.
-    pub(super) fn start(&self, sampler: &mut Sampler, weight: &mut [f32]) -> Ray {
+    /// Starts a packet: its ray, and its weight as a spectrum and a factor, in units of the power that
+    /// falls on the scene's rectangle over the number of packets.
+    pub(super) fn start(&self, sampler: &mut Sampler) -> (Ray, (&Spectrum, f32)) {
         let [pick, u, v, _] = sampler.next_event();
         let (direction, face, share, factor);
         if pick < self.sun_chance {
@@ -122,10 +121,7 @@ impl Emission {
             share = &self.sky_share;
             factor = self.sky_gain / (1.0 - self.sun_chance);
         }
-        for (weight, share) in weight.iter_mut().zip(share) {
-            *weight = share * factor as f32;
-        }
-        self.ray(face, direction, DVec2::new(u, v))
+        (self.ray(face, direction, DVec2::new(u, v)), (share, factor as f32))
     }
 
     /// A ray as the light of an isotropic sky comes: such rays are lines of uniform measure among

@@ -4,12 +4,13 @@ use super::counters::Event;
 use super::emission::Emission;
 use super::glow::Glow;
 use super::rows::{Rows, Tracer};
-use super::{Counter, EnergyCounter, Grain, ReferencePlane, Source, analog, roulette};
+use super::tally::Tally;
+use super::{Counter, EnergyCounter, Grain, ReferencePlane, Source, roulette};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
-use crate::scattering::dot;
+use crate::scattering::{Spectrum, dot, multiply};
 
 /// Photon packets of sun and sky, or lines along which surfaces and the sky emit some; every event is
 /// shown to every counter. The first of its sums is that of the [`EnergyCounter`].
@@ -22,6 +23,9 @@ struct Packets<'a> {
     grain: Grain,
     emission: Emission,
     counters: Vec<Box<dyn Counter>>,
+    /// Shares of a photon.
+    whole: Spectrum,
+    nothing: Spectrum,
     key: Key,
 }
 
@@ -36,7 +40,9 @@ impl<'a> Packets<'a> {
         let energy = EnergyCounter { surfaces: stage.surfaces.len(), plane };
         let energy: Box<dyn Counter> = Box::new(energy);
         let counters = std::iter::once(energy).chain(counters).collect();
-        Self { stage, source, grain, emission: Emission::of(stage), counters, key }
+        let emission = Emission::of(stage);
+        let [whole, nothing] = [1.0, 0.0].map(|share| Spectrum::new(vec![share; stage.bands]));
+        Self { stage, source, grain, emission, counters, whole, nothing, key }
     }
 }
 
@@ -49,18 +55,19 @@ impl Tracer for Packets<'_> {
         let is_emitted = self.source == Source::Emitted;
         let glow = is_emitted.then(|| Glow::of(self.stage, &self.emission)).flatten();
         let full = glow.as_ref().map_or(1.0, Glow::full_weight);
-        let mut packet = Packet::new(self.stage, &self.counters, (full, self.grain));
+        let mut packet = Packet::new(self, full);
         let stream = self.key.index(randomisation);
         for index in samples {
             let mut sampler = Sampler::new(stream, index);
             if let Some(glow) = &glow {
                 glow.trace(&mut packet, &mut sampler);
             } else {
-                let ray = self.emission.start(&mut sampler, &mut packet.weight);
-                packet.arrive(ray, &mut sampler);
+                let (ray, weight) = self.emission.start(&mut sampler);
+                packet.arrive(ray, &[weight], &mut sampler);
             }
         }
-        (packet.sums, packet.rays)
+        packet.tally.settle(0..self.stage.bands);
+        (packet.tally.into_sums(), packet.rays)
     }
 
     fn block_bytes(&self, samples: u64) -> u64 {
@@ -96,141 +103,159 @@ pub fn photon_film(
 pub(super) struct Packet<'a> {
     pub(super) stage: &'a Stage,
     pub(super) counters: &'a [Box<dyn Counter>],
-    pub(super) sums: Vec<Sums>,
-    /// Its weight when it starts, and then what is left of it; shape `[lanes]`.
-    pub(super) weight: Vec<f32>,
-    pub(super) before: Vec<f32>,
-    /// Nothing at all.
-    pub(super) dark: Vec<f32>,
+    pub(super) tally: Tally<'a>,
+    /// Outline of its weight: the product of those of all that it was multiplied with.
+    pub(super) outline: Vec<f32>,
     /// A packet that weighs less is played for.
     weak: f32,
     grain: Grain,
+    /// What goes on of a photon: all or nothing.
+    pub(super) whole: &'a Spectrum,
+    pub(super) nothing: &'a Spectrum,
+    /// The band of a photon.
+    pub(super) band: Option<usize>,
     pub(super) rays: u64,
 }
 
+/// Entries of a tally that are settled at once: enough to find the cells' blocks in the cache.
+const WAITING: usize = 2048;
+
 impl<'a> Packet<'a> {
     /// The strongest weigh `full` when they start.
-    fn new(
-        stage: &'a Stage,
-        counters: &'a [Box<dyn Counter>],
-        (full, grain): (f32, Grain),
-    ) -> Self {
-        let dark = vec![0.0; stage.lanes()];
+    fn new(packets: &'a Packets<'a>, full: f32) -> Self {
+        let Packets { stage, counters, grain, whole, nothing, .. } = packets;
         let sums = counters.iter().map(|one| Sums::of_block(one.cells(), stage.bands)).collect();
-        let (weight, before) = (dark.clone(), dark.clone());
         let weak = match grain {
             Grain::Packet(roulette) => full * roulette.weak(),
             Grain::Photon => 0.0,
         };
-        Self { stage, counters, sums, weight, before, dark, weak, grain, rays: 0 }
+        let outline = vec![0.0; Spectrum::outline_of(stage.bands)];
+        let (tally, grain) = (Tally::new(sums), *grain);
+        Self { stage, counters, tally, outline, weak, grain, whole, nothing, band: None, rays: 0 }
     }
 
-    /// Follows one of this weight that comes from outside.
-    pub(super) fn arrive(&mut self, ray: Ray, sampler: &mut Sampler) {
-        self.take_grain(sampler);
-        self.rays += show(
-            (self.stage, self.counters, &mut self.sums),
-            &Event::Start { ray: &ray, weight: &self.weight },
-        );
+    /// Follows one that comes from outside with the weight of this product.
+    pub(super) fn arrive(
+        &mut self,
+        ray: Ray,
+        weight: &[(&'a Spectrum, f32)],
+        sampler: &mut Sampler,
+    ) {
+        self.start(weight, sampler);
+        let event = Event::Start { ray: &ray };
+        self.rays += show((self.stage, self.counters, &mut self.tally), &event);
         self.follow(ray, (0, false), sampler);
     }
 
-    /// Follows one of this weight that a surface emits.
-    pub(super) fn emerge(&mut self, hit: &Hit, ray: Ray, sampler: &mut Sampler) {
-        self.take_grain(sampler);
-        self.rays += show(
-            (self.stage, self.counters, &mut self.sums),
-            &Event::Emission { hit, ray: &ray, weight: &self.weight, sampler },
-        );
+    /// Follows one that a surface emits with the weight of this product.
+    pub(super) fn emerge(
+        &mut self,
+        hit: &Hit,
+        ray: Ray,
+        weight: &[(&'a Spectrum, f32)],
+        sampler: &mut Sampler,
+    ) {
+        self.start(weight, sampler);
+        let event = Event::Emission { hit, ray: &ray, outline: &self.outline, sampler };
+        self.rays += show((self.stage, self.counters, &mut self.tally), &event);
         // It has left a surface once, and has not been scattered.
         self.follow(ray, (1, self.stage.is_ground(hit)), sampler);
     }
 
-    /// A photon takes all of the weight in one band.
-    fn take_grain(&mut self, sampler: &mut Sampler) {
+    /// Gives it its weight. A photon takes all of it in one band.
+    fn start(&mut self, weight: &[(&'a Spectrum, f32)], sampler: &mut Sampler) {
+        self.tally.start();
         if self.grain == Grain::Photon {
-            analog::take_one_band(&mut self.weight, sampler);
+            return self.start_whole(weight, sampler);
+        }
+        self.outline.fill(1.0);
+        for &(spectrum, factor) in weight {
+            multiply(&mut self.outline, spectrum.outline(), factor);
+            self.tally.scatter(spectrum, factor);
         }
     }
 
     /// Follows one that has left so many surfaces, until it ends.
-    fn follow(&mut self, mut ray: Ray, (left, ground): (u32, bool), sampler: &mut Sampler) {
+    fn follow(&mut self, ray: Ray, history: (u32, bool), sampler: &mut Sampler) {
         if self.grain == Grain::Photon {
-            return self.follow_whole(ray, (left, ground), sampler);
+            return self.follow_whole(ray, history, sampler);
         }
-        let Self { stage, counters, sums, weight, before, weak, rays, .. } = self;
-        let (stage, weak, most) = (*stage, *weak, self.stage.rules.max_order.saturating_add(left));
-        let mut show = |event: Event<'_>| show((stage, counters, sums), &event);
+        self.follow_weighed(ray, history, sampler);
+        if self.tally.waiting() > WAITING {
+            self.tally.settle(0..self.stage.bands);
+        }
+    }
+
+    fn follow_weighed(&mut self, mut ray: Ray, (left, ground): (u32, bool), sampler: &mut Sampler) {
+        let Self { stage, counters, tally, outline, weak, rays, .. } = self;
+        let (stage, counters, weak) = (*stage, *counters, *weak);
+        let most = stage.rules.max_order.saturating_add(left);
         let (mut order, mut met_ground) = (left, ground);
         loop {
-            let (hit, traced) = fly(stage, &mut show, &ray, (order, met_ground), weight);
+            let (hit, traced) = fly((stage, counters, tally), &ray, (order, met_ground));
             *rays += traced;
             let Some(hit) = hit else { return };
             let wo = -ray.direction;
             let bsdf = &stage.surface(&hit).bsdf;
             let is_last = order >= most;
-            let scattered = bsdf.scattered(hit.normal, wo);
-            let reflected = bsdf.reflected(hit.normal, wo);
-            *rays += show(Event::Arrival {
+            let event = Event::Arrival {
                 hit: &hit,
                 wo,
                 order,
                 met_ground,
                 is_last,
-                weight,
-                scattered,
-                reflected,
+                outline,
+                scattered: bsdf.scattered(hit.normal, wo),
+                reflected: bsdf.reflected(hit.normal, wo),
                 sampler,
-            });
-            met_ground |= stage.is_ground(&hit);
-            before.copy_from_slice(weight);
-            for (weight, share) in before.iter_mut().zip(scattered.iter()) {
-                *weight *= share;
+            };
+            *rays += show((stage, counters, tally), &event);
+            if is_last {
+                return;
             }
             let [lobe, u, v, chance] = sampler.next_event();
-            let next = bsdf.sample(hit.normal, wo, |lobe| dot(weight, lobe), [lobe, u, v]);
-            let lives = !is_last
-                && next.is_some_and(|next| {
-                    for (weight, factor) in weight.iter_mut().zip(next.spectrum.iter()) {
-                        *weight *= factor * next.scale;
-                    }
-                    roulette::survivor_gain(&stage.rules, order + 1 - left, weak, weight, chance)
-                        .is_some()
-                });
-            if !lives {
-                weight.fill(0.0);
-            }
-            *rays += show(Event::Roulette { expected: before, kept: weight });
-            let Some(next) = next.filter(|_| lives) else { return };
+            let power = |lobe: &Spectrum| dot(outline, lobe.outline());
+            let Some(next) = bsdf.sample(hit.normal, wo, power, [lobe, u, v]) else { return };
+            multiply(outline, next.spectrum.outline(), next.scale);
+            let gain =
+                roulette::survivor_gain(&stage.rules, order + 1 - left, weak, outline, chance);
+            let Some(gain) = gain else { return };
+            tally.scatter(next.spectrum, next.scale * gain);
+            *rays += show((stage, counters, tally), &Event::Departure);
+            met_ground |= stage.is_ground(&hit);
             order += 1;
             ray = hit.leave(next.direction);
         }
     }
 }
 
-/// Lets a packet of this history and weight fly; returns what it meets, if it does not end, and the number
-/// of rays that this took.
-pub(super) fn fly(
-    stage: &Stage,
-    show: &mut impl FnMut(Event<'_>) -> u64,
+/// What events are shown to.
+type Watchers<'t, 'a> = (&'a Stage, &'a [Box<dyn Counter>], &'t mut Tally<'a>);
+
+/// Lets a packet of this history fly; returns what it meets, if it does not end, and the number of rays that
+/// this took.
+pub(super) fn fly<'a>(
+    (stage, counters, tally): Watchers<'_, 'a>,
     ray: &Ray,
     (order, met_ground): (u32, bool),
-    weight: &[f32],
 ) -> (Option<Hit>, u64) {
     let hit = stage.geometry.closest(ray);
     let distance = hit.as_ref().map_or(f64::INFINITY, |hit| hit.distance);
-    let flight = 1 + show(Event::Flight { ray, distance, weight });
+    let mut show = |event: Event<'_, 'a>| show((stage, counters, &mut *tally), &event);
+    let flight = 1 + show(Event::Flight { ray, distance });
     match hit {
-        None => (None, flight + show(Event::Escape { ray, order, met_ground, weight })),
-        Some(hit) if stage.is_cut(&hit) => (None, flight + show(Event::Buried { weight })),
+        None => (None, flight + show(Event::Escape { ray, order, met_ground })),
+        Some(hit) if stage.is_cut(&hit) => (None, flight + show(Event::Buried)),
         Some(hit) => (Some(hit), flight),
     }
 }
 
 /// Shows an event to every counter; returns the number of rays that this took.
-pub(super) fn show(
-    (stage, counters, sums): (&Stage, &[Box<dyn Counter + '_>], &mut [Sums]),
-    event: &Event<'_>,
-) -> u64 {
-    counters.iter().zip(sums).map(|(counter, sums)| counter.count(stage, event, sums)).sum()
+pub(super) fn show<'a>((stage, counters, tally): Watchers<'_, 'a>, event: &Event<'_, 'a>) -> u64 {
+    let mut rays = 0;
+    for (sums, counter) in counters.iter().enumerate() {
+        tally.turn_to(sums);
+        rays += counter.count(stage, event, tally);
+    }
+    rays
 }

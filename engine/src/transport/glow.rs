@@ -42,11 +42,11 @@ impl<'a> Glow<'a> {
     }
 
     /// Follows all packets that start along one line.
-    pub(super) fn trace(&self, packet: &mut Packet<'_>, sampler: &mut Sampler) {
+    pub(super) fn trace(&self, packet: &mut Packet<'a>, sampler: &mut Sampler) {
         let stage = packet.stage;
         let mut line = self.emission.start_anywhere(sampler);
-        self.weigh(&self.thermal.sky, |_| 1.0, packet);
-        packet.arrive(line, sampler);
+        let (bands, sky) = (&self.thermal.bands, &self.thermal.sky);
+        packet.arrive(line, &[(bands, 1.0), (sky, self.scale)], sampler);
         loop {
             packet.rays += 1;
             let Some(hit) = stage.geometry.closest(&line) else { return };
@@ -64,19 +64,11 @@ impl<'a> Glow<'a> {
                 if stage.is_ground(&hit) && !is_above {
                     continue;
                 }
-                let scattered = bsdf.scattered(hit.normal, direction);
-                self.weigh(black, |lane| 1.0 - scattered[lane], packet);
-                packet.emerge(&hit, hit.leave(direction), sampler);
+                let emitted = bsdf.absorbed(hit.normal, direction);
+                let weight = [(bands, 1.0), (black, 1.0), (emitted, self.scale)];
+                packet.emerge(&hit, hit.leave(direction), &weight, sampler);
             }
             line = hit.leave(line.direction);
-        }
-    }
-
-    /// Gives the packet its weight.
-    fn weigh(&self, radiance: &[f32], share: impl Fn(usize) -> f32, packet: &mut Packet<'_>) {
-        let bands = self.thermal.bands.iter().zip(radiance).enumerate();
-        for (weight, (lane, (band, radiance))) in packet.weight.iter_mut().zip(bands) {
-            *weight = band * radiance * share(lane) * self.scale;
         }
     }
 }

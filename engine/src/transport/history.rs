@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::scattering::{LANES, add_emitted, add_lit, add_seen, multiply};
+use crate::scattering::{LANES, add_lit, add_seen, multiply};
 
 /// Bands that are worked on at a time: so few that what is summed in them stays in registers and in the
 /// first cache, however many a scene has.
@@ -11,9 +11,10 @@ pub(super) const BLOCK: usize = 64;
 /// A value in each of at most so many bands.
 pub(super) type Block = [f64; BLOCK];
 
-/// So many bands, block by block.
-pub(super) fn blocks(bands: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..bands).step_by(BLOCK).map(move |start| start..(start + BLOCK).min(bands))
+/// These bands, block by block.
+pub(super) fn blocks(bands: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let end = bands.end;
+    bands.step_by(BLOCK).map(move |start| start..(start + BLOCK).min(end))
 }
 
 /// The spectra that light on a path is multiplied with, in order. The light of all bands is found from them
@@ -34,8 +35,6 @@ enum Step<'a> {
     Lit(&'a [f32], &'a [f32], f32),
     /// `L ← L + T S c`: the source itself is seen.
     Seen(&'a [f32], f32),
-    /// `L ← L + T (1 - f) S` of a surface that emits what it does not scatter of a source.
-    Emission(&'a [f32], &'a [f32]),
 }
 
 impl<'a> History<'a> {
@@ -64,11 +63,6 @@ impl<'a> History<'a> {
         self.steps.push(Step::Seen(source, scale));
     }
 
-    /// A surface that scatters this spectrum emits, `(1 - f) S`.
-    pub(super) fn emit(&mut self, scattered: &'a [f32], source: &'a [f32]) {
-        self.steps.push(Step::Emission(scattered, source));
-    }
-
     /// Takes back a step, which brought no light.
     pub(super) fn forget(&mut self, step: usize) {
         self.steps.remove(step);
@@ -88,10 +82,6 @@ impl<'a> History<'a> {
                     add_lit(&mut light, &throughput, (f, s, c));
                 }
                 Step::Seen(s, c) => add_seen(&mut light, &throughput, (&s[lanes.clone()], c)),
-                Step::Emission(f, s) => {
-                    let (f, s) = (&f[lanes.clone()], &s[lanes.clone()]);
-                    add_emitted(&mut light, &throughput, (f, s));
-                }
             }
         }
         for (found, light) in found[..lanes.len()].iter_mut().zip(&light) {
@@ -119,17 +109,17 @@ mod tests {
             history.light(&a, &source, 0.5);
             history.scatter(&a, 2.0);
             history.light(&b, &source, 9.0);
-            history.emit(&b, &black);
+            history.light(&black, &b, 1.0);
             history.scatter(&b, 0.25);
             history.see(&source, 3.0);
             history.forget(2);
             let mut seen = 0;
-            for block in blocks(bands) {
+            for block in blocks(0..bands) {
                 let mut found = [f64::NAN; BLOCK];
                 history.light_of(history.len(), block.clone(), &mut found);
                 for (band, found) in block.zip(found) {
                     let [a, b, s, black] = [&a, &b, &source, &black].map(|of| f64::from(of[band]));
-                    let light = a * s * 0.5 + 2.0 * a * ((1.0 - b) * black + 0.25 * b * s * 3.0);
+                    let light = a * s * 0.5 + 2.0 * a * (b * black + 0.25 * b * s * 3.0);
                     assert!((found - light).abs() < 1e-6, "{bands}: {band}: {found} for {light}");
                     seen += 1;
                 }

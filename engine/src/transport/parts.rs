@@ -1,6 +1,6 @@
+use super::tally::Tally;
 use super::{Counter, counters::Event};
 use crate::extract::Stage;
-use crate::film::Sums;
 
 /// Parts of what a scene reflects, as RAMI splits it; they sum to the whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,13 +63,13 @@ impl Counter for PartCounter<'_> {
         self.counter.cells()
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+    fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
         let part = match event {
             Event::Escape { order, met_ground, .. } => Part::of(*order, *met_ground),
             // A virtual photon leaves after one more event.
             Event::Arrival { hit, order, .. } => Part::of(order + 1, stage.is_ground(hit)),
             _ => return 0,
         };
-        if part == self.part { self.counter.count(stage, event, sums) } else { 0 }
+        if part == self.part { self.counter.count(stage, event, tally) } else { 0 }
     }
 }

@@ -19,7 +19,7 @@ use crate::scattering::{Spectrum, dot, multiply};
 #[derive(Clone, Debug)]
 pub(super) struct ThermalPath<'a> {
     history: History<'a>,
-    /// A bound of the throughput: the product of the outlines.
+    /// Outline of the throughput: the product of those of all that it met.
     outline: Vec<f32>,
     sampler: Sampler,
     /// Where the ray goes that the path waits for.
@@ -48,7 +48,7 @@ impl<'a> ThermalPath<'a> {
         let wo = -self.direction;
         let (black, rays) = thermal.black_body(stage, hit, &mut self.sampler);
         self.rays += rays;
-        self.history.emit(bsdf.scattered(hit.normal, wo), black);
+        self.history.light(bsdf.absorbed(hit.normal, wo), black, 1.0);
         if self.order == stage.rules.max_order {
             return None;
         }

@@ -64,7 +64,7 @@ pub(super) fn show_each<'w, 'a, W: Walk<'a> + 'w>(
     widely(
         #[inline(always)]
         || {
-            for block in blocks(bands) {
+            for block in blocks(0..bands) {
                 for (number, walk) in walks.clone().enumerate() {
                     walk.show(block.clone(), &mut found);
                     for (spectrum, found) in found.iter().enumerate() {

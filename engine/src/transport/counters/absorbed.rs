@@ -1,7 +1,6 @@
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::components::Per;
 use crate::extract::{Inventory, Stage};
-use crate::film::Sums;
 use crate::transport::ReferencePlane;
 
 /// Power that each instance absorbs below the reference plane, and each of its triangles and discs.
@@ -45,8 +44,8 @@ impl Counter for AbsorbedCounter {
         self.total() + 1 + self.starts.last().copied().unwrap_or(0)
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, weight, scattered, .. } = event else { return 0 };
+    fn count<'a>(&self, _: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
+        let Event::Arrival { hit, scattered, .. } = event else { return 0 };
         if !self.plane.is_above(hit.point) {
             return 0;
         }
@@ -54,9 +53,7 @@ impl Counter for AbsorbedCounter {
         let start = self.starts.get(instance);
         let face = start.map(|start| self.total() + 1 + start + hit.primitive as usize);
         for cell in [Some(instance), Some(self.total()), face].into_iter().flatten() {
-            sums.add_with(cell, |lane| {
-                f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])
-            });
+            tally.add(cell, Share::ButFor(scattered), 1.0);
         }
         0
     }

@@ -1,6 +1,5 @@
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::transport::ReferencePlane;
 
 /// Albedo: power that leaves through the reference plane over the power that falls on it (LESS manual
@@ -16,11 +15,11 @@ impl Counter for AlbedoCounter {
         1
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        if let Event::Escape { ray, order: 1.., weight, .. } = event
+    fn count<'a>(&self, _: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
+        if let Event::Escape { ray, order: 1.., .. } = event
             && self.plane.is_left_by(ray.origin, ray.direction)
         {
-            sums.add(0, weight, 1.0);
+            tally.add(0, Share::Whole, 1.0);
         }
         0
     }

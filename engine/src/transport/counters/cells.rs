@@ -1,6 +1,5 @@
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::transport::{Hemisphere, ReferencePlane};
 
 /// Power that leaves through the reference plane, by cells of the hemisphere.
@@ -17,11 +16,11 @@ impl Counter for CellCounter {
         self.hemisphere.len()
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        if let Event::Escape { ray, order: 1.., weight, .. } = event
+    fn count<'a>(&self, _: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
+        if let Event::Escape { ray, order: 1.., .. } = event
             && self.plane.is_left_by(ray.origin, ray.direction)
         {
-            sums.add(self.hemisphere.index(ray.direction), weight, 1.0);
+            tally.add(self.hemisphere.index(ray.direction), Share::Whole, 1.0);
         }
         0
     }

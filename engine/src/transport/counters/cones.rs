@@ -1,9 +1,8 @@
 use std::f64::consts::PI;
 
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::components::Cone;
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::transport::ReferencePlane;
 
 /// Power that leaves through the reference plane within cones of directions, one cell each.
@@ -38,13 +37,13 @@ impl Counter for ConeCounter {
         self.axes.len()
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        if let Event::Escape { ray, order: 1.., weight, .. } = event
+    fn count<'a>(&self, _: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
+        if let Event::Escape { ray, order: 1.., .. } = event
             && self.plane.is_left_by(ray.origin, ray.direction)
         {
             for (cell, (axis, cos)) in self.axes.iter().enumerate() {
                 if axis.dot(ray.direction) >= *cos {
-                    sums.add(cell, weight, 1.0);
+                    tally.add(cell, Share::Whole, 1.0);
                 }
             }
         }

@@ -1,4 +1,4 @@
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::transport::ReferencePlane;
@@ -46,25 +46,23 @@ impl Counter for EnergyCounter {
         Self::ABSORBED + self.surfaces
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+    fn count<'a>(&self, _: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
         match event {
-            Event::Start { weight, .. } | Event::Emission { weight, .. } => {
-                sums.add(Self::INCIDENT, weight, 1.0);
+            Event::Start { .. } | Event::Emission { .. } => {
+                tally.add(Self::INCIDENT, Share::Whole, 1.0);
             }
-            Event::Arrival { hit, weight, scattered, .. } => {
-                sums.add_with(Self::ABSORBED + hit.surface as usize, |lane| {
-                    // The same product that goes on, so that the two sum to what came.
-                    f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])
-                });
+            Event::Arrival { hit, scattered, .. } => {
+                let surface = Self::ABSORBED + hit.surface as usize;
+                tally.add(surface, Share::ButFor(scattered), 1.0);
+                tally.add(Self::ROULETTE, Share::Of(scattered), 1.0);
             }
-            Event::Roulette { expected, kept } => sums
-                .add_with(Self::ROULETTE, |lane| f64::from(expected[lane]) - f64::from(kept[lane])),
-            Event::Escape { ray, order, weight, .. } => {
+            Event::Departure => tally.add(Self::ROULETTE, Share::Whole, -1.0),
+            Event::Escape { ray, order, .. } => {
                 let reflected = *order > 0 && self.plane.is_left_by(ray.origin, ray.direction);
                 let cell = if reflected { Self::REFLECTED } else { Self::LOST };
-                sums.add(cell, weight, 1.0);
+                tally.add(cell, Share::Whole, 1.0);
             }
-            Event::Buried { weight } => sums.add(Self::LOST, weight, 1.0),
+            Event::Buried => tally.add(Self::LOST, Share::Whole, 1.0),
             Event::Flight { .. } => {}
         }
         0

@@ -1,8 +1,7 @@
 use glam::{DVec3, UVec2};
 
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::transport::ReferencePlane;
 
 /// A surface on which flux is counted.
@@ -63,43 +62,41 @@ impl Counter for FluxCounter {
         self.levels.len() * 2 * (self.pixels() + 1)
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
+    fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
         for (index, &level) in self.levels.iter().enumerate() {
-            let mut add = |point, is_up, share: &dyn Fn(usize) -> f64| {
+            let mut add = |point, is_up, share| {
                 for cell in self.cells_at(point, index, is_up).into_iter().flatten() {
-                    sums.add_with(cell, share);
+                    tally.add(cell, share, 1.0);
                 }
             };
             match (level, event) {
-                (FluxLevel::Terrain, Event::Arrival { hit, wo, weight, reflected, .. })
+                (FluxLevel::Terrain, Event::Arrival { hit, wo, reflected, .. })
                     if stage.is_ground(hit) && hit.normal.dot(*wo) > 0.0 =>
                 {
-                    add(hit.point, false, &|lane| weight[lane].into());
-                    add(hit.point, true, &|lane| (weight[lane] * reflected[lane]).into());
+                    add(hit.point, false, Share::Whole);
+                    add(hit.point, true, Share::Of(reflected));
                 }
-                (FluxLevel::Terrain, Event::Emission { hit, weight, .. })
-                    if stage.is_ground(hit) =>
-                {
-                    add(hit.point, true, &|lane| weight[lane].into());
+                (FluxLevel::Terrain, Event::Emission { hit, .. }) if stage.is_ground(hit) => {
+                    add(hit.point, true, Share::Whole);
                 }
                 // Nothing is above the top: light comes down through it once and goes up once.
-                (FluxLevel::Top, Event::Start { ray, weight }) => {
+                (FluxLevel::Top, Event::Start { ray }) => {
                     let along = (stage.top() - ray.origin.z) / ray.direction.z;
                     let point = ray.origin + ray.direction * along;
-                    add(point, false, &|lane| weight[lane].into());
+                    add(point, false, Share::Whole);
                 }
-                (FluxLevel::Top, Event::Escape { ray, order: 1.., weight, .. })
+                (FluxLevel::Top, Event::Escape { ray, order: 1.., .. })
                     if ray.direction.z > 0.0 =>
                 {
                     let along = (stage.top() - ray.origin.z).max(0.0) / ray.direction.z;
                     let point = ray.origin + ray.direction * along;
-                    add(point, true, &|lane| weight[lane].into());
+                    add(point, true, Share::Whole);
                 }
-                (FluxLevel::Height(height), Event::Flight { ray, distance, weight }) => {
+                (FluxLevel::Height(height), Event::Flight { ray, distance }) => {
                     let along = (height - ray.origin.z) / ray.direction.z;
                     if along > 0.0 && along <= *distance {
                         let point = ray.origin + ray.direction * along;
-                        add(point, ray.direction.z > 0.0, &|lane| weight[lane].into());
+                        add(point, ray.direction.z > 0.0, Share::Whole);
                     }
                 }
                 _ => {}

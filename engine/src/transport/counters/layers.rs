@@ -1,7 +1,6 @@
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::components::Layers;
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::transport::ReferencePlane;
 
 /// Absorbed power by horizontal layer and surface, and what reaches the ground, in the column below
@@ -101,8 +100,8 @@ impl Counter for LayerCounter {
         self.vegetation() + 1 + GROUND_TERMS.len()
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let Event::Arrival { hit, wo, order, met_ground, weight, scattered, .. } = event else {
+    fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
+        let Event::Arrival { hit, wo, order, met_ground, scattered, .. } = event else {
             return 0;
         };
         if !self.plane.is_above(hit.point) {
@@ -113,9 +112,7 @@ impl Counter for LayerCounter {
         let layer = self.layer(hit.point.z).map(|layer| layer * self.surfaces + surface);
         let canopy = (!is_ground).then(|| self.vegetation());
         for cell in [layer, Some(self.totals() + surface), canopy].into_iter().flatten() {
-            sums.add_with(cell, |lane| {
-                f64::from(weight[lane]) - f64::from(weight[lane] * scattered[lane])
-            });
+            tally.add(cell, Share::ButFor(scattered), 1.0);
         }
         if is_ground && hit.normal.dot(*wo) > 0.0 {
             let term = match (order, met_ground) {
@@ -124,7 +121,7 @@ impl Counter for LayerCounter {
                 (_, true) => 3,
             };
             for term in [0, term] {
-                sums.add(self.vegetation() + 1 + term, weight, 1.0);
+                tally.add(self.vegetation() + 1 + term, Share::Whole, 1.0);
             }
         }
         0

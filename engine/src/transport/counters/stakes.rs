@@ -1,7 +1,7 @@
-use super::AlbedoCounter;
+use super::{AlbedoCounter, Share};
 use crate::extract::Stage;
 use crate::sampling::Key;
-use crate::scattering::{largest_product, padded};
+use crate::scattering::{Spectrum, largest_product};
 use crate::transport::{Film, Grain, ReferencePlane, Roulette, Source, photon_film};
 
 /// What a contribution to a radiance is measured by before a ray is spent on whether it arrives: the
@@ -13,7 +13,7 @@ use crate::transport::{Film, Grain, ReferencePlane, Roulette, Source, photon_fil
 pub(super) struct Stakes {
     /// 1 over the mean in each lane; the largest number where nothing leaves, so that whatever
     /// does is looked at.
-    per_mean: Box<[f32]>,
+    per_mean: Spectrum,
 }
 
 /// Packets of each randomisation that find what leaves the scene. It weighs chances and no result, so a
@@ -33,12 +33,17 @@ impl Stakes {
         film.trace(PILOT, &|_| {});
         let leaves = film.spread(1);
         let per_mean = leaves.mean().iter().map(|mean| (mean.recip() as f32).min(f32::MAX));
-        Self { per_mean: padded(per_mean) }
+        Self { per_mean: Spectrum::new(per_mean) }
     }
 
-    /// The largest share of the mean that a lane of a contribution amounts to.
-    pub(super) fn share(&self, contribution: &[f32]) -> f32 {
-        largest_product(contribution, &self.per_mean)
+    /// The largest share of the mean that an outline of a contribution amounts to, from that of the
+    /// weight that it is a share of.
+    pub(super) fn share(&self, weight: &[f32], share: Share<'_>) -> f32 {
+        let per_mean = self.per_mean.outline();
+        match share {
+            Share::Of(spectrum) => largest_product([weight, spectrum.outline(), per_mean]),
+            Share::Whole | Share::ButFor(_) => largest_product([weight, per_mean]),
+        }
     }
 
     /// The chance with which a contribution of this share counts.

@@ -3,10 +3,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::stakes::Stakes;
-use super::{Counter, Event};
+use super::{Counter, Event, Share, Tally};
 use crate::accel::Batch;
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::sampling::Key;
 use crate::transport::{Projection, Source};
 
@@ -64,33 +63,40 @@ impl Counter for ViewCounter {
         self.cells
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, sums: &mut Sums) -> u64 {
-        let (hit, weight, sampler) = match event {
-            Event::Arrival { is_last: false, hit, weight, sampler, .. }
-            | Event::Emission { hit, weight, sampler, .. } => (*hit, *weight, *sampler),
+    fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
+        let (hit, outline, sampler) = match event {
+            Event::Arrival { is_last: false, hit, outline, sampler, .. }
+            | Event::Emission { hit, outline, sampler, .. } => (*hit, *outline, *sampler),
             _ => return 0,
         };
-        // π f towards the view, or 1 on the side that emits.
-        let factor = |towards: DVec3| match event {
+        // π f towards the view, or all on the side that emits.
+        let sent = |towards: DVec3| match event {
             Event::Arrival { wo, .. } => {
-                stage.surface(hit).bsdf.eval(hit.normal, *wo, towards).map(|f| Some(&**f))
+                stage.surface(hit).bsdf.eval(hit.normal, *wo, towards).map(Share::Of)
             }
             Event::Emission { ray, .. } => {
                 let is_same_side =
                     (hit.normal.dot(ray.direction) >= 0.0) == (hit.normal.dot(towards) >= 0.0);
-                is_same_side.then_some(None)
+                is_same_side.then_some(Share::Whole)
             }
             _ => None,
         };
         let mut u = sampler.aside();
-        let mut sent = Sent::default();
         let (mut picks, mut rays) = (Vec::new(), Vec::new());
+        // Most views see the same side.
+        let mut known: Option<(Share<'_>, f64)> = None;
         for (projection, &first) in self.projections.iter().zip(&self.first_cells) {
-            let Some(spectrum) = factor(projection.towards) else { continue };
-            let side = sent.side(weight, spectrum, self.stakes.as_ref());
+            let Some(share) = sent(projection.towards) else { continue };
             let cosine = hit.normal.dot(projection.towards).abs();
-            // What it would add to the reflectance factor, over the mean of that.
-            let chance = Stakes::chance(sent.sides[side].1 * cosine / projection.towards.z);
+            let chance = self.stakes.as_ref().map_or(1.0, |stakes| {
+                let (_, of_mean) =
+                    known.filter(|(known, _)| known.is(share)).unwrap_or_else(|| {
+                        let of_mean = f64::from(stakes.share(outline, share));
+                        *known.insert((share, of_mean))
+                    });
+                // What it would add to the reflectance factor, over the mean of that.
+                Stakes::chance(of_mean * cosine / projection.towards.z)
+            });
             // One number for all views: those chosen are as many as the chances sum to, or one more,
             // and the same whatever part of the scene they show.
             u += chance;
@@ -99,7 +105,7 @@ impl Counter for ViewCounter {
             }
             u -= 1.0;
             if projection.shows(hit.point, stage) {
-                picks.push((projection, first, side, cosine / (chance * PI)));
+                picks.push((projection, first, share, cosine / (chance * PI)));
                 rays.push(hit.leave(projection.towards));
             }
         }
@@ -107,41 +113,14 @@ impl Counter for ViewCounter {
         let batch = Batch { shadows: &rays, dark: &mut dark, rays: &[], hits: &mut [] };
         stage.geometry.trace_each(batch);
         let seen = picks.into_iter().zip(&dark).filter(|(_, is_dark)| !**is_dark);
-        for ((projection, first, side, scale), _) in seen {
-            let power = &sent.sides[side].0;
+        for ((projection, first, share, scale), _) in seen {
             projection.for_each_pixel(hit.point, stage, |pixel| {
-                sums.add(first + pixel, power, scale);
+                tally.add(first + pixel, share, scale);
                 if projection.pixels() > 1 {
-                    sums.add(first + projection.pixels(), power, scale);
+                    tally.add(first + projection.pixels(), share, scale);
                 }
             });
         }
         rays.len() as u64
-    }
-}
-
-/// What a surface sends on to its sides: one spectrum or two, however many views there are.
-#[derive(Default)]
-struct Sent {
-    names: Vec<*const f32>,
-    /// Weight that is sent, shape `[lanes]`, and the share of the mean that it amounts to.
-    sides: Vec<(Vec<f32>, f64)>,
-}
-
-impl Sent {
-    /// The side that sends this share of a weight; all of it if there is none.
-    fn side(&mut self, weight: &[f32], share: Option<&[f32]>, stakes: Option<&Stakes>) -> usize {
-        let name = share.map_or(std::ptr::null(), <[f32]>::as_ptr);
-        if let Some(known) = self.names.iter().position(|known| *known == name) {
-            return known;
-        }
-        let sent: Vec<f32> = match share {
-            Some(share) => weight.iter().zip(share).map(|(weight, share)| weight * share).collect(),
-            None => weight.to_vec(),
-        };
-        let of_mean = stakes.map_or(f32::MAX, |stakes| stakes.share(&sent));
-        self.names.push(name);
-        self.sides.push((sent, of_mean.into()));
-        self.names.len() - 1
     }
 }
