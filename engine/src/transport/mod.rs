@@ -25,6 +25,7 @@ mod rows;
 mod share;
 mod tally;
 mod thermal;
+mod tile;
 mod tiles;
 mod walk;
 
