@@ -37,10 +37,11 @@ pub struct TerrainPatch {
 }
 
 impl TerrainPatch {
-    /// Linear part of `world_from_object` of the mesh.
+    /// Linear part of `world_from_object` of the mesh. The ray engine rounds its inverse to `f32`; the ground
+    /// is never the shorter for it, which would be a gap along the seam of a periodic scene.
     #[must_use]
     pub fn world_from_object(&self) -> DMat3 {
-        DMat3::from_diagonal(self.size.extend(self.unit))
+        DMat3::from_diagonal(self.size.map(reaching).extend(self.unit))
     }
 
     /// World position of the mesh's origin, m.
@@ -54,5 +55,30 @@ impl TerrainPatch {
     pub fn lowest(&self) -> f64 {
         let heights = self.mesh.vertices.iter().map(|v| f64::from(v.z));
         self.base + self.unit * heights.reduce(f64::min).unwrap_or(0.0)
+    }
+}
+
+/// The least length that is not below this one and the inverse of an `f32`.
+fn reaching(length: f64) -> f64 {
+    let inverse = (1.0 / length) as f32;
+    let is_short = f64::from(inverse) * length > 1.0;
+    1.0 / f64::from(if is_short { inverse.next_down() } else { inverse })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reaching;
+
+    /// In `f32`, a tenth is more than a tenth: a plane of 10 m would end 0.15 µm before its edge.
+    #[test]
+    #[expect(clippy::float_cmp, reason = "a power of two stays what it is")]
+    fn rounding_never_makes_the_ground_shorter() {
+        assert_eq!(reaching(8.0), 8.0);
+        for step in 1..100_000 {
+            let length = 0.01 * f64::from(step);
+            let reached = 1.0 / f64::from((1.0 / reaching(length)) as f32);
+            assert!(reached >= length * (1.0 - f64::EPSILON), "{length}: {reached}");
+            assert!(reached <= length * (1.0 + 2.4e-7), "{length}: {reached}");
+        }
     }
 }
