@@ -64,18 +64,28 @@ pub fn two_trees(boundary: &str, sensors: &str) -> String {
     )
 }
 
-/// Scene text of horizontal sheets of leaf, reflectance `r` and transmittance `t`, at these heights over soil
-/// of reflectance `s`, wider than the tile that repeats; `keys` are the sensors and what else it holds.
+/// What a sheet of leaf over soil does with light in a band: reflectance `r` and transmittance `t` of the leaf,
+/// reflectance `s` of the soil.
+pub type SheetOptics = (f64, f64, f64);
+
+/// Scene text of horizontal sheets of leaf at these heights over soil, wider than the tile that repeats, in one
+/// band for each of these optics; `keys` are the sensors and what else it holds.
 #[must_use]
-pub fn sheets((r, t, s): (f64, f64, f64), heights_m: &[f64], keys: &str) -> String {
+pub fn sheets(optics: &[SheetOptics], heights_m: &[f64], keys: &str) -> String {
+    let bands: Vec<_> = (0..optics.len())
+        .map(|band| format!(r#"(name: "b{band}", center_nm: {}.0)"#, 400 + band))
+        .collect();
+    let bands = bands.join(", ");
+    let spectrum = |of: fn(&SheetOptics) -> f64| optics.iter().map(of).collect::<Vec<_>>();
+    let [r, t, s] = [spectrum(|one| one.0), spectrum(|one| one.1), spectrum(|one| one.2)];
     let at: Vec<_> = heights_m.iter().map(|height| (4.0, 4.0, *height)).collect();
     format!(
         r#"Scene(
     format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
+    bands: [{bands}],
     materials: {{
-        "soil": Lambertian(reflectance: Constant({s:?})),
-        "leaf": Leaf(reflectance: Constant({r:?}), transmittance: Constant({t:?})),
+        "soil": Lambertian(reflectance: Bands({s:?})),
+        "leaf": Leaf(reflectance: Bands({r:?}), transmittance: Bands({t:?})),
     }},
     meshes: {{ "sheet": Faces(
         faces_m: [[(-10.0, -10.0, 0.0), (10.0, -10.0, 0.0), (10.0, 10.0, 0.0), (-10.0, 10.0, 0.0)]], material: "leaf",
@@ -87,6 +97,12 @@ pub fn sheets((r, t, s): (f64, f64, f64), heights_m: &[f64], keys: &str) -> Stri
     {keys}
 )"#
     )
+}
+
+/// Albedo of so many of these sheets by adding them one by one: `r + t² R / (1 - r R)` over a reflectance `R`.
+#[must_use]
+pub fn albedo_of_sheets((r, t, s): SheetOptics, count: u32) -> f64 {
+    (0..count).fold(s, |below, _| r + t * t * below / (1.0 - r * below))
 }
 
 /// A product of a sensor.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sunfleck::products::Report;
 use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product, sheets, two_trees};
+use sunfleck_tests::{Estimate, albedo_of_sheets, measure, product, sheets, two_trees};
 
 fn run(text: &str) -> Report {
     measure(text, Path::new("."), &Options::default())
@@ -156,16 +156,15 @@ fn a_white_furnace_under_an_isotropic_sky_looks_like_the_sky() {
 /// *Expected*: albedo by adding layers: R₁₂ = R₁ + T₁² R₂ / (1 - R₁ R₂).
 #[test]
 fn leaf_sheets_add_up_as_layers_do() {
-    let (r, t, s) = (0.45, 0.45, 0.2);
+    let optics = (0.45, 0.45, 0.2);
     let sensors = r#"sensors: {
         "photons": Photons(per_m2: 10000.0, measure: [Albedo]),
         "views": Directions(system: Backward, views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001)),
     },"#;
-    let scene = sheets((r, t, s), &[1.0, 2.0], sensors);
+    let scene = sheets(&[optics], &[1.0, 2.0], sensors);
     let report = measure(&scene, Path::new("."), &Options::default());
     // Lambertian layers: what they send out is diffuse whatever came in.
-    let below = r + t * t * s / (1.0 - r * s);
-    let both = r + t * t * below / (1.0 - r * below);
+    let both = albedo_of_sheets(optics, 2);
     let albedo = Estimate::of(product(&report, "photons", "albedo"), 0);
     assert!(albedo.z(both).abs() < 4.0 && albedo.error < 1e-3 * both, "{albedo:?} for {both}");
     for view in 0..2 {

@@ -212,7 +212,7 @@ fn a_highest_order_cuts_the_series_of_a_sheet() {
         "forth": Directions(views: List([(20.0, 90.0)]), until: Samples(16000), system: Forward),
     }},"#
         );
-        let report = run(&sheets((r, t, s), &[1.0], &keys), Path::new("."));
+        let report = run(&sheets(&[(r, t, s)], &[1.0], &keys), Path::new("."));
         let expected: f64 = series[..order].iter().sum();
         for (sensor, name) in [("photons", "albedo"), ("back", "brf"), ("forth", "brf")] {
             let one = Estimate::of(product(&report, sensor, name), 0);

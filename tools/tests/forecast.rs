@@ -97,7 +97,7 @@ fn a_forecast_tells_time_memory_and_files_and_writes_nothing() {
     assert_eq!((code, stderr.as_str()), (0, ""));
     // Seconds depend on the machine.
     let timeless = |line: &str| {
-        let (name, rest) = line.split_once(": ").unwrap();
+        let (name, rest) = line.split_once(": ").expect("a name, then what it takes");
         format!("{name}: {}", rest.split_once(", ").unwrap().1)
     };
     let lines: Vec<String> = stdout.lines().map(timeless).collect();

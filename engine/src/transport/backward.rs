@@ -9,7 +9,7 @@ use super::{Part, Roulette, roulette, spectra};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Spectrum, dot, multiply};
+use crate::scattering::Spectrum;
 
 /// Backward path tracing: the radiance that arrives along a ray, `L / E` in sr⁻¹, from next-event
 /// estimation to the sun at each point of a random walk and from the sky where the walk leaves the
@@ -70,17 +70,14 @@ impl<'a> Path<'a> {
         if self.order == stage.rules.max_order && stage.light.dome.is_none() {
             return None;
         }
-        let [lobe, u, v, chance] = self.sampler.next_event();
-        let bsdf = &stage.surface(hit).bsdf;
-        let outline = &mut self.outline;
-        let power = |lobe: &Spectrum| dot(outline, lobe.outline());
-        let scattered = bsdf.sample(hit.normal, wo, power, [lobe, u, v])?;
-        multiply(outline, scattered.spectrum.outline(), scattered.scale);
         // Light of the sky that is scattered once differs little from path to path.
         let is_even = self.order == 1 && stage.light.dome.is_some();
         let weak = if is_even { Roulette::Gentle } else { Roulette::Firm }.weak();
-        let gain = roulette::survivor_gain(&stage.rules, self.order, weak, outline, chance)?;
-        self.history.scatter(scattered.spectrum, scattered.scale * gain);
+        let surface = (&stage.surface(hit).bsdf, hit.normal, wo);
+        let rules = (&stage.rules, self.order, weak);
+        let numbers = self.sampler.next_event();
+        let scattered = roulette::scatter(surface, rules, &mut self.outline, numbers)?;
+        self.history.scatter(scattered.spectrum, scattered.scale);
         Some(hit.leave(scattered.direction))
     }
 

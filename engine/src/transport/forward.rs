@@ -10,7 +10,7 @@ use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Spectrum, dot, multiply};
+use crate::scattering::{Spectrum, multiply};
 
 /// Photon packets of sun and sky, or lines along which surfaces and the sky emit some; every event is
 /// shown to every counter. The first of its sums is that of the [`EnergyCounter`].
@@ -213,14 +213,11 @@ impl<'a> Packet<'a> {
             if is_last {
                 return;
             }
-            let [lobe, u, v, chance] = sampler.next_event();
-            let power = |lobe: &Spectrum| dot(outline, lobe.outline());
-            let Some(next) = bsdf.sample(hit.normal, wo, power, [lobe, u, v]) else { return };
-            multiply(outline, next.spectrum.outline(), next.scale);
-            let gain =
-                roulette::survivor_gain(&stage.rules, order + 1 - left, weak, outline, chance);
-            let Some(gain) = gain else { return };
-            tally.scatter(next.spectrum, next.scale * gain);
+            let surface = (bsdf, hit.normal, wo);
+            let rules = (&stage.rules, order + 1 - left, weak);
+            let next = roulette::scatter(surface, rules, outline, sampler.next_event());
+            let Some(next) = next else { return };
+            tally.scatter(next.spectrum, next.scale);
             *rays += show((stage, counters, tally), &Event::Departure);
             met_ground |= stage.is_ground(&hit);
             order += 1;

@@ -1,5 +1,7 @@
+use glam::DVec3;
+
 use crate::extract::Rules;
-use crate::scattering::largest;
+use crate::scattering::{Bsdf, Scattered, Spectrum, dot, largest, multiply};
 
 /// How early paths and packets that carry little are played for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,12 +25,27 @@ impl Roulette {
     }
 }
 
+/// Where a path that was scattered `order` times goes on from a surface, and the weight that this takes, what it
+/// won included; `None` at its end. `outline` of its throughput is multiplied with that weight's.
+pub(super) fn scatter<'a>(
+    (bsdf, normal, wo): (&'a Bsdf, DVec3, DVec3),
+    (rules, order, weak): (&Rules, u32, f32),
+    outline: &mut [f32],
+    [lobe, u, v, chance]: [f64; 4],
+) -> Option<Scattered<'a>> {
+    let power = |lobe: &Spectrum| dot(outline, lobe.outline());
+    let scattered = bsdf.sample(normal, wo, power, [lobe, u, v])?;
+    multiply(outline, scattered.spectrum.outline(), scattered.scale);
+    let gain = survivor_gain(rules, order, weak, outline, chance)?;
+    Some(Scattered { scale: scattered.scale * gain, ..scattered })
+}
+
 /// Russian roulette: of a path that was scattered `order` times and goes on, what its throughput is to be
 /// multiplied with, 1 over its chance to do so. The outline of the throughput already is.
 ///
 /// Beyond `roulette_after` orders a path ends with the probability `roulette_kill` (LESS manual,
 /// section 2.1); at any order, one that no band carries `weak` on ends in proportion.
-pub(super) fn survivor_gain(
+fn survivor_gain(
     rules: &Rules,
     order: u32,
     weak: f32,

@@ -8,7 +8,7 @@ use super::{Roulette, roulette};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Spectrum, dot, multiply};
+use crate::scattering::Spectrum;
 
 /// A random walk from the sensor that gathers what surfaces and the sky emit, W m⁻² sr⁻¹ nm⁻¹; 0 in
 /// bands that hold no emission.
@@ -53,15 +53,12 @@ impl<'a> ThermalPath<'a> {
             return None;
         }
         self.order += 1;
-        let [lobe, u, v, chance] = self.sampler.next_event();
-        let outline = &mut self.outline;
-        let power = |lobe: &Spectrum| dot(outline, lobe.outline());
-        let scattered = bsdf.sample(hit.normal, wo, power, [lobe, u, v])?;
-        multiply(outline, scattered.spectrum.outline(), scattered.scale);
         // What surfaces emit differs little from path to path.
-        let weak = Roulette::Gentle.weak();
-        let gain = roulette::survivor_gain(&stage.rules, self.order, weak, outline, chance)?;
-        self.history.scatter(scattered.spectrum, scattered.scale * gain);
+        let rules = (&stage.rules, self.order, Roulette::Gentle.weak());
+        let numbers = self.sampler.next_event();
+        let surface = (bsdf, hit.normal, wo);
+        let scattered = roulette::scatter(surface, rules, &mut self.outline, numbers)?;
+        self.history.scatter(scattered.spectrum, scattered.scale);
         Some(hit.leave(scattered.direction))
     }
 }
