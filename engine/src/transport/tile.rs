@@ -30,11 +30,16 @@ impl Tile {
         Self { low, high, hits, mean, squares, sums, counts }
     }
 
-    /// Takes the memory that it needs to be traced.
+    /// Takes the memory that it needs to be traced, and writes to all of it: a page that is read before it is
+    /// written costs twice, and stops all threads while it changes.
     pub(super) fn set_up(&mut self, columns: usize) {
         if self.hits.is_empty() {
             let pixels = self.pixels().count();
-            let zeros = || vec![0.0; pixels * columns];
+            let zeros = || {
+                let mut zeros = Vec::with_capacity(pixels * columns);
+                zeros.resize(pixels * columns, 0.0);
+                zeros
+            };
             (self.mean, self.squares) = (zeros(), zeros());
             self.hits = vec![0; pixels];
             self.sums = Sums::new(RANDOMISATIONS as usize, columns);

@@ -4,6 +4,7 @@ use std::io::{self, Read, Write};
 use std::ops::Range;
 
 use glam::{DVec2, UVec2};
+use rayon::prelude::*;
 
 use super::share::{restore_f64, restore_u64, save_f64, save_u64};
 use super::tile::{Tile, of_ratio};
@@ -77,7 +78,7 @@ impl<'a> Tiles<'a> {
             self.all = Vec::with_capacity(count(self.size) as usize);
             self.all.extend(tiles(self.size).map(|(low, high)| Tile::new(low, high)));
         }
-        let own = self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
+        let own = self.all.par_iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
         own.for_each(|(_, tile)| tile.set_up(self.columns));
     }
 
