@@ -12,3 +12,4 @@ mod sums;
 pub use ratio::ratio;
 pub use spread::Spread;
 pub use sums::Sums;
+pub(crate) use sums::written;

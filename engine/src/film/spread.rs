@@ -1,3 +1,5 @@
+use super::written;
+
 /// Mean and standard error over independent randomisations of the same values.
 ///
 /// Source: Welford (1962), "Note on a method for calculating corrected sums of squares and
@@ -13,7 +15,7 @@ impl Spread {
     /// No randomisation yet, of this many values.
     #[must_use]
     pub fn new(values: usize) -> Self {
-        Self { count: 0, mean: vec![0.0; values], squares: vec![0.0; values] }
+        Self { count: 0, mean: written(values), squares: written(values) }
     }
 
     /// Spread of the rows given.

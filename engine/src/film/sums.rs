@@ -20,7 +20,7 @@ impl Sums {
     /// All zero.
     #[must_use]
     pub fn new(cells: usize, bands: usize) -> Self {
-        Self { bands, values: vec![0.0; cells * bands], touched: None }
+        Self { bands, values: written(cells * bands), touched: None }
     }
 
     /// All zero, to be merged into others: of many cells, it takes the memory of those alone that
@@ -126,6 +126,14 @@ impl Sums {
     pub const fn bands(&self) -> usize {
         self.bands
     }
+}
+
+/// Zeros that were written, to be added to: memory that is read before it is written is mapped twice, and the
+/// second time stops all threads.
+pub(crate) fn written(len: usize) -> Vec<f64> {
+    let mut zeros = Vec::with_capacity(len);
+    zeros.resize(len, 0.0);
+    zeros
 }
 
 #[cfg(test)]

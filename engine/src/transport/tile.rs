@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use super::RANDOMISATIONS;
 use super::walk::{Walk, show_each};
-use crate::film::Sums;
+use crate::film::{Sums, written};
 
 /// A square of pixels, row by row.
 pub(super) struct Tile {
@@ -30,16 +30,11 @@ impl Tile {
         Self { low, high, hits, mean, squares, sums, counts }
     }
 
-    /// Takes the memory that it needs to be traced, and writes to all of it: a page that is read before it is
-    /// written costs twice, and stops all threads while it changes.
+    /// Takes the memory that it needs to be traced.
     pub(super) fn set_up(&mut self, columns: usize) {
         if self.hits.is_empty() {
             let pixels = self.pixels().count();
-            let zeros = || {
-                let mut zeros = Vec::with_capacity(pixels * columns);
-                zeros.resize(pixels * columns, 0.0);
-                zeros
-            };
+            let zeros = || written(pixels * columns);
             (self.mean, self.squares) = (zeros(), zeros());
             self.hits = vec![0; pixels];
             self.sums = Sums::new(RANDOMISATIONS as usize, columns);
