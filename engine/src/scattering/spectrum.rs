@@ -13,7 +13,7 @@ use super::padded;
 pub struct Spectrum {
     lanes: Box<[f32]>,
     outline: Box<[f32]>,
-    is_black: bool,
+    largest: f32,
 }
 
 impl Spectrum {
@@ -27,12 +27,12 @@ impl Spectrum {
     #[must_use]
     pub fn new(bands: impl IntoIterator<Item = f32>) -> Self {
         let bands: Vec<f32> = bands.into_iter().collect();
-        let is_black = bands.iter().all(|&value| value == 0.0);
+        let largest = bands.iter().copied().fold(0.0, f32::max);
         let outline = padded(bands.chunks(Self::group(bands.len())).map(|group| {
             let largest = group.iter().copied().fold(0.0, f32::max);
             group[group.len() / 2].max(Self::LEAST * largest)
         }));
-        Self { lanes: padded(bands), outline, is_black }
+        Self { lanes: padded(bands), outline, largest }
     }
 
     /// Bands that one value of an outline stands for.
@@ -59,10 +59,16 @@ impl Spectrum {
         &self.outline
     }
 
+    /// Its largest value.
+    #[must_use]
+    pub const fn largest(&self) -> f32 {
+        self.largest
+    }
+
     /// Whether it is 0 in every band.
     #[must_use]
-    pub const fn is_black(&self) -> bool {
-        self.is_black
+    pub fn is_black(&self) -> bool {
+        self.largest == 0.0
     }
 }
 

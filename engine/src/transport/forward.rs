@@ -117,9 +117,6 @@ pub(super) struct Packet<'a> {
     pub(super) rays: u64,
 }
 
-/// Entries of a tally that are settled at once: enough to find the cells' blocks in the cache.
-const WAITING: usize = 2048;
-
 impl<'a> Packet<'a> {
     /// The strongest weigh `full` when they start.
     fn new(packets: &'a Packets<'a>, full: f32) -> Self {
@@ -181,7 +178,7 @@ impl<'a> Packet<'a> {
             return self.follow_whole(ray, history, sampler);
         }
         self.follow_weighed(ray, history, sampler);
-        if self.tally.waiting() > WAITING {
+        if self.tally.is_full() {
             self.tally.settle(0..self.stage.bands);
         }
     }

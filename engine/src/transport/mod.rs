@@ -20,6 +20,7 @@ mod history;
 mod image;
 mod parts;
 mod plane;
+mod products;
 mod roulette;
 mod rows;
 mod share;

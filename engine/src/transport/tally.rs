@@ -2,29 +2,39 @@
 
 use std::ops::Range;
 
-use super::history::{BLOCK, blocks};
+use super::history::blocks;
+use super::products::Products;
 use crate::film::Sums;
-use crate::scattering::{Spectrum, widely};
+use crate::scattering::{LANES, Spectrum, widely};
 
-/// Shares of packets that count in cells. A packet's weight is the product of all that it was multiplied with;
-/// weights and sums of all bands are found after several packets, block by block of bands, so that a block of
-/// the cells stays in the cache. Sums are made in the order of the events, whenever that is.
+/// Shares of packets that count in cells. A packet's weight is a product of spectra times a number; what
+/// several packets bring to a cell by the same product is added up before any band is looked at, and the
+/// bands then block by block, so that a block of the products stays in the cache.
 #[derive(Clone, Debug)]
 pub struct Tally<'a> {
-    entries: Vec<Entry<'a>>,
+    products: Products<'a>,
+    /// The packet's weight: this product,
+    product: usize,
+    /// times this.
+    scale: f64,
+    entries: Vec<Entry>,
+    /// The share that was found last: several cells in a row may get the same.
+    known: Option<(Share<'a>, Place)>,
     sums: Vec<Sums>,
     /// The sums that are added to.
     current: usize,
 }
 
+/// A share of the packet's weight: a product, and what it is to be multiplied with.
+type Place = (usize, f64);
+
+/// So much of a product for a cell, by where it starts in some sums.
 #[derive(Clone, Copy, Debug)]
-enum Entry<'a> {
-    /// A packet starts with the weight 1.
-    Start,
-    /// `w ← w f c`.
-    Scattering(&'a [f32], f32),
-    /// A cell of some sums, by where it starts, gets a share of the weight times a factor.
-    Sum { sums: usize, start: usize, share: Share<'a>, scale: f64 },
+struct Entry {
+    product: usize,
+    sums: usize,
+    start: usize,
+    scale: f64,
 }
 
 /// Share of a packet's weight.
@@ -34,7 +44,7 @@ pub(super) enum Share<'a> {
     Whole,
     /// What a surface scatters of it.
     Of(&'a Spectrum),
-    /// What it does not scatter: the difference of the very numbers that come and go on.
+    /// What it does not scatter.
     ButFor(&'a Spectrum),
 }
 
@@ -48,45 +58,30 @@ impl Share<'_> {
             _ => false,
         }
     }
-
-    /// The share of a weight in a block of bands.
-    #[inline(always)]
-    fn of(self, weight: &[f32], block: &Range<usize>, power: &mut [f64]) {
-        let all = power.iter_mut().zip(weight);
-        match self {
-            Self::Whole => {
-                for (power, weight) in all {
-                    *power = f64::from(*weight);
-                }
-            }
-            Self::Of(f) => {
-                for ((power, weight), f) in all.zip(&f[block.clone()]) {
-                    *power = f64::from(weight * f);
-                }
-            }
-            Self::ButFor(f) => {
-                for ((power, weight), f) in all.zip(&f[block.clone()]) {
-                    *power = f64::from(*weight) - f64::from(weight * f);
-                }
-            }
-        }
-    }
 }
+
+/// Entries, and products, from which on a tally is settled: so many share their cells, and a block of the
+/// products finds room in the cache.
+const MOST: (usize, usize) = (1 << 15, 1 << 10);
 
 impl<'a> Tally<'a> {
     /// Of these sums, nothing yet.
-    pub(super) const fn new(sums: Vec<Sums>) -> Self {
-        Self { entries: Vec::new(), sums, current: 0 }
+    pub(super) fn new(sums: Vec<Sums>) -> Self {
+        let products = Products::new(sums.iter().any(|sums| sums.bands() > LANES));
+        let (product, scale, entries, known) = (Products::ONE, 1.0, Vec::new(), None);
+        Self { products, product, scale, entries, known, sums, current: 0 }
     }
 
     /// What follows is of a packet that weighs 1 in every band.
-    pub(super) fn start(&mut self) {
-        self.entries.push(Entry::Start);
+    pub(super) const fn start(&mut self) {
+        (self.product, self.scale, self.known) = (Products::ONE, 1.0, None);
     }
 
     /// From now on its weight is `w f c`.
-    pub(super) fn scatter(&mut self, spectrum: &'a [f32], scale: f32) {
-        self.entries.push(Entry::Scattering(spectrum, scale));
+    pub(super) fn scatter(&mut self, spectrum: &'a Spectrum, scale: f32) {
+        self.product = self.products.times(self.product, spectrum);
+        self.scale *= f64::from(spectrum.largest()) * f64::from(scale);
+        self.known = None;
     }
 
     /// From now on these sums are added to.
@@ -99,27 +94,63 @@ impl<'a> Tally<'a> {
     /// # Panics
     /// If there is no such cell.
     pub(super) fn add(&mut self, cell: usize, share: Share<'a>, scale: f64) {
-        let start = self.sums[self.current].start(cell);
-        self.entries.push(Entry::Sum { sums: self.current, start, share, scale });
+        let (product, weight) = match self.known {
+            Some((known, place)) if share.is(known) => place,
+            _ => self.find(share),
+        };
+        let (sums, start) = (self.current, self.sums[self.current].start(cell));
+        self.entries.push(Entry { product, sums, start, scale: weight * scale });
     }
 
-    /// Number of entries that no sum holds yet.
-    pub(super) const fn waiting(&self) -> usize {
-        self.entries.len()
+    fn find(&mut self, share: Share<'a>) -> Place {
+        let place = match share {
+            Share::Whole => (self.product, self.scale),
+            Share::Of(f) => {
+                (self.products.times(self.product, f), self.scale * f64::from(f.largest()))
+            }
+            Share::ButFor(f) => (self.products.rest(self.product, f), self.scale),
+        };
+        self.known = Some((share, place));
+        place
     }
 
-    /// Adds all that was written down of packets with power in these bands alone.
+    /// Whether it is time to settle, once a packet has come to its end.
+    pub(super) const fn is_full(&self) -> bool {
+        self.entries.len() > MOST.0 || self.products.len() > MOST.1
+    }
+
+    /// Adds all that was written down of packets with power in these bands alone. The next packet starts anew.
     pub(super) fn settle(&mut self, bands: Range<usize>) {
-        let Self { entries, sums, .. } = self;
+        let Self { products, entries, sums, .. } = self;
+        if bands.len() > LANES {
+            let place = |entry: &Entry| (entry.product, entry.sums, entry.start);
+            entries.sort_by_key(place);
+            entries.dedup_by(|next, last| {
+                let is_same = place(next) == place(last);
+                last.scale += if is_same { next.scale } else { 0.0 };
+                is_same
+            });
+        }
+        let mut values = Vec::new();
         widely(
             #[inline(always)]
             || {
                 for block in blocks(bands) {
-                    settle_block(entries, sums, &block);
+                    products.write(&block, &mut values);
+                    for &Entry { product, sums: of, start, scale } in &*entries {
+                        let cell = start + block.start..start + block.end;
+                        let cell = sums[of].values_mut()[cell].iter_mut();
+                        let values = &values[product * block.len()..(product + 1) * block.len()];
+                        for (sum, value) in cell.zip(values) {
+                            *sum += value * scale;
+                        }
+                    }
                 }
             },
         );
         entries.clear();
+        products.clear();
+        self.start();
     }
 
     /// The sums.
@@ -128,40 +159,9 @@ impl<'a> Tally<'a> {
     }
 }
 
-#[inline(always)]
-fn settle_block(entries: &[Entry<'_>], sums: &mut [Sums], block: &Range<usize>) {
-    let (mut weight, mut power) = ([1.0_f32; BLOCK], [0.0_f64; BLOCK]);
-    let (weight, power) = (&mut weight[..block.len()], &mut power[..block.len()]);
-    // The share that `power` is: several cells in a row may get the same.
-    let mut known = None;
-    for entry in entries {
-        match *entry {
-            Entry::Start => {
-                weight.fill(1.0);
-                known = None;
-            }
-            Entry::Scattering(f, c) => {
-                for (weight, f) in weight.iter_mut().zip(&f[block.clone()]) {
-                    *weight *= f * c;
-                }
-                known = None;
-            }
-            Entry::Sum { sums: of, start, share, scale } => {
-                if !known.is_some_and(|known| share.is(known)) {
-                    share.of(weight, block, power);
-                    known = Some(share);
-                }
-                let cell = &mut sums[of].values_mut()[start + block.start..start + block.end];
-                for (sum, power) in cell.iter_mut().zip(&*power) {
-                    *sum += power * scale;
-                }
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::history::BLOCK;
     use super::*;
 
     /// Whatever is settled when, each band of each cell holds the sum of its shares of the products.
@@ -188,7 +188,7 @@ mod tests {
                 tally.settle(0..bands);
             }
         }
-        assert!(tally.waiting() == 0);
+        assert!(tally.entries.is_empty());
         let sums = tally.into_sums();
         for band in 0..bands {
             let [a, b, c] = [&a, &b, &c].map(|spectrum| f64::from(spectrum[band]));
