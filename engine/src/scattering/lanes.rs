@@ -10,9 +10,24 @@ pub(crate) fn widely<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
+/// Does work on so many lanes, [`widely`] if they are more than a group.
+#[inline(always)]
+fn as_wide_as<R>(lanes: usize, work: impl Fn() -> R) -> R {
+    if lanes > LANES { widely(work) } else { work() }
+}
+
 /// `Σ a b` of spectra of whole groups of lanes.
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     debug_assert!(a.len().is_multiple_of(LANES) && a.len() == b.len(), "whole groups of lanes");
+    as_wide_as(
+        a.len(),
+        #[inline(always)]
+        || dot_of(a, b),
+    )
+}
+
+#[inline(always)]
+fn dot_of(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0; LANES];
     for (a, b) in groups(a).zip(groups(b)) {
         for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
@@ -25,19 +40,29 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
 /// The largest of a spectrum of whole groups of lanes, and 0.
 pub(crate) fn largest(spectrum: &[f32]) -> f32 {
     debug_assert!(spectrum.len().is_multiple_of(LANES), "whole groups of lanes");
-    largest_of(groups(spectrum).copied())
+    as_wide_as(
+        spectrum.len(),
+        #[inline(always)]
+        || largest_of(groups(spectrum).copied()),
+    )
 }
 
 /// The largest of the product of spectra of whole groups of lanes, all of one length, and 0.
 pub(crate) fn largest_product<const N: usize>(spectra: [&[f32]; N]) -> f32 {
     let groups = spectra.map(|spectrum| spectrum.as_chunks::<LANES>().0);
     let count = groups.iter().map(|groups| groups.len()).min().unwrap_or(0);
-    largest_of((0..count).map(|group| {
-        groups.iter().fold([1.0; LANES], |product, factor| {
-            let factor = &factor[group];
-            from_fn(|lane| product[lane] * factor[lane])
-        })
-    }))
+    as_wide_as(
+        count * LANES,
+        #[inline(always)]
+        || {
+            largest_of((0..count).map(|group| {
+                groups.iter().fold([1.0; LANES], |product, factor| {
+                    let factor = &factor[group];
+                    from_fn(|lane| product[lane] * factor[lane])
+                })
+            }))
+        },
+    )
 }
 
 /// `t ← t f c`, as far as `f` goes.
@@ -74,6 +99,7 @@ fn groups_mut(values: &mut [f32]) -> impl Iterator<Item = &mut [f32; LANES]> {
     values.as_chunks_mut().0.iter_mut()
 }
 
+#[inline(always)]
 fn largest_of(groups: impl Iterator<Item = [f32; LANES]>) -> f32 {
     let mut most = [0.0; LANES];
     for group in groups {
