@@ -20,7 +20,6 @@ mod history;
 mod image;
 mod parts;
 mod plane;
-mod products;
 mod roulette;
 mod rows;
 mod share;
@@ -29,6 +28,7 @@ mod thermal;
 mod tile;
 mod tiles;
 mod walk;
+mod weights;
 
 use backward::Path;
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};

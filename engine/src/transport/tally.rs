@@ -3,35 +3,35 @@
 use std::ops::Range;
 
 use super::history::blocks;
-use super::products::Products;
+use super::weights::Weights;
 use crate::film::Sums;
 use crate::scattering::{LANES, Spectrum, widely};
 
-/// Shares of packets that count in cells. A packet's weight is a product of spectra times a number; what
-/// several packets bring to a cell by the same product is added up before any band is looked at, and the
-/// bands then block by block, so that a block of the products stays in the cache.
+/// Shares of packets that count in cells. A packet weighs one of [`Weights`] times a number; what several
+/// packets bring to a cell by the same one is added up before any band is looked at, and the bands then block
+/// by block, so that a block of the weights stays in the cache.
 #[derive(Clone, Debug)]
 pub struct Tally<'a> {
-    products: Products<'a>,
-    /// The packet's weight: this product,
-    product: usize,
+    weights: Weights<'a>,
+    /// What the packet weighs: this one,
+    weight: usize,
     /// times this.
     scale: f64,
     entries: Vec<Entry>,
     /// The share that was found last: several cells in a row may get the same.
-    known: Option<(Share<'a>, Place)>,
+    known: Option<(Share<'a>, Found)>,
     sums: Vec<Sums>,
     /// The sums that are added to.
     current: usize,
 }
 
-/// A share of the packet's weight: a product, and what it is to be multiplied with.
-type Place = (usize, f64);
+/// A share of what the packet weighs: one of the weights, and what that is to be multiplied with.
+type Found = (usize, f64);
 
-/// So much of a product for a cell, by where it starts in some sums.
+/// So much of a weight for a cell, by where it starts in some sums.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    product: usize,
+    weight: usize,
     sums: usize,
     start: usize,
     scale: f64,
@@ -60,26 +60,26 @@ impl Share<'_> {
     }
 }
 
-/// Entries, and products, from which on a tally is settled: so many share their cells, and a block of the
-/// products finds room in the cache.
+/// Entries, and weights, from which on a tally is settled: so many share their cells, and a block of the
+/// weights finds room in the cache.
 const MOST: (usize, usize) = (1 << 15, 1 << 10);
 
 impl<'a> Tally<'a> {
     /// Of these sums, nothing yet.
     pub(super) fn new(sums: Vec<Sums>) -> Self {
-        let products = Products::new(sums.iter().any(|sums| sums.bands() > LANES));
-        let (product, scale, entries, known) = (Products::ONE, 1.0, Vec::new(), None);
-        Self { products, product, scale, entries, known, sums, current: 0 }
+        let weights = Weights::new(sums.iter().any(|sums| sums.bands() > LANES));
+        let (weight, scale, entries, known) = (Weights::ONE, 1.0, Vec::new(), None);
+        Self { weights, weight, scale, entries, known, sums, current: 0 }
     }
 
     /// What follows is of a packet that weighs 1 in every band.
     pub(super) const fn start(&mut self) {
-        (self.product, self.scale, self.known) = (Products::ONE, 1.0, None);
+        (self.weight, self.scale, self.known) = (Weights::ONE, 1.0, None);
     }
 
     /// From now on its weight is `w f c`.
     pub(super) fn scatter(&mut self, spectrum: &'a Spectrum, scale: f32) {
-        self.product = self.products.times(self.product, spectrum);
+        self.weight = self.weights.times(self.weight, spectrum);
         self.scale *= f64::from(spectrum.largest()) * f64::from(scale);
         self.known = None;
     }
@@ -94,36 +94,36 @@ impl<'a> Tally<'a> {
     /// # Panics
     /// If there is no such cell.
     pub(super) fn add(&mut self, cell: usize, share: Share<'a>, scale: f64) {
-        let (product, weight) = match self.known {
-            Some((known, place)) if share.is(known) => place,
+        let (weight, of_share) = match self.known {
+            Some((known, found)) if share.is(known) => found,
             _ => self.find(share),
         };
         let (sums, start) = (self.current, self.sums[self.current].start(cell));
-        self.entries.push(Entry { product, sums, start, scale: weight * scale });
+        self.entries.push(Entry { weight, sums, start, scale: of_share * scale });
     }
 
-    fn find(&mut self, share: Share<'a>) -> Place {
-        let place = match share {
-            Share::Whole => (self.product, self.scale),
+    fn find(&mut self, share: Share<'a>) -> Found {
+        let found = match share {
+            Share::Whole => (self.weight, self.scale),
             Share::Of(f) => {
-                (self.products.times(self.product, f), self.scale * f64::from(f.largest()))
+                (self.weights.times(self.weight, f), self.scale * f64::from(f.largest()))
             }
-            Share::ButFor(f) => (self.products.rest(self.product, f), self.scale),
+            Share::ButFor(f) => (self.weights.rest(self.weight, f), self.scale),
         };
-        self.known = Some((share, place));
-        place
+        self.known = Some((share, found));
+        found
     }
 
     /// Whether it is time to settle, once a packet has come to its end.
     pub(super) const fn is_full(&self) -> bool {
-        self.entries.len() > MOST.0 || self.products.len() > MOST.1
+        self.entries.len() > MOST.0 || self.weights.len() > MOST.1
     }
 
     /// Adds all that was written down of packets with power in these bands alone. The next packet starts anew.
     pub(super) fn settle(&mut self, bands: Range<usize>) {
-        let Self { products, entries, sums, .. } = self;
+        let Self { weights, entries, sums, .. } = self;
         if bands.len() > LANES {
-            let place = |entry: &Entry| (entry.product, entry.sums, entry.start);
+            let place = |entry: &Entry| (entry.weight, entry.sums, entry.start);
             entries.sort_by_key(place);
             entries.dedup_by(|next, last| {
                 let is_same = place(next) == place(last);
@@ -136,11 +136,11 @@ impl<'a> Tally<'a> {
             #[inline(always)]
             || {
                 for block in blocks(bands) {
-                    products.write(&block, &mut values);
-                    for &Entry { product, sums: of, start, scale } in &*entries {
+                    weights.write(&block, &mut values);
+                    for &Entry { weight, sums: of, start, scale } in &*entries {
                         let cell = start + block.start..start + block.end;
                         let cell = sums[of].values_mut()[cell].iter_mut();
-                        let values = &values[product * block.len()..(product + 1) * block.len()];
+                        let values = &values[weight * block.len()..(weight + 1) * block.len()];
                         for (sum, value) in cell.zip(values) {
                             *sum += value * scale;
                         }
@@ -149,7 +149,7 @@ impl<'a> Tally<'a> {
             },
         );
         entries.clear();
-        products.clear();
+        weights.clear();
         self.start();
     }
 
@@ -164,7 +164,7 @@ mod tests {
     use super::super::history::BLOCK;
     use super::*;
 
-    /// Whatever is settled when, each band of each cell holds the sum of its shares of the products.
+    /// Whatever is settled when, each band of each cell holds the sum of its shares of the weights.
     #[test]
     fn cells_hold_their_shares_of_what_packets_weigh() {
         let bands = 2 * BLOCK + 7;
@@ -197,7 +197,7 @@ mod tests {
             let found =
                 [sums[0].values()[band], sums[0].values()[bands + band], sums[1].values()[band]];
             for (found, expected) in found.into_iter().zip(expected) {
-                // Eighths and their products are exact.
+                // Eighths and their weights are exact.
                 assert!((found - expected).abs() < 1e-12, "{band}: {found} for {expected}");
             }
         }
