@@ -19,6 +19,9 @@ pub struct Ground {
     held: Box<[u32]>,
 }
 
+/// Cells that hold a triangle, on average at most: one that lies like those of a raster is in four or so.
+const MOST_HELD: u64 = 32;
+
 /// How far beside its edges a triangle still counts, in units of the rectangle: the corners are f32.
 const EDGE: f64 = 1e-7;
 
@@ -32,10 +35,8 @@ impl Ground {
             .map(|index| patch.mesh.corners(index).map(|corner| corner.as_dvec3() * up))
             .filter(|corners| doubled_area(corners) != 0.0)
             .collect();
-        // About one triangle a cell.
-        let side = (triangles.len() as f64).sqrt().ceil().clamp(1.0, 4096.0) as u32;
-        let cells = UVec2::splat(side);
-        let mut starts = vec![0_u32; (side * side) as usize + 1];
+        let cells = UVec2::splat(side(&triangles));
+        let mut starts = vec![0_u32; cells.element_product() as usize + 1];
         for corners in &triangles {
             for_each_cell(corners, cells, |cell| starts[cell + 1] += 1);
         }
@@ -108,6 +109,24 @@ impl Ground {
     }
 }
 
+/// Cells along each side of the grid: about one triangle a cell, but fewer cells where triangles lie over one
+/// another, so that no terrain is held more than a few times.
+fn side(triangles: &[[DVec3; 3]]) -> u32 {
+    let most = (MOST_HELD * triangles.len() as u64).min(u32::MAX.into());
+    let mut side = (triangles.len() as f64).sqrt().ceil().clamp(1.0, 4096.0) as u32;
+    let held = |side: u32| -> u64 {
+        let reached = |corners| {
+            let (low, high) = reach(corners, UVec2::splat(side));
+            u64::from((high - low + 1).element_product())
+        };
+        triangles.iter().map(reached).sum()
+    };
+    while side > 1 && held(side) > most {
+        side /= 2;
+    }
+    side
+}
+
 fn doubled_area([a, b, c]: &[DVec3; 3]) -> f64 {
     (b - a).truncate().perp_dot((c - a).truncate())
 }
@@ -134,12 +153,16 @@ fn cell_of(at: DVec2, cells: UVec2) -> UVec2 {
     (at * cells.as_dvec2()).floor().clamp(DVec2::ZERO, last).as_uvec2()
 }
 
-/// Calls `f` with every cell that the box around a triangle reaches.
-fn for_each_cell(corners: &[DVec3; 3], cells: UVec2, mut f: impl FnMut(usize)) {
+/// The first and the last cell that the box around a triangle reaches.
+fn reach(corners: &[DVec3; 3], cells: UVec2) -> (UVec2, UVec2) {
     let [a, b, c] = corners.map(DVec3::truncate);
     let room = DVec2::splat(2.0 * EDGE);
-    let low = cell_of(a.min(b).min(c) - room, cells);
-    let high = cell_of(a.max(b).max(c) + room, cells);
+    (cell_of(a.min(b).min(c) - room, cells), cell_of(a.max(b).max(c) + room, cells))
+}
+
+/// Calls `f` with every cell that the box around a triangle reaches.
+fn for_each_cell(corners: &[DVec3; 3], cells: UVec2, mut f: impl FnMut(usize)) {
+    let (low, high) = reach(corners, cells);
     for y in low.y..=high.y {
         for x in low.x..=high.x {
             f((y * cells.x + x) as usize);
@@ -166,6 +189,27 @@ mod tests {
         }
         for outside in [DVec2::ZERO, corner - DVec2::X * 0.01, corner + DVec2::new(1.0, 5.01)] {
             assert_eq!(ground.height(outside), None, "{outside}");
+        }
+    }
+
+    #[test]
+    fn triangles_that_lie_over_one_another_are_held_a_few_times() {
+        let mut patch = plane(DVec2::ZERO, DVec2::new(10.0, 10.0), 0.0, MaterialId(0));
+        // A few thousand of the size of the whole rectangle, each a little higher than the one before.
+        let count = 3000;
+        for layer in 1..count {
+            let height = layer as f32 / 1000.0;
+            let first = patch.mesh.vertices.len() as u32;
+            let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+            patch.mesh.vertices.extend(corners.map(|(x, y)| Vec3::new(x, y, height)));
+            let square = [[0, 1, 2], [0, 2, 3]];
+            patch.mesh.triangles.extend(square.map(|three| three.map(|corner| first + corner)));
+        }
+        let ground = Ground::of(&patch);
+        assert!(ground.held.len() <= MOST_HELD as usize * ground.triangles.len());
+        for place in [DVec2::new(0.1, 9.9), DVec2::new(5.0, 5.0), DVec2::new(9.0, 1.0)] {
+            let height = ground.height(place).unwrap_or(f64::NAN);
+            assert!((height - f64::from(count - 1) / 1000.0).abs() < 1e-6, "{place}: {height}");
         }
     }
 
