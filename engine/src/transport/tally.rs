@@ -7,7 +7,7 @@ use super::weights::Weights;
 use crate::film::Sums;
 use crate::scattering::{LANES, Spectrum, widely};
 
-/// Shares of packets that count in cells. A packet weighs one of [`Weights`] times a number; what several
+/// Shares of packets that count in cells. A packet weighs one of `Weights` times a number; what several
 /// packets bring to a cell by the same one is added up before any band is looked at, and the bands then block
 /// by block, so that a block of the weights stays in the cache.
 #[derive(Clone, Debug)]
