@@ -26,8 +26,8 @@ const MOST: f64 = 4.66;
 /// Layers drawn.
 const LAYERS: u32 = 32;
 
-/// What is rarer, such as soil that is seen at a slant through five layers of leaves, need not be seen at all: it
-/// is no more than a hundredth of the error that is asked for.
+/// Below this, a value of which no layer saw anything is not compared, such as that of soil seen at a slant through
+/// five layers of leaves: 32 times nothing has no spread to tell an error from.
 const RARE: f64 = 4e-5;
 
 /// Standard error of the tables, half of the 1.1e-5 by which their energy is off at most.

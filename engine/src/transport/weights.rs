@@ -76,22 +76,20 @@ impl<'a> Weights<'a> {
 
     /// `P f / max f`.
     pub(super) fn times(&mut self, weight: usize, spectrum: &'a Spectrum) -> usize {
-        let new = self.all.len();
-        let index = self.index.as_mut();
-        let found = index.map_or(new, |index| index.times(weight, spectrum, new));
-        if found == new {
-            self.all.push(Weight::Times(weight, spectrum));
-        }
-        found
+        self.place(Weight::Times(weight, spectrum))
     }
 
     /// `P (1 - f)`, which nothing can be made of.
     pub(super) fn rest(&mut self, weight: usize, spectrum: &'a Spectrum) -> usize {
+        self.place(Weight::Rest(weight, spectrum))
+    }
+
+    /// Where a weight is, at the end if it is not known.
+    fn place(&mut self, weight: Weight<'a>) -> usize {
         let new = self.all.len();
-        let index = self.index.as_mut();
-        let found = index.map_or(new, |index| index.rest(weight, spectrum, new));
+        let found = self.index.as_mut().map_or(new, |index| index.place(weight, new));
         if found == new {
-            self.all.push(Weight::Rest(weight, spectrum));
+            self.all.push(weight);
         }
         found
     }
@@ -107,36 +105,45 @@ impl<'a> Weights<'a> {
             match *weight {
                 Weight::One => row.fill(1.0),
                 Weight::Times(of, spectrum) => {
-                    let before = &before[of * width..(of + 1) * width];
                     let largest = f64::from(spectrum.largest());
                     let c = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-                    for ((value, before), f) in
-                        row.iter_mut().zip(before).zip(&spectrum[bands.clone()])
-                    {
-                        *value = before * (f64::from(*f) * c);
-                    }
+                    let before = &before[of * width..(of + 1) * width];
+                    make(row, before, &spectrum[bands.clone()], |f| f * c);
                 }
                 Weight::Rest(of, spectrum) => {
                     let before = &before[of * width..(of + 1) * width];
-                    for ((value, before), f) in
-                        row.iter_mut().zip(before).zip(&spectrum[bands.clone()])
-                    {
-                        *value = before * (1.0 - f64::from(*f));
-                    }
+                    make(row, before, &spectrum[bands.clone()], |f| 1.0 - f);
                 }
             }
         }
     }
 }
 
+/// The weight before times what is made of a spectrum, band by band.
+#[inline(always)]
+fn make(row: &mut [f64], before: &[f64], spectrum: &[f32], factor: impl Fn(f64) -> f64) {
+    for ((value, before), f) in row.iter_mut().zip(before).zip(spectrum) {
+        *value = before * factor(f64::from(*f));
+    }
+}
+
 impl Index {
-    /// Place of a weight times a spectrum: that of the new one unless it is known.
-    fn times(&mut self, weight: usize, spectrum: &Spectrum, new: usize) -> usize {
+    /// Where a weight is: at the new place unless it is known.
+    fn place(&mut self, weight: Weight<'_>, new: usize) -> usize {
+        let (of, spectrum, is_rest) = match weight {
+            Weight::One => return Weights::ONE,
+            Weight::Times(of, spectrum) => (of, spectrum, false),
+            Weight::Rest(of, spectrum) => (of, spectrum, true),
+        };
         let address = std::ptr::from_ref(spectrum).addr();
         let Self { next, spectra, known, powers } = self;
-        *next.entry((weight, address, false)).or_insert_with(|| {
+        *next.entry((of, address, is_rest)).or_insert_with(|| {
+            if is_rest {
+                powers.push(Box::default());
+                return new;
+            }
             let (place, _) = spectra.insert_full(address);
-            let mut of_new = powers[weight].to_vec();
+            let mut of_new = powers[of].to_vec();
             match of_new.binary_search_by_key(&place, |(spectrum, _)| *spectrum) {
                 Ok(at) => of_new[at].1 += 1,
                 Err(at) => of_new.insert(at, (place, 1)),
@@ -147,15 +154,6 @@ impl Index {
                 powers.push(of_new);
             }
             found
-        })
-    }
-
-    /// The same of what a spectrum leaves of it.
-    fn rest(&mut self, weight: usize, spectrum: &Spectrum, new: usize) -> usize {
-        let address = std::ptr::from_ref(spectrum).addr();
-        *self.next.entry((weight, address, true)).or_insert_with(|| {
-            self.powers.push(Box::default());
-            new
         })
     }
 }
