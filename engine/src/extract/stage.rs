@@ -52,7 +52,8 @@ pub struct Rules {
     pub seed: u64,
     /// Orders of scattering before the constant roulette starts.
     pub roulette_after: u32,
-    /// Probability of the constant roulette to end a path.
+    /// Probability of the constant roulette to end a path, where survivors do not grow beyond what they
+    /// started with.
     pub roulette_kill: f64,
     /// Highest order of scattering that counts.
     pub max_order: u32,

@@ -4,8 +4,9 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::history::{BLOCK, Block, History};
+use super::roulette::{self, Game};
 use super::walk::{Answer, Ask, Walk};
-use super::{Part, Roulette, roulette, spectra};
+use super::{Part, Roulette, spectra};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
@@ -72,11 +73,11 @@ impl<'a> Path<'a> {
         }
         // Light of the sky that is scattered once differs little from path to path.
         let is_even = self.order == 1 && stage.light.dome.is_some();
-        let weak = if is_even { Roulette::Gentle } else { Roulette::Firm }.weak();
+        let roulette = if is_even { Roulette::Gentle } else { Roulette::Firm };
         let surface = (&stage.surface(hit).bsdf, hit.normal, wo);
-        let rules = (&stage.rules, self.order, weak);
+        let game = Game { rules: &stage.rules, roulette, full: 1.0 };
         let numbers = self.sampler.next_event();
-        let scattered = roulette::scatter(surface, rules, &mut self.outline, numbers)?;
+        let scattered = roulette::scatter(surface, (game, self.order), &mut self.outline, numbers)?;
         self.history.scatter(scattered.spectrum, scattered.scale);
         Some(hit.leave(scattered.direction))
     }

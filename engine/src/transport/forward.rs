@@ -3,9 +3,10 @@ use std::ops::Range;
 use super::counters::Event;
 use super::emission::Emission;
 use super::glow::Glow;
+use super::roulette::{self, Game};
 use super::rows::{Rows, Tracer};
 use super::tally::Tally;
-use super::{Counter, EnergyCounter, Grain, ReferencePlane, Source, roulette};
+use super::{Counter, EnergyCounter, Grain, ReferencePlane, Roulette, Source};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
@@ -106,8 +107,8 @@ pub(super) struct Packet<'a> {
     pub(super) tally: Tally<'a>,
     /// Outline of its weight: the product of those of all that it was multiplied with.
     pub(super) outline: Vec<f32>,
-    /// A packet that weighs less is played for.
-    weak: f32,
+    /// What the strongest weigh when they start.
+    full: f32,
     grain: Grain,
     /// What goes on of a photon: all or nothing.
     pub(super) whole: &'a Spectrum,
@@ -122,13 +123,9 @@ impl<'a> Packet<'a> {
     fn new(packets: &'a Packets<'a>, full: f32) -> Self {
         let Packets { stage, counters, grain, whole, nothing, .. } = packets;
         let sums = counters.iter().map(|one| Sums::of_block(one.cells(), stage.bands)).collect();
-        let weak = match grain {
-            Grain::Packet(roulette) => full * roulette.weak(),
-            Grain::Photon => 0.0,
-        };
         let outline = vec![0.0; Spectrum::outline_of(stage.bands)];
         let (tally, grain) = (Tally::new(sums), *grain);
-        Self { stage, counters, tally, outline, weak, grain, whole, nothing, band: None, rays: 0 }
+        Self { stage, counters, tally, outline, full, grain, whole, nothing, band: None, rays: 0 }
     }
 
     /// Follows one that comes from outside with the weight of this product.
@@ -174,18 +171,25 @@ impl<'a> Packet<'a> {
 
     /// Follows one that has left so many surfaces, until it ends.
     fn follow(&mut self, ray: Ray, history: (u32, bool), sampler: &mut Sampler) {
-        if self.grain == Grain::Photon {
+        let Grain::Packet(roulette) = self.grain else {
             return self.follow_whole(ray, history, sampler);
-        }
-        self.follow_weighed(ray, history, sampler);
+        };
+        self.follow_weighed(ray, history, roulette, sampler);
         if self.tally.is_full() {
             self.tally.settle(0..self.stage.bands);
         }
     }
 
-    fn follow_weighed(&mut self, mut ray: Ray, (left, ground): (u32, bool), sampler: &mut Sampler) {
-        let Self { stage, counters, tally, outline, weak, rays, .. } = self;
-        let (stage, counters, weak) = (*stage, *counters, *weak);
+    fn follow_weighed(
+        &mut self,
+        mut ray: Ray,
+        (left, ground): (u32, bool),
+        roulette: Roulette,
+        sampler: &mut Sampler,
+    ) {
+        let Self { stage, counters, tally, outline, rays, .. } = self;
+        let (stage, counters) = (*stage, *counters);
+        let game = Game { rules: &stage.rules, roulette, full: self.full };
         let most = stage.rules.max_order.saturating_add(left);
         let (mut order, mut met_ground) = (left, ground);
         loop {
@@ -211,8 +215,8 @@ impl<'a> Packet<'a> {
                 return;
             }
             let surface = (bsdf, hit.normal, wo);
-            let rules = (&stage.rules, order + 1 - left, weak);
-            let next = roulette::scatter(surface, rules, outline, sampler.next_event());
+            let played = (game, order + 1 - left);
+            let next = roulette::scatter(surface, played, outline, sampler.next_event());
             let Some(next) = next else { return };
             tally.scatter(next.spectrum, next.scale);
             *rays += show((stage, counters, tally), &Event::Departure);

@@ -2,9 +2,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::Roulette;
 use super::history::{Block, History};
+use super::roulette::{self, Game};
 use super::walk::{Answer, Ask, Walk};
-use super::{Roulette, roulette};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
@@ -54,10 +55,10 @@ impl<'a> ThermalPath<'a> {
         }
         self.order += 1;
         // What surfaces emit differs little from path to path.
-        let rules = (&stage.rules, self.order, Roulette::Gentle.weak());
+        let game = Game { rules: &stage.rules, roulette: Roulette::Gentle, full: 1.0 };
         let numbers = self.sampler.next_event();
         let surface = (bsdf, hit.normal, wo);
-        let scattered = roulette::scatter(surface, rules, &mut self.outline, numbers)?;
+        let scattered = roulette::scatter(surface, (game, self.order), &mut self.outline, numbers)?;
         self.history.scatter(scattered.spectrum, scattered.scale);
         Some(hit.leave(scattered.direction))
     }

@@ -36,7 +36,7 @@ impl Default for Transport {
 
 record! {
     /// Russian roulette: from some order on a path ends with some probability; those that survive
-    /// carry its power on.
+    /// carry its power on. Where that would give them more than they started with, fewer end.
     pub struct Roulette ("the roulette") {
         /// Orders of scattering before it starts.
         after_order: u32 = 5,
