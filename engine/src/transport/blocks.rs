@@ -1,28 +1,66 @@
+use std::collections::VecDeque;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
+use rayon::ScopeFifo;
 
-/// Does jobs in parallel and hands their results over in the order of the jobs, a batch at a time so
-/// that few wait in memory; `watch` hears when all of a batch are handed over. What comes out cannot
-/// depend on the number of threads.
+/// Does jobs in parallel and hands their results over in the order of the jobs, so that what comes out cannot
+/// depend on the number of threads. Results that wait for one before them are few, and no thread waits for
+/// another while there are jobs.
 pub(super) fn in_order<J: Send, T: Send>(
-    jobs: impl IntoIterator<Item = J>,
-    batch: usize,
+    jobs: impl IntoIterator<Item = J, IntoIter: Send>,
     work: impl Fn(J) -> T + Sync,
-    mut fold: impl FnMut(T),
-    watch: impl Fn(usize),
+    fold: impl FnMut(T) + Send,
 ) {
-    let (mut jobs, mut done) = (jobs.into_iter(), 0);
-    loop {
-        let batch: Vec<J> = jobs.by_ref().take(batch).collect();
-        if batch.is_empty() {
-            return;
+    let line = Line { jobs: jobs.into_iter(), fold, folded: 0, waiting: VecDeque::new() };
+    let line = Mutex::new(line);
+    rayon::scope_fifo(|scope| (0..ahead()).for_each(|_| start_next(scope, &line, &work)));
+}
+
+/// Jobs that are under way or wait to be folded.
+pub(super) fn ahead() -> usize {
+    4 * rayon::current_num_threads()
+}
+
+/// Jobs in a line, of which the first are folded.
+struct Line<I, F, T> {
+    jobs: I,
+    fold: F,
+    folded: usize,
+    /// Of the next ones, what is known.
+    waiting: VecDeque<Option<T>>,
+}
+
+impl<I, F: FnMut(T), T> Line<I, F, T> {
+    /// Takes a result, and folds what waits for no other; returns how many that are.
+    fn take(&mut self, number: usize, result: T) -> usize {
+        self.waiting[number - self.folded] = Some(result);
+        let before = self.folded;
+        while let Some(Some(_)) = self.waiting.front() {
+            self.waiting.pop_front().flatten().into_iter().for_each(&mut self.fold);
+            self.folded += 1;
         }
-        let results: Vec<T> = batch.into_par_iter().map(&work).collect();
-        done += results.len();
-        results.into_iter().for_each(&mut fold);
-        watch(done);
+        self.folded - before
     }
+}
+
+/// Starts the next job in the line, if there is one; when that makes room, those after it.
+fn start_next<'s, J: Send + 's, T: Send + 's>(
+    scope: &ScopeFifo<'s>,
+    line: &'s Mutex<Line<impl Iterator<Item = J> + Send, impl FnMut(T) + Send, T>>,
+    work: &'s (impl Fn(J) -> T + Sync),
+) {
+    let lock = || line.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut first = lock();
+    let Some(job) = first.jobs.next() else { return };
+    let number = first.folded + first.waiting.len();
+    first.waiting.push_back(None);
+    drop(first);
+    scope.spawn_fifo(move |scope| {
+        let result = work(job);
+        let folded = lock().take(number, result);
+        (0..folded).for_each(|_| start_next(scope, line, work));
+    });
 }
 
 /// Samples of the largest block. Small enough to share the work out evenly, large enough that folding
@@ -77,7 +115,42 @@ pub(super) fn of(samples: Range<u64>) -> impl Iterator<Item = Range<u64>> {
 
 #[cfg(test)]
 mod tests {
+    use std::hint::black_box;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
+
+    /// Jobs of very different length, more than may wait, on more threads than there are processors.
+    #[test]
+    fn results_come_in_the_order_of_their_jobs_and_few_wait() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(5).build().expect("threads");
+        let (started, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let mut found = Vec::new();
+        pool.install(|| {
+            in_order(
+                0..1000_usize,
+                |job| {
+                    let under_way =
+                        started.fetch_add(1, Ordering::SeqCst) + 1 - done.load(Ordering::SeqCst);
+                    let turns = if job % 97 == 0 { 200_000 } else { job % 7 };
+                    (job, under_way, (0..turns).fold(job, |a, b| black_box(a ^ b)))
+                },
+                |(job, under_way, _)| {
+                    done.fetch_add(1, Ordering::SeqCst);
+                    found.push((job, under_way));
+                },
+            );
+        });
+        assert!(found.iter().map(|&(job, _)| job).eq(0..1000));
+        let most = found.iter().map(|&(_, under_way)| under_way).max();
+        assert!(most <= Some(pool.install(ahead)), "{most:?}");
+    }
+
+    #[test]
+    fn a_job_that_fails_ends_all_of_them() {
+        let fails = || in_order(0..100, |job| assert_ne!(job, 41, "as it should"), |()| {});
+        assert!(std::panic::catch_unwind(fails).is_err());
+    }
 
     #[test]
     fn blocks_end_at_the_same_places_however_a_run_is_cut() {

@@ -1,6 +1,5 @@
 //! Sums of each randomisation, which go on along the same sequences for as long as one likes.
 
-use std::cell::Cell;
 use std::io::{self, Read, Write};
 use std::ops::Range;
 
@@ -27,9 +26,6 @@ pub(super) trait Tracer: Sync {
 
 /// Memory that the sums of all randomisations may take, bytes.
 const MOST_BYTES: u64 = 2 << 30;
-
-/// Blocks whose results may wait in memory.
-const BATCH: usize = 16;
 
 /// Sums of each randomisation, all there are or folded.
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
@@ -136,12 +132,11 @@ impl Film for Rows<'_> {
         self.set_up(self.share);
         let Self { tracer, store, rays, share, .. } = self;
         let own = (0..u64::from(RANDOMISATIONS)).filter(|row| share.owns(*row as usize));
-        let (traced, all) = (Cell::new(0), (to - from) * own.clone().count() as u64);
+        let (mut traced, all) = (0, (to - from) * own.clone().count() as u64);
         let jobs = own.flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
         let mut current = Vec::new();
         blocks::in_order(
             jobs,
-            BATCH,
             |(row, samples)| (row, samples.clone(), tracer.trace(row, samples)),
             |(row, samples, (sums, traced_rays))| {
                 *rays += traced_rays;
@@ -166,9 +161,9 @@ impl Film for Rows<'_> {
                     }
                     current.clear();
                 }
-                traced.set(traced.get() + samples.end - samples.start);
+                traced += samples.end - samples.start;
+                watch(traced as f64 / all as f64);
             },
-            |_| watch(traced.get() as f64 / all as f64),
         );
         self.done = to;
     }
@@ -215,7 +210,8 @@ impl Film for Rows<'_> {
 
     fn bytes_beside(&self) -> u64 {
         let one = of_one(&self.tracer.shapes());
-        let waiting = self.tracer.block_bytes(blocks::LARGEST).saturating_mul(BATCH as u64);
+        let waiting =
+            self.tracer.block_bytes(blocks::LARGEST).saturating_mul(blocks::ahead() as u64);
         let tracing = match &self.store {
             Store::All(_) => waiting,
             // The randomisation that is being traced, and its means.

@@ -17,9 +17,6 @@ use crate::sampling::{Key, Sampler};
 /// Side of the square of pixels that one block traces.
 const TILE: u32 = 16;
 
-/// Blocks whose results may wait in memory.
-const BATCH: usize = 256;
-
 /// What walks from a camera found, pixel by pixel. Sample `s` of all pixels is randomisation `s`; for
 /// the errors of sums over the whole image, [`RANDOMISATIONS`] of them are kept apart.
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
@@ -161,16 +158,16 @@ impl Film for Tiles<'_> {
             .filter(|(tile, _)| share.owns(*tile))
             .map(|(_, tile)| tile)
             .collect();
-        let tiles = own.len() as f64;
+        let (mut traced, tiles) = (0, own.len());
         blocks::in_order(
             own,
-            BATCH,
             |tile| trace(tile, samples.clone()),
             |(of_zones, of_rays)| {
                 zones.merge(&of_zones);
                 *rays += of_rays;
+                traced += 1;
+                watch(f64::from(traced) / tiles as f64);
             },
-            |traced| watch(traced as f64 / tiles),
         );
         self.done = to;
     }
@@ -237,7 +234,7 @@ impl Film for Tiles<'_> {
     }
 
     fn bytes_beside(&self) -> u64 {
-        let waiting = (BATCH * self.zones.values().len() * size_of::<f64>()) as u64;
+        let waiting = (blocks::ahead() * self.zones.values().len() * size_of::<f64>()) as u64;
         // Of each pixel the coverage, and of its columns mean and error, as f32.
         let pixels = u64::from(self.size.x) * u64::from(self.size.y);
         waiting.max(pixels.saturating_mul(4 + 8 * self.columns as u64))
