@@ -19,7 +19,7 @@ pub(super) fn in_order<J: Send, T: Send>(
 
 /// Jobs that are under way or wait to be folded.
 pub(super) fn ahead() -> usize {
-    4 * rayon::current_num_threads()
+    2 * rayon::current_num_threads()
 }
 
 /// Jobs in a line, of which the first are folded.

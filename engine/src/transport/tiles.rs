@@ -7,7 +7,7 @@ use glam::{DVec2, UVec2};
 use rayon::prelude::*;
 
 use super::share::{restore_f64, restore_u64, save_f64, save_u64};
-use super::tile::{Tile, of_ratio};
+use super::tile::{NETS, Pooled, Tile};
 use super::walk::{Party, Walk};
 use super::{Camera, Film, ImageOutcome, RANDOMISATIONS, Share, Watch, blocks};
 use crate::extract::Stage;
@@ -17,8 +17,8 @@ use crate::sampling::{Key, Sampler};
 /// Side of the square of pixels that one block traces.
 const TILE: u32 = 16;
 
-/// What walks from a camera found, pixel by pixel. Sample `s` of all pixels is randomisation `s`; for
-/// the errors of sums over the whole image, [`RANDOMISATIONS`] of them are kept apart.
+/// What walks from a camera found, pixel by pixel. For the errors of sums over the whole image,
+/// [`RANDOMISATIONS`] of the samples of all pixels are kept apart.
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
 pub struct Tiles<'a> {
     size: UVec2,
@@ -35,14 +35,6 @@ pub struct Tiles<'a> {
 
 /// Adds samples to a tile and zones; returns the number of rays.
 type TraceTile<'a> = dyn Fn(&mut Tile, Range<u64>) -> (Sums, u64) + Sync + 'a;
-
-/// Samples that the mean variance of a tile's pixels is worth beside those of a pixel.
-///
-/// Few samples of a skewed quantity, such as a leaf that is seldom lit, tell too small a variance
-/// whenever they missed what is rare; the other pixels of the tile have seen it. With this weight the
-/// errors of pixels of the benchmark stand are right (z spreads by 0.92 to 1.04) at 16 samples, where
-/// by themselves they were too small (1.36 to 1.63), and from some hundred on it hardly counts.
-const SHARED: f64 = 16.0;
 
 impl<'a> Tiles<'a> {
     /// No sample yet, of walks whose first `columns` values count.
@@ -106,31 +98,33 @@ impl<'a> Tiles<'a> {
         };
         let mut sums = Sums::new(RANDOMISATIONS as usize, columns);
         let mut counts = vec![0_u64; rows];
-        for tile in &self.all {
+        let mut effects = vec![Pooled::default(); columns];
+        let pooled: Vec<Vec<Pooled>> = self.all.par_iter().map(|tile| tile.pooled(n)).collect();
+        for (tile, pooled) in self.all.iter().zip(&pooled) {
             sums.merge(&tile.sums);
             for (total, part) in counts.iter_mut().zip(&tile.counts) {
                 *total += part;
             }
-            let shared = tile.variance(n);
+            effects.iter_mut().zip(pooled).for_each(|(effect, pooled)| effect.add(pooled));
             for (pixel, at) in tile.pixels().enumerate() {
-                let hits = tile.hits[pixel] as f64;
+                let hits = tile.hits(pixel) as f64;
                 if hits == 0.0 {
                     continue;
                 }
                 let to = (at.y * size.x + at.x) as usize;
                 outcome.coverage[to] = (hits / n) as f32;
-                let range = pixel * columns..(pixel + 1) * columns;
-                let values = tile.mean[range.clone()].iter().zip(&tile.squares[range]);
-                for (column, ((mean, squares), shared)) in values.zip(&shared).enumerate() {
-                    outcome.pixels[to * columns + column] = *mean as f32;
-                    let of_own = (hits - 1.0) * of_ratio(*squares, hits, n);
-                    let variance = (of_own + SHARED * shared) / (hits - 1.0 + SHARED);
-                    outcome.errors[to * columns + column] = (variance / hits).sqrt() as f32;
+                for (column, (moments, pooled)) in tile.moments(pixel).zip(pooled).enumerate() {
+                    let variance = pooled.variance_of_mean(&moments, n);
+                    outcome.pixels[to * columns + column] = moments.mean as f32;
+                    outcome.errors[to * columns + column] = variance.sqrt() as f32;
                 }
             }
         }
         let counts: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
         (outcome.mean, outcome.mean_error) = ratio(&sums.values()[..rows * columns], &counts);
+        for (error, effect) in outcome.mean_error.iter_mut().zip(&effects) {
+            *error *= effect.design_effect().sqrt();
+        }
         outcome
     }
 }
@@ -181,11 +175,13 @@ impl Film for Tiles<'_> {
         save_f64(out, self.zones.values())?;
         let own = self.all.iter().enumerate().filter(|(tile, _)| self.share.owns(*tile));
         for (_, tile) in own {
-            save_u64(out, &tile.hits)?;
-            save_u64(out, &tile.counts)?;
-            for values in [&tile.mean, &tile.squares, tile.sums.values()] {
+            for counts in tile.hits.iter().chain([&tile.counts]) {
+                save_u64(out, counts)?;
+            }
+            for values in tile.means.iter().chain([&tile.squares]) {
                 save_f64(out, values)?;
             }
+            save_f64(out, tile.sums.values())?;
         }
         Ok(())
     }
@@ -201,11 +197,13 @@ impl Film for Tiles<'_> {
         self.set_up(share);
         let own = self.all.iter_mut().enumerate().filter(|(tile, _)| share.owns(*tile));
         for (_, tile) in own {
-            restore_u64(input, &mut tile.hits)?;
-            restore_u64(input, &mut tile.counts)?;
-            for values in [&mut tile.mean, &mut tile.squares, tile.sums.values_mut()] {
+            for counts in tile.hits.iter_mut().chain([&mut tile.counts]) {
+                restore_u64(input, counts)?;
+            }
+            for values in tile.means.iter_mut().chain([&mut tile.squares]) {
                 restore_f64(input, values)?;
             }
+            restore_f64(input, tile.sums.values_mut())?;
         }
         Ok(())
     }
@@ -225,9 +223,9 @@ impl Film for Tiles<'_> {
             let size = high - low;
             (tiles + 1, pixels + u64::from(size.x * size.y))
         });
-        // Of a pixel its hits, and mean and squares of its columns; of a tile its sums and counts.
-        let columns = self.columns as u64;
-        let words = pixels.saturating_mul(1 + 2 * columns)
+        // Of a pixel its hits, and means and squares of its columns; of a tile its sums and counts.
+        let (columns, nets) = (self.columns as u64, NETS as u64);
+        let words = pixels.saturating_mul(nets + (nets + 1) * columns)
             + tiles * u64::from(RANDOMISATIONS) * (1 + columns);
         let zones = self.zones.values().len() as u64;
         count(self.size) * size_of::<Tile>() as u64 + 8 * (words + zones)
@@ -243,23 +241,6 @@ impl Film for Tiles<'_> {
     fn rays(&self) -> u64 {
         self.rays
     }
-}
-
-/// Index of a pixel along the Z-order curve: pixels that are close have close indices, so that the
-/// points of one low-discrepancy sequence are even over each part of the image.
-///
-/// Source: Ahmed and Wonka (2020), "Screen-space blue-noise diffusion of Monte Carlo sampling error
-/// via hierarchical ordering of pixels".
-fn morton(at: UVec2) -> u64 {
-    let spread = |x: u32| {
-        let mut x = u64::from(x);
-        x = (x | (x << 16)) & 0x0000_ffff_0000_ffff;
-        x = (x | (x << 8)) & 0x00ff_00ff_00ff_00ff;
-        x = (x | (x << 4)) & 0x0f0f_0f0f_0f0f_0f0f;
-        x = (x | (x << 2)) & 0x3333_3333_3333_3333;
-        (x | (x << 1)) & 0x5555_5555_5555_5555
-    };
-    spread(at.x) | (spread(at.y) << 1)
 }
 
 fn trace_tile<'a, W: Walk<'a>>(
@@ -279,12 +260,13 @@ fn trace_tile<'a, W: Walk<'a>>(
     let ends = (samples.start / rows + 1..).map(|round| (round * rows).min(samples.end));
     let mut from = samples.start;
     for to in ends {
-        let streams: Vec<(usize, Key)> =
-            (from..to).map(|sample| ((sample % rows) as usize, key.index(sample))).collect();
         let places = tile.pixels().enumerate();
-        let starts = places.flat_map(|(pixel, at)| streams.iter().map(move |of| (pixel, at, of)));
-        let starts = starts.filter_map(|(pixel, at, &(row, stream))| {
-            let mut sampler = Sampler::new(stream, morton(at));
+        let starts = places.flat_map(|(pixel, at)| (from..to).map(move |of| (pixel, at, of)));
+        let starts = starts.filter_map(|(pixel, at, sample)| {
+            let row = (sample % rows) as usize;
+            let nets = NETS as u64;
+            let points = key.index(sample % nets).index(u64::from(at.y) << 32 | u64::from(at.x));
+            let mut sampler = Sampler::new(points, sample / nets);
             let [u, v, ..] = sampler.next_event();
             let ray = camera.ray((at.as_dvec2() + DVec2::new(u, v)) * scale)?;
             let is_admitted = camera.admits(&ray, stage, &mut rays);
@@ -307,19 +289,4 @@ fn trace_tile<'a, W: Walk<'a>>(
         from = to;
     }
     (zones, rays + party.rays())
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::UVec2;
-
-    use super::morton;
-
-    #[test]
-    fn pixels_of_a_square_are_consecutive_along_the_curve() {
-        let mut seen: Vec<u64> =
-            (0..16).map(|i| morton(UVec2::new(4 + i % 4, 8 + i / 4))).collect();
-        seen.sort_unstable();
-        assert!(seen.windows(2).all(|pair| pair[1] == pair[0] + 1), "{seen:?}");
-    }
 }
