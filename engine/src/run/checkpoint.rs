@@ -6,7 +6,7 @@
 //! | bytes | |
 //! |---|---|
 //! | 16 | `sunfleck traced` and a line feed |
-//! | 4 | version of this format, 1 |
+//! | 4 | version of this format, 2 |
 //! | 4, n | length and text of the version of sunfleck: another one may draw other numbers |
 //! | 32 | hash of the scene without what says how long it is measured |
 //! | 4, 4 | which share of the run this is, from 0, and of how many |
@@ -28,7 +28,7 @@ use super::Failure;
 use crate::transport::Share;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Where and how often a run writes down what it has traced.
 #[derive(Clone, Debug, PartialEq)]
