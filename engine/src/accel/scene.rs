@@ -216,6 +216,8 @@ impl Scene {
         (from.block.0, lanes)
     }
 
+    /// What a ray meets. Called from between steps of other rays: a call that is none keeps their registers.
+    #[inline(always)]
     pub(super) fn resolve(&self, query: &Query<'_>, found: &Found) -> Hit {
         let mesh = self.mesh_of(found.record);
         let record = &self.records[found.record as usize];

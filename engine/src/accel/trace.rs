@@ -60,7 +60,7 @@ pub(super) fn trace<I: Isa>(isa: I, query: &Query<'_>, any: bool) -> Option<Foun
 }
 
 /// Rays that are traced side by side.
-const LINES: usize = 4;
+const LINES: usize = 3;
 
 /// Rays, and where to write what is on them.
 #[derive(Debug)]

@@ -34,6 +34,34 @@ const fn directions(degree: usize, a: u32, m: [u32; 3]) -> [u32; 32] {
     v
 }
 
+/// What each half byte of an index adds to the four coordinates, bit-reversed: entry `[i][value]` belongs to
+/// bits `4i` to `4i + 3`. A loop over the bits that are set would end where no processor foresees it.
+const PARTS: [[[u32; 4]; 16]; 8] = {
+    let mut parts = [[[0; 4]; 16]; 8];
+    let mut bit = 0;
+    while bit < 32 {
+        let own = [
+            1 << bit,
+            DIRECTIONS[0][bit].reverse_bits(),
+            DIRECTIONS[1][bit].reverse_bits(),
+            DIRECTIONS[2][bit].reverse_bits(),
+        ];
+        let mut value = 0;
+        while value < 16 {
+            if value >> (bit % 4) & 1 == 1 {
+                let mut axis = 0;
+                while axis < 4 {
+                    parts[bit / 4][value][axis] ^= own[axis];
+                    axis += 1;
+                }
+            }
+            value += 1;
+        }
+        bit += 1;
+    }
+    parts
+};
+
 /// Nested uniform scramble of a bit-reversed number: each bit flips depending on the more
 /// significant ones, which are the less significant ones here.
 const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
@@ -49,31 +77,52 @@ const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
 #[must_use]
 pub fn sobol4(index: u32, seed: u64) -> [f64; 4] {
     let shuffled = scramble_reversed(index.reverse_bits(), seed as u32).reverse_bits();
-    let mut point = [0_u32; 3];
-    let mut rest = shuffled;
-    while rest != 0 {
-        let bit = rest.trailing_zeros() as usize;
-        for (coordinate, direction) in point.iter_mut().zip(&DIRECTIONS) {
-            *coordinate ^= direction[bit];
-        }
-        rest &= rest - 1;
+    let mut reversed = [0_u32; 4];
+    for (place, parts) in PARTS.iter().enumerate() {
+        let part = parts[(shuffled >> (4 * place) & 15) as usize];
+        reversed = std::array::from_fn(|axis| reversed[axis] ^ part[axis]);
     }
-    // The first coordinate is the reversed index, so its reversal is the index itself.
-    let reversed =
-        [shuffled, point[0].reverse_bits(), point[1].reverse_bits(), point[2].reverse_bits()];
-    let mut dimension = 0_u32;
-    reversed.map(|x| {
-        dimension += 1;
-        let key = (seed >> 32) as u32;
-        let own = (key ^ dimension.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
-        let scrambled = scramble_reversed(x, own ^ (own >> 15)).reverse_bits();
-        (f64::from(scrambled) + 0.5) * (-32_f64).exp2()
-    })
+    let key = (seed >> 32) as u32;
+    let scrambled = std::array::from_fn(|axis| {
+        let own = (key ^ KEYS[axis]).wrapping_mul(0x85eb_ca6b);
+        scramble_reversed(reversed[axis], own ^ (own >> 15))
+    });
+    flipped(scrambled).map(|x| (f64::from(x) + 0.5) * (-32_f64).exp2())
+}
+
+/// Multiples of 2³² over the golden ratio, which set the scramblings of the four dimensions apart.
+const KEYS: [u32; 4] = [0x9e37_79b9, 0x3c6e_f372, 0xdaa6_6d2b, 0x78dd_e6e4];
+
+/// Each with its bits in reverse, all four at once.
+fn flipped(x: [u32; 4]) -> [u32; 4] {
+    let swap = |x: [u32; 4], by: u32, mask: u32| x.map(|x| (x >> by & mask) | (x & mask) << by);
+    let nibbles = swap(swap(x, 1, 0x5555_5555), 2, 0x3333_3333);
+    swap(nibbles, 4, 0x0f0f_0f0f).map(u32::swap_bytes)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::sobol4;
+    use super::{DIRECTIONS, PARTS, flipped, sobol4};
+
+    /// The coordinates of a point are the sums of the direction numbers of the bits of its index.
+    #[test]
+    fn half_bytes_add_what_their_bits_add() {
+        for index in (0..32)
+            .map(|bit| 1_u32 << bit)
+            .chain((0..1000).map(|i| 0x9e37_79b1_u32.wrapping_mul(i)))
+        {
+            let bits = (0..32).filter(|bit| index >> bit & 1 == 1);
+            let expected = bits.fold([0_u32; 4], |sum, bit| {
+                let [y, z, w] = DIRECTIONS.map(|directions| directions[bit]);
+                let own = [1 << (31 - bit), y, z, w];
+                std::array::from_fn(|axis| sum[axis] ^ own[axis])
+            });
+            let parts = (0..8).map(|place| PARTS[place][(index >> (4 * place) & 15) as usize]);
+            let sum = parts
+                .fold([0_u32; 4], |sum, part| std::array::from_fn(|axis| sum[axis] ^ part[axis]));
+            assert_eq!(flipped(sum), expected, "{index:#x}");
+        }
+    }
 
     /// Any 2^(a+b) consecutive points of dimensions 0 and 1 put one point into each box of
     /// 2^a x 2^b: the (0, 2)-sequence property, which scrambling keeps.

@@ -34,7 +34,7 @@ fn dot_of(a: &[f32], b: &[f32]) -> f32 {
             *sum += a * b;
         }
     }
-    sums.iter().sum()
+    folded(sums, |a, b| a + b)
 }
 
 /// The largest of a spectrum of whole groups of lanes, and 0.
@@ -99,6 +99,12 @@ fn groups_mut(values: &mut [f32]) -> impl Iterator<Item = &mut [f32; LANES]> {
     values.as_chunks_mut().0.iter_mut()
 }
 
+/// All lanes as one, in pairs: each step waits for the one before.
+#[inline(always)]
+fn folded([a, b, c, d, e, f, g, h]: [f32; LANES], with: impl Fn(f32, f32) -> f32) -> f32 {
+    with(with(with(a, e), with(c, g)), with(with(b, f), with(d, h)))
+}
+
 #[inline(always)]
 fn largest_of(groups: impl Iterator<Item = [f32; LANES]>) -> f32 {
     let mut most = [0.0; LANES];
@@ -107,7 +113,7 @@ fn largest_of(groups: impl Iterator<Item = [f32; LANES]>) -> f32 {
             *most = if value > *most { value } else { *most };
         }
     }
-    most.into_iter().fold(0.0, f32::max)
+    folded(most, |a, b| if a > b { a } else { b })
 }
 
 #[cfg(test)]

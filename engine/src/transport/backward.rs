@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::history::{BLOCK, Block, History};
 use super::roulette::{self, Game};
-use super::walk::{Answer, Ask, Walk};
+use super::walk::{Answer, Asks, Walk};
 use super::{Part, Roulette, spectra};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
@@ -20,11 +20,13 @@ pub(super) struct Path<'a> {
     history: History<'a>,
     /// Outline of the throughput: the product of those of all that it met.
     outline: Vec<f32>,
-    /// The step that counts if the sun is seen.
-    sunlight: Option<usize>,
-    sampler: Sampler,
-    /// Where the ray goes that the path waits for, if there is one.
+    /// What the last surface does to the sun's light, `f c`, if the sun is seen from there,
+    sunlit: Option<(&'a Spectrum, f32)>,
+    /// and to what comes along the ray that the path waits for.
+    scattered: Option<(&'a Spectrum, f32)>,
+    /// Where that ray goes, if there is one.
     onward: Option<DVec3>,
+    sampler: Sampler,
     /// Whether to tell light of different orders apart.
     orders_apart: bool,
     /// Steps of its history until it was scattered for the second time.
@@ -41,9 +43,10 @@ impl<'a> Path<'a> {
         Self {
             history: History::default(),
             outline: vec![0.0; Spectrum::outline_of(bands)],
-            sunlight: None,
-            sampler: Sampler::new(Key::new(0), 0),
+            sunlit: None,
+            scattered: None,
             onward: None,
+            sampler: Sampler::new(Key::new(0), 0),
             orders_apart,
             single: 0,
             order: 0,
@@ -52,7 +55,7 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// The ray towards the sun, if it could bring light; that light is part of the history.
+    /// The ray towards the sun, if it could bring light.
     fn sunlight(&mut self, stage: &'a Stage, hit: &Hit, wo: DVec3) -> Option<Ray> {
         let beam = stage.light.beam.as_ref()?;
         let towards = beam.towards(&mut self.sampler);
@@ -60,8 +63,7 @@ impl<'a> Path<'a> {
         // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
         let cosine = hit.normal.dot(towards).abs();
         let scale = (cosine / towards.z * Light::RADIANCE_OF_SHARE) as f32;
-        self.sunlight = Some(self.history.len());
-        self.history.light(scattering, &beam.share, scale);
+        self.sunlit = Some((scattering, scale));
         Some(hit.leave(towards))
     }
 
@@ -78,7 +80,7 @@ impl<'a> Path<'a> {
         let game = Game { rules: &stage.rules, roulette, full: 1.0 };
         let numbers = self.sampler.next_event();
         let scattered = roulette::scatter(surface, (game, self.order), &mut self.outline, numbers)?;
-        self.history.scatter(scattered.spectrum, scattered.scale);
+        self.scattered = Some((scattered.spectrum, scattered.scale));
         Some(hit.leave(scattered.direction))
     }
 
@@ -93,42 +95,49 @@ impl<'a> Walk<'a> for Path<'a> {
     fn start(&mut self, ray: &Ray, sampler: Sampler) {
         self.history.clear();
         self.outline.fill(1.0);
-        (self.sampler, self.onward, self.sunlight) = (sampler, Some(ray.direction), None);
+        (self.sampler, self.onward) = (sampler, Some(ray.direction));
+        (self.sunlit, self.scattered) = (None, None);
         // Light that met nothing at all is uncollided.
         (self.order, self.met_ground, self.has_met) = (0, true, false);
     }
 
-    fn go_on(&mut self, stage: &'a Stage, Answer { is_lit, hit }: Answer) -> Ask {
-        if let Some(sunlight) = self.sunlight.take()
-            && !is_lit
+    fn go_on(&mut self, stage: &'a Stage, Answer { is_lit, hit }: Answer<'_>, asks: &mut Asks) {
+        if let (Some((spectrum, scale)), true, Some(beam)) =
+            (self.sunlit.take(), is_lit, &stage.light.beam)
         {
-            self.history.forget(sunlight);
+            self.history.light(spectrum, &beam.share, scale);
         }
-        let Some(direction) = self.onward else { return Ask::END };
+        let Some(direction) = self.onward.take() else { return };
+        if let Some((spectrum, scale)) = self.scattered.take() {
+            self.history.scatter(spectrum, scale);
+        }
         let Some(hit) = hit else {
             if self.has_met && direction.z > 0.0 {
                 self.add_sky(&stage.light);
             }
-            return Ask::END;
+            return;
         };
-        if stage.is_cut(&hit) {
-            return Ask::END;
+        if stage.is_cut(hit) {
+            return;
         }
         self.has_met = true;
         if self.order == stage.rules.max_order {
-            return Ask::END;
+            return;
         }
         self.order += 1;
         match self.order {
-            1 => self.met_ground = stage.is_ground(&hit),
+            1 => self.met_ground = stage.is_ground(hit),
             2 => self.single = self.history.len(),
             _ => {}
         }
         let wo = -direction;
-        let shadow = self.sunlight(stage, &hit, wo);
-        let onward = self.scatter(stage, &hit, wo);
-        self.onward = onward.map(|ray| ray.direction);
-        Ask { shadow, onward }
+        if let Some(ray) = self.sunlight(stage, hit, wo) {
+            asks.shadow(ray);
+        }
+        if let Some(ray) = self.scatter(stage, hit, wo) {
+            self.onward = Some(ray.direction);
+            asks.onward(ray);
+        }
     }
 
     fn has_met(&self) -> bool {

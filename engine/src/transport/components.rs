@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::directions::{projections, view_film};
 use super::history::Block;
-use super::walk::{Answer, Ask, Walk};
+use super::walk::{Answer, Asks, Walk};
 use super::{Camera, ReferencePlane, Rows, Tiles, ViewsOutcome};
 use crate::accel::Ray;
 use crate::components::View;
@@ -95,12 +95,11 @@ impl FirstHit {
         }
     }
 
-    fn count(&mut self, is_sunlit: bool, is_ground: bool) -> Ask {
+    fn count(&mut self, is_sunlit: bool, is_ground: bool) {
         self.columns = [0.0; COMPONENT_COLUMNS + 1];
         self.columns[2 * usize::from(!is_sunlit) + usize::from(!is_ground)] = 1.0;
         self.columns[GAP_COLUMN] = f32::from(is_ground && self.direction.z < 0.0);
         self.columns[COMPONENT_COLUMNS] = 1.0;
-        Ask::END
     }
 }
 
@@ -111,13 +110,13 @@ impl Walk<'_> for FirstHit {
         (self.waits, self.has_met) = (None, false);
     }
 
-    fn go_on(&mut self, stage: &Stage, Answer { is_lit, hit }: Answer) -> Ask {
+    fn go_on(&mut self, stage: &Stage, Answer { is_lit, hit }: Answer<'_>, asks: &mut Asks) {
         if let Some(is_ground) = self.waits {
             return self.count(is_lit, is_ground);
         }
-        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return Ask::END };
+        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return };
         self.has_met = true;
-        let is_ground = stage.is_ground(&hit);
+        let is_ground = stage.is_ground(hit);
         let towards = stage.light.sun.as_ref().map(|sun| sun.towards(&mut self.sampler));
         // The side that is seen must face it.
         let front = hit.normal.dot(self.direction) < 0.0;
@@ -125,7 +124,7 @@ impl Walk<'_> for FirstHit {
             return self.count(false, is_ground);
         };
         self.waits = Some(is_ground);
-        Ask { shadow: Some(hit.leave(sun)), onward: None }
+        asks.shadow(hit.leave(sun));
     }
 
     fn has_met(&self) -> bool {

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Part;
 use super::history::{BLOCK, Block, History};
-use super::walk::{Answer, Ask, Walk};
+use super::walk::{Answer, Asks, Walk};
 use crate::accel::Ray;
 use crate::extract::{Light, Stage};
 use crate::geometry::basis;
@@ -58,12 +58,12 @@ impl<'a> Walk<'a> for FirstOrder<'a> {
         (self.sampler, self.direction, self.has_met) = (sampler, ray.direction, false);
     }
 
-    fn go_on(&mut self, stage: &'a Stage, Answer { hit, .. }: Answer) -> Ask {
-        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return Ask::END };
+    fn go_on(&mut self, stage: &'a Stage, Answer { hit, .. }: Answer<'_>, _: &mut Asks) {
+        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return };
         self.has_met = true;
-        self.part = Part::of(1, stage.is_ground(&hit));
+        self.part = Part::of(1, stage.is_ground(hit));
         let wo = -self.direction;
-        let bsdf = &stage.surface(&hit).bsdf;
+        let bsdf = &stage.surface(hit).bsdf;
         let [of_sun, across_sun, of_sky, across_sky] = self.sampler.next_event();
         let mut add = |towards: DVec3, share: &'a [f32], scale: f64| {
             let Some(scattering) = bsdf.eval(hit.normal, wo, towards) else { return };
@@ -89,7 +89,6 @@ impl<'a> Walk<'a> for FirstOrder<'a> {
                 add(sky, &dome.share, 1.0);
             }
         }
-        Ask::END
     }
 
     fn has_met(&self) -> bool {

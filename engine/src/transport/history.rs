@@ -63,11 +63,6 @@ impl<'a> History<'a> {
         self.steps.push(Step::Seen(source, scale));
     }
 
-    /// Takes back a step, which brought no light.
-    pub(super) fn forget(&mut self, step: usize) {
-        self.steps.remove(step);
-    }
-
     /// Light of the first `steps` in at most [`BLOCK`] bands.
     #[inline(always)]
     pub(super) fn light_of(&self, steps: usize, bands: Range<usize>, found: &mut Block) {
@@ -108,11 +103,9 @@ mod tests {
             let mut history = History::default();
             history.light(&a, &source, 0.5);
             history.scatter(&a, 2.0);
-            history.light(&b, &source, 9.0);
             history.light(&black, &b, 1.0);
             history.scatter(&b, 0.25);
             history.see(&source, 3.0);
-            history.forget(2);
             let mut seen = 0;
             for block in blocks(0..bands) {
                 let mut found = [f64::NAN; BLOCK];

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Roulette;
 use super::history::{Block, History};
 use super::roulette::{self, Game};
-use super::walk::{Answer, Ask, Walk};
+use super::walk::{Answer, Asks, Walk};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
@@ -71,8 +71,8 @@ impl<'a> Walk<'a> for ThermalPath<'a> {
         (self.order, self.has_met) = (0, false);
     }
 
-    fn go_on(&mut self, stage: &'a Stage, Answer { hit, .. }: Answer) -> Ask {
-        let Some(thermal) = &stage.thermal else { return Ask::END };
+    fn go_on(&mut self, stage: &'a Stage, Answer { hit, .. }: Answer<'_>, asks: &mut Asks) {
+        let Some(thermal) = &stage.thermal else { return };
         if !self.has_met {
             self.outline.copy_from_slice(thermal.bands.outline());
             self.history.scatter(&thermal.bands, 1.0);
@@ -81,15 +81,16 @@ impl<'a> Walk<'a> for ThermalPath<'a> {
             if self.has_met && self.direction.z > 0.0 {
                 self.history.see(&thermal.sky, 1.0);
             }
-            return Ask::END;
+            return;
         };
-        if stage.is_cut(&hit) {
-            return Ask::END;
+        if stage.is_cut(hit) {
+            return;
         }
         self.has_met = true;
-        let onward = self.scatter(stage, thermal, &hit);
-        self.direction = onward.map_or(self.direction, |ray| ray.direction);
-        Ask { shadow: None, onward }
+        if let Some(ray) = self.scatter(stage, thermal, hit) {
+            self.direction = ray.direction;
+            asks.onward(ray);
+        }
     }
 
     fn has_met(&self) -> bool {

@@ -1,5 +1,6 @@
 //! Walks from a sensor into the scene, many side by side.
 
+use std::mem::swap;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -17,8 +18,8 @@ pub(super) trait Walk<'a> {
     /// Sets out along a ray, the first that it waits for.
     fn start(&mut self, ray: &Ray, sampler: Sampler);
 
-    /// Takes what was found on the rays that it waited for; returns those that it waits for now.
-    fn go_on(&mut self, stage: &'a Stage, answer: Answer) -> Ask;
+    /// Takes what was found on the rays that it waited for, and asks for those that it waits for now.
+    fn go_on(&mut self, stage: &'a Stage, answer: Answer<'_>, asks: &mut Asks);
 
     /// Whether it has met the scene at all.
     fn has_met(&self) -> bool;
@@ -77,31 +78,44 @@ pub(super) fn show_each<'w, 'a, W: Walk<'a> + 'w>(
     );
 }
 
-/// Rays that a walk waits for: none at its end.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Ask {
-    /// One of which it asks whether anything is in its way,
-    pub(super) shadow: Option<Ray>,
-    /// and one of which it asks what it meets first.
-    pub(super) onward: Option<Ray>,
+/// Rays that walks wait for, each of one ray of either kind at most; one that asks for none has come to its end.
+#[derive(Debug, Default)]
+pub(super) struct Asks {
+    shadows: Vec<Ray>,
+    onward: Vec<Ray>,
 }
 
-impl Ask {
-    /// At the end of a walk.
-    pub(super) const END: Self = Self { shadow: None, onward: None };
+impl Asks {
+    /// Asks whether anything is in the way of a ray.
+    pub(super) fn shadow(&mut self, ray: Ray) {
+        self.shadows.push(ray);
+    }
 
-    fn is_end(&self) -> bool {
-        self.shadow.is_none() && self.onward.is_none()
+    /// Asks what a ray meets first.
+    pub(super) fn onward(&mut self, ray: Ray) {
+        self.onward.push(ray);
+    }
+
+    fn clear(&mut self) {
+        self.shadows.clear();
+        self.onward.clear();
+    }
+
+    fn len(&self) -> Asked {
+        [self.shadows.len(), self.onward.len()]
     }
 }
 
-/// What was found on the rays of an [`Ask`].
+/// Numbers of shadow rays and of rays onwards.
+type Asked = [usize; 2];
+
+/// What was found on the rays that a walk asked for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Answer {
+pub(super) struct Answer<'h> {
     /// Whether there was a shadow ray and nothing in its way.
     pub(super) is_lit: bool,
     /// What the ray onwards meets first, if there was one and it meets anything.
-    pub(super) hit: Option<Hit>,
+    pub(super) hit: Option<&'h Hit>,
 }
 
 /// A ray that was traced, for benchmarks of the ray engine.
@@ -117,13 +131,18 @@ pub struct Traced {
 /// the other. What each finds does not depend on the others.
 pub(super) struct Party<W> {
     walks: Vec<W>,
-    asks: Vec<Ask>,
+    /// What the walks that go on wait for, in their order.
+    asks: Asks,
     rays: u64,
     log: Option<Vec<Traced>>,
 }
 
 /// Most walks of a party: enough that the ray engine is seldom short of work when some have ended.
-const MOST: usize = 64;
+const MOST: usize = 256;
+
+/// Walks that are shown together: so few that what they wrote down stays in the cache from one block of bands
+/// to the next.
+const SHOWN: usize = 64;
 
 impl<W> Party<W> {
     pub(super) fn new(walk: impl Fn() -> W) -> Self {
@@ -137,7 +156,7 @@ impl<W> Party<W> {
 
     fn of(count: usize, walk: impl Fn() -> W) -> Self {
         let walks = (0..count).map(|_| walk()).collect();
-        Self { walks, asks: vec![Ask::END; count], rays: 0, log: None }
+        Self { walks, asks: Asks::default(), rays: 0, log: None }
     }
 
     /// All rays so far, if they are logged.
@@ -152,7 +171,7 @@ impl<'a, W: Walk<'a>> Party<W> {
         self.rays + self.walks.iter().map(W::rays).sum::<u64>()
     }
 
-    /// Follows each of these rays to the end of its walk and shows those of each party, in their order.
+    /// Follows each of these rays to the end of its walk and shows them, some at a time, in their order.
     pub(super) fn follow<T>(
         &mut self,
         stage: &'a Stage,
@@ -161,54 +180,49 @@ impl<'a, W: Walk<'a>> Party<W> {
     ) {
         let mut tags = Vec::with_capacity(self.walks.len());
         loop {
-            let places = self.walks.iter_mut().zip(&mut self.asks);
-            for ((walk, ask), (tag, ray, sampler)) in places.zip(&mut starts) {
+            self.asks.clear();
+            for (walk, (tag, ray, sampler)) in self.walks.iter_mut().zip(&mut starts) {
                 walk.start(&ray, sampler);
-                *ask = Ask { shadow: None, onward: Some(ray) };
+                self.asks.onward(ray);
                 tags.push(tag);
             }
             if tags.is_empty() {
                 return;
             }
             self.finish(stage, tags.len());
-            found(&tags, &mut self.walks[..tags.len()]);
+            for (tags, walks) in tags.chunks(SHOWN).zip(self.walks.chunks_mut(SHOWN)) {
+                found(tags, &mut walks[..tags.len()]);
+            }
             tags.clear();
         }
     }
 
-    /// Brings the first walks to their ends.
+    /// Brings the first walks, which each wait for a ray onwards, to their ends.
     fn finish(&mut self, stage: &'a Stage, count: usize) {
-        let mut going: Vec<usize> = (0..count).collect();
-        let (mut shadows, mut rays) = (Vec::new(), Vec::new());
+        let mut going: Vec<(usize, Asked)> = (0..count).map(|walk| (walk, [0, 1])).collect();
+        let mut next = Asks::default();
         let (mut dark, mut hits) = (Vec::new(), Vec::new());
         while !going.is_empty() {
-            shadows.clear();
-            rays.clear();
-            for ask in going.iter().map(|&walk| &self.asks[walk]) {
-                shadows.extend(ask.shadow);
-                rays.extend(ask.onward);
-                if let Some(log) = &mut self.log {
-                    log.extend(ask.shadow.map(|ray| Traced { ray, any: true }));
-                    log.extend(ask.onward.map(|ray| Traced { ray, any: false }));
-                }
+            let Asks { shadows, onward: rays } = &self.asks;
+            if let Some(log) = &mut self.log {
+                log.extend(shadows.iter().map(|&ray| Traced { ray, any: true }));
+                log.extend(rays.iter().map(|&ray| Traced { ray, any: false }));
             }
             self.rays += (shadows.len() + rays.len()) as u64;
             dark.resize(shadows.len(), false);
             hits.resize(rays.len(), None);
-            stage.geometry.trace_each(Batch {
-                shadows: &shadows,
-                dark: &mut dark,
-                rays: &rays,
-                hits: &mut hits,
-            });
+            stage.geometry.trace_each(Batch { shadows, dark: &mut dark, rays, hits: &mut hits });
             let (mut dark, mut hits) = (dark.iter(), hits.iter());
-            going.retain(|&walk| {
-                let ask = &mut self.asks[walk];
-                let is_lit = ask.shadow.is_some() && dark.next() == Some(&false);
-                let hit = ask.onward.and_then(|_| *hits.next()?);
-                *ask = self.walks[walk].go_on(stage, Answer { is_lit, hit });
-                !ask.is_end()
+            next.clear();
+            going.retain_mut(|(walk, asked)| {
+                let is_lit = asked[0] > 0 && dark.next() == Some(&false);
+                let hit = if asked[1] > 0 { hits.next().and_then(Option::as_ref) } else { None };
+                let before = next.len();
+                self.walks[*walk].go_on(stage, Answer { is_lit, hit }, &mut next);
+                *asked = [0, 1].map(|kind| next.len()[kind] - before[kind]);
+                *asked != [0, 0]
             });
+            swap(&mut self.asks, &mut next);
         }
     }
 }
