@@ -88,14 +88,6 @@ impl<'a> Tiles<'a> {
         let mut zones = Sums::new(rows, self.zones.bands());
         let of_rows = &self.zones.values()[..rows * self.zones.bands()];
         zones.values_mut().copy_from_slice(of_rows);
-        let mut outcome = ImageOutcome {
-            pixels: vec![f32::NAN; all * columns],
-            errors: vec![f32::NAN; all * columns],
-            coverage: vec![0.0; all],
-            mean: Vec::new(),
-            mean_error: Vec::new(),
-            zones,
-        };
         let mut sums = Sums::new(RANDOMISATIONS as usize, columns);
         let mut counts = vec![0_u64; rows];
         let mut effects = vec![Pooled::default(); columns];
@@ -106,26 +98,52 @@ impl<'a> Tiles<'a> {
                 *total += part;
             }
             effects.iter_mut().zip(pooled).for_each(|(effect, pooled)| effect.add(pooled));
-            for (pixel, at) in tile.pixels().enumerate() {
-                let hits = tile.hits(pixel) as f64;
-                if hits == 0.0 {
-                    continue;
-                }
-                let to = (at.y * size.x + at.x) as usize;
-                outcome.coverage[to] = (hits / n) as f32;
-                for (column, (moments, pooled)) in tile.moments(pixel).zip(pooled).enumerate() {
-                    let variance = pooled.variance_of_mean(&moments, n);
-                    outcome.pixels[to * columns + column] = moments.mean as f32;
-                    outcome.errors[to * columns + column] = variance.sqrt() as f32;
-                }
-            }
         }
         let counts: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
-        (outcome.mean, outcome.mean_error) = ratio(&sums.values()[..rows * columns], &counts);
-        for (error, effect) in outcome.mean_error.iter_mut().zip(&effects) {
+        let (mean, mut mean_error) = ratio(&sums.values()[..rows * columns], &counts);
+        for (error, effect) in mean_error.iter_mut().zip(&effects) {
             *error *= effect.design_effect().sqrt();
         }
-        outcome
+        let (mut pixels, mut errors) = (vec![0.0; all * columns], vec![0.0; all * columns]);
+        let mut coverage = vec![0.0; all];
+        // Rows of tiles side by side, which are the first to touch this memory too.
+        let across = size.x.div_ceil(TILE) as usize;
+        let of_row = (TILE * size.x) as usize;
+        let values = pixels.par_chunks_mut(of_row * columns);
+        let values = values.zip(errors.par_chunks_mut(of_row * columns));
+        values.zip(coverage.par_chunks_mut(of_row)).enumerate().for_each(
+            |(row, ((pixels, errors), coverage))| {
+                pixels.fill(f32::NAN);
+                errors.fill(f32::NAN);
+                let first = row * of_row;
+                let place = |at: UVec2| (at.y * size.x + at.x) as usize - first;
+                for (tile, pooled) in self.all.iter().zip(&pooled).skip(row * across).take(across) {
+                    show(tile, (pooled, n), place, (pixels, errors, coverage));
+                }
+            },
+        );
+        ImageOutcome { pixels, errors, coverage, mean, mean_error, zones }
+    }
+}
+
+/// Writes what is known of the pixels of a tile, of `n` samples of each, to where each has its place: the values
+/// of its columns, their standard errors, and the share of samples that met the scene.
+fn show(
+    tile: &Tile,
+    (pooled, n): (&[Pooled], f64),
+    place: impl Fn(UVec2) -> usize,
+    (pixels, errors, coverage): (&mut [f32], &mut [f32], &mut [f32]),
+) {
+    let columns = pooled.len();
+    for (pixel, at) in tile.pixels().enumerate().filter(|(pixel, _)| tile.hits(*pixel) > 0) {
+        let to = place(at);
+        coverage[to] = (tile.hits(pixel) as f64 / n) as f32;
+        let own = to * columns..(to + 1) * columns;
+        let values = pixels[own.clone()].iter_mut().zip(&mut errors[own]);
+        for ((moments, pooled), (value, error)) in tile.moments(pixel).zip(pooled).zip(values) {
+            *value = moments.mean as f32;
+            *error = pooled.variance_of_mean(&moments, n).sqrt() as f32;
+        }
     }
 }
 
