@@ -27,10 +27,10 @@ PIXELS = 256
 class Worker:
     """A program that keeps its scene between measurements."""
 
-    def __init__(self, name, script, folder):
+    def __init__(self, name, script, folder, stand=STAND):
         self.name, self.folder = name, folder
         self.log = os.path.join(folder, f"{name}.log")
-        command = [sys.executable, os.path.join(HERE, script), STAND]
+        command = [sys.executable, os.path.join(HERE, script), stand]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(self.log, "w"), text=True)
 
     def measure(self, what, count, seed):
