@@ -216,7 +216,8 @@ impl Scene {
         (from.block.0, lanes)
     }
 
-    /// What a ray meets. Called from between steps of other rays: a call that is none keeps their registers.
+    /// What a ray meets. Always inlined: it is asked for between steps of other rays, all of whose registers a
+    /// call would save and load again.
     #[inline(always)]
     pub(super) fn resolve(&self, query: &Query<'_>, found: &Found) -> Hit {
         let mesh = self.mesh_of(found.record);

@@ -99,7 +99,7 @@ fn groups_mut(values: &mut [f32]) -> impl Iterator<Item = &mut [f32; LANES]> {
     values.as_chunks_mut().0.iter_mut()
 }
 
-/// All lanes as one, in pairs: each step waits for the one before.
+/// All lanes as one, in pairs: three steps that wait for one another, where one lane after the other makes seven.
 #[inline(always)]
 fn folded([a, b, c, d, e, f, g, h]: [f32; LANES], with: impl Fn(f32, f32) -> f32) -> f32 {
     with(with(with(a, e), with(c, g)), with(with(b, f), with(d, h)))
