@@ -1,5 +1,6 @@
 //! What the validation tests share: scenes as text, numbers out of reports, z-scores.
 
+pub mod field;
 pub mod fuzz;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,1 @@
+//! Cases that were right from the start and stay so.

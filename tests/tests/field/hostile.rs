@@ -1,0 +1,1 @@
+//! Scenes that parse and were made to harm.

@@ -1,0 +1,1 @@
+//! Meshes: OBJ, glTF and polygons as people have them.

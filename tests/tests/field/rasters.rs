@@ -1,0 +1,1 @@
+//! Elevation, canopy height, density and land-cover rasters.

@@ -1,0 +1,1 @@
+//! Spectra and leaf optics.

@@ -1,0 +1,1 @@
+//! Tables of stems, coordinates, the sun by place and time, paths.

@@ -1,0 +1,1 @@
+//! What sensors measure of isolated scenes, slopes and heights above the scene.

@@ -1,0 +1,1 @@
+//! Cameras, pictures and leaf area indices.
