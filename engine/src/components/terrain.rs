@@ -56,6 +56,37 @@ impl TerrainPatch {
         let heights = self.mesh.vertices.iter().map(|v| f64::from(v.z));
         self.base + self.unit * heights.reduce(f64::min).unwrap_or(0.0)
     }
+
+    /// Mean height of the ground, weighted by horizontal area, m. Cut faces, which are vertical, have
+    /// none, and holes have no height.
+    #[must_use]
+    pub fn mean_height(&self) -> f64 {
+        let lowest = self.lowest();
+        let (mut volume, mut area) = (0.0, 0.0);
+        for (horizontal, height) in self.ground() {
+            // Above the lowest ground, so that a level plain keeps its height to the last bit.
+            volume += horizontal * (self.base + self.unit * height - lowest);
+            area += horizontal;
+        }
+        if area > 0.0 { lowest + volume / area } else { lowest }
+    }
+
+    /// Whether the ground leaves out some of the rectangle, by more than the rounding of its corners.
+    #[must_use]
+    pub fn has_holes(&self) -> bool {
+        self.ground().map(|(horizontal, _)| horizontal).sum::<f64>() < 1.0 - 1e-6
+    }
+
+    /// Horizontal area, as a fraction of the rectangle, and mean height in the mesh's units of each
+    /// triangle of the ground.
+    fn ground(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let triangles = self.mesh.triangles.iter().take(self.first_cut as usize);
+        triangles.map(|triangle| {
+            let [a, b, c] = triangle.map(|v| self.mesh.vertices[v as usize].as_dvec3());
+            let horizontal = 0.5 * (b - a).truncate().perp_dot((c - a).truncate()).abs();
+            (horizontal, (a.z + b.z + c.z) / 3.0)
+        })
+    }
 }
 
 /// The least length that is not below this one and the inverse of an `f32`.

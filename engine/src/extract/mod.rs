@@ -108,6 +108,8 @@ pub fn extract(
         corner: terrain.corner,
         size: terrain.size,
         ground: terrain.lowest(),
+        mean_ground: terrain.mean_height(),
+        has_holes: terrain.has_holes(),
         first_cut: terrain.first_cut,
         periodic: setting.boundary == Boundary::Periodic,
         thermal: Thermal::of(world, &surfaces.ordered),

@@ -19,6 +19,10 @@ pub struct Stage {
     pub size: DVec2,
     /// Height of the lowest ground, m.
     pub ground: f64,
+    /// Mean height of the ground over the scene's rectangle, m.
+    pub mean_ground: f64,
+    /// Whether the ground leaves out some of the scene's rectangle.
+    pub has_holes: bool,
     /// First of the ground's triangles that are no ground but the faces along which an isolated one
     /// is cut out of the earth.
     pub first_cut: u32,
@@ -72,10 +76,16 @@ impl Stage {
         self.size.x * self.size.y
     }
 
-    /// Height of the reference plane: the highest point of the scene, m.
+    /// Height of the highest point of the scene, m.
     #[must_use]
     pub fn top(&self) -> f64 {
         self.geometry.top().max(self.ground)
+    }
+
+    /// Whether the ground is anything but a level plain.
+    #[must_use]
+    pub fn has_relief(&self) -> bool {
+        self.mean_ground > self.ground
     }
 
     /// Surface of a hit.

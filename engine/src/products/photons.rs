@@ -134,7 +134,7 @@ pub fn fapar(
 pub fn energy(spread: &Spread, stage: &Stage, context: &Context) -> Product {
     let errors = spread.standard_error();
     let mut terms: Vec<String> =
-        ["incident", "reflected", "lost", "roulette"].map(str::to_owned).into();
+        ["incident", "reflected", "beside", "missed", "lost", "roulette"].map(str::to_owned).into();
     assert_eq!(terms.len(), EnergyCounter::ABSORBED, "a name for each term");
     terms.extend(stage.surfaces.iter().map(|surface| format!("absorbed.{}", surface.name)));
     context.product(
@@ -145,7 +145,8 @@ pub fn energy(spread: &Spread, stage: &Stage, context: &Context) -> Product {
     )
 }
 
-/// Down- and upwelling flux density through each level: one image each.
+/// Down- and upwelling flux density through each level, one image each: per m² of horizontal area, and
+/// at the level `terrain_surface` per m² of the inclined ground.
 #[must_use]
 pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<Product> {
     let bands = context.bands.len();
@@ -158,6 +159,7 @@ pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<
     for (index, level) in counter.levels.iter().enumerate() {
         let level = match level {
             FluxLevel::Terrain => "terrain".to_owned(),
+            FluxLevel::TerrainSurface => "terrain_surface".to_owned(),
             FluxLevel::Top => "top".to_owned(),
             FluxLevel::Height(height) => format!("{height}m"),
         };

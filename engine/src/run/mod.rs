@@ -5,6 +5,7 @@ mod again;
 mod check;
 mod checkpoint;
 mod failure;
+mod footprint;
 mod forecast;
 mod growth;
 mod photons;
@@ -246,6 +247,7 @@ fn run_kept(
             .warnings
             .iter()
             .map(failure::one_line)
+            .chain(footprint::warnings(&sensors::in_order(&spawned.world), &stage))
             .chain(unbalanced(&reports))
             .collect(),
         sensors: reports,

@@ -203,7 +203,11 @@ impl Kind {
             }
             PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers, plane)),
             PhotonMeasure::Fluxes { pixel, heights } => {
-                let mut levels = vec![FluxLevel::Terrain, FluxLevel::Top];
+                let mut levels = vec![FluxLevel::Terrain];
+                if stage.has_relief() {
+                    levels.push(FluxLevel::TerrainSurface);
+                }
+                levels.push(FluxLevel::Top);
                 levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
                 Self::Fluxes(FluxCounter::new(plane, *pixel, levels))
             }

@@ -171,7 +171,7 @@ impl Measurement for ImageRun<'_> {
         let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
         let mut films: Vec<Paced<'_>> = light
             .map(|image| match image {
-                ImageFilm::Packets(rows, ..) => Paced::evenly(rows),
+                ImageFilm::Packets(packets) => Paced::evenly(&mut packets.rows),
                 ImageFilm::Paths(tiles) => Paced { film: tiles, pace },
             })
             .collect();

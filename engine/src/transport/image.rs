@@ -1,5 +1,8 @@
+use std::sync::OnceLock;
+
 use glam::DVec2;
 
+use super::coverage::Coverage;
 use super::directions::in_parts;
 use super::forward::photon_film;
 use super::walk::{Party, Traced};
@@ -31,14 +34,45 @@ pub struct ImageOutcome {
     pub zones: Sums,
 }
 
+/// An image that photon packets make.
+#[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
+pub struct PacketImage<'a> {
+    /// The packets.
+    pub rows: Rows<'a>,
+    stage: &'a Stage,
+    projection: Projection,
+    key: Key,
+    /// Traced when an outcome is asked for, and not when a run is planned.
+    coverage: OnceLock<Coverage>,
+}
+
+impl<'a> PacketImage<'a> {
+    fn new(
+        (stage, projection): (&'a Stage, &Projection),
+        (source, orders): (Source, bool),
+        key: Key,
+    ) -> Self {
+        let counter = ViewCounter::new(vec![projection.clone()]).playing(stage, source, key);
+        let plane = ReferencePlane::of(None, stage);
+        let of = (source, Grain::Packet(Roulette::Firm), plane);
+        let rows = photon_film(stage, of, in_parts(counter, orders), key);
+        let (projection, coverage) = (projection.clone(), OnceLock::new());
+        Self { rows, stage, projection, key: key.path("coverage"), coverage }
+    }
+
+    fn outcome(&self) -> ImageOutcome {
+        let trace = || Coverage::of(&self.projection, self.stage, self.key);
+        of_packets(&self.rows, self.stage, &self.projection, self.coverage.get_or_init(trace))
+    }
+}
+
 /// An image of the light of a [`Source`].
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
 pub enum ImageFilm<'a> {
     /// Paths from the sensor.
     Paths(Tiles<'a>),
-    /// Photon packets. Nothing tells here which pixels lie beside the scene or its virtual plane: they
-    /// are black.
-    Packets(Rows<'a>, &'a Stage, ViewCounter),
+    /// Photon packets, and rays that find which parts of the pixels show the scene.
+    Packets(PacketImage<'a>),
 }
 
 impl<'a> ImageFilm<'a> {
@@ -51,13 +85,8 @@ impl<'a> ImageFilm<'a> {
     ) -> Self {
         match (system, camera, source) {
             (System::Forward, Camera::Orthographic(projection), _) => {
-                let counter =
-                    ViewCounter::new(vec![projection.clone()]).playing(stage, source, key);
-                let counters = in_parts(counter.clone(), orders);
-                let plane = ReferencePlane::of(None, stage);
-                let of = (source, Grain::Packet(Roulette::Firm), plane);
-                let rows = photon_film(stage, of, counters, key);
-                Self::Packets(rows, stage, counter)
+                let scene = (stage, projection);
+                Self::Packets(PacketImage::new(scene, (source, orders), key))
             }
             (System::FirstOrder, _, _) => {
                 let path = move || FirstOrder::new(orders);
@@ -81,45 +110,74 @@ impl<'a> ImageFilm<'a> {
     pub fn outcome(&self) -> ImageOutcome {
         match self {
             Self::Paths(tiles) => tiles.outcome(),
-            Self::Packets(rows, stage, counter) => {
-                of_packets(rows, stage, &counter.projections()[0])
-            }
+            Self::Packets(packets) => packets.outcome(),
         }
     }
 }
 
-fn of_packets(rows: &Rows<'_>, stage: &Stage, projection: &Projection) -> ImageOutcome {
-    let pixels = projection.pixels();
+fn of_packets(
+    rows: &Rows<'_>,
+    stage: &Stage,
+    projection: &Projection,
+    coverage: &Coverage,
+) -> ImageOutcome {
+    let (pixels, bands) = (projection.pixels(), stage.bands);
     let per_count = projection.radiance_of_count(stage);
     // The first sums are those of the energy.
     let spreads: Vec<Spread> = (1..rows.count()).map(|spectrum| rows.spread(spectrum)).collect();
-    let means: Vec<&[f64]> = spreads.iter().map(Spread::mean).collect();
     let errors: Vec<Vec<f64>> = spreads.iter().map(Spread::standard_error).collect();
-    let errors: Vec<&[f64]> = errors.iter().map(Vec::as_slice).collect();
+    let spectra: Vec<(&[f64], &[f64])> =
+        spreads.iter().zip(&errors).map(|(spread, error)| (spread.mean(), &**error)).collect();
+    let columns = spectra.len() * bands;
+    let space = || Vec::with_capacity(pixels * columns);
+    let (mut values, mut value_errors) = (space(), space());
     // Pixel by pixel the whole and its parts; behind the pixels stand totals.
-    let of_pixels = |spectra: &[&[f64]]| -> Vec<f32> {
-        let mut all = Vec::with_capacity(pixels * spectra.len() * stage.bands);
-        for pixel in 0..pixels {
-            for values in spectra {
-                let values = &values[pixel * stage.bands..(pixel + 1) * stage.bands];
-                all.extend(values.iter().map(|value| (value * per_count) as f32));
+    for (pixel, &fraction) in coverage.fractions.iter().enumerate() {
+        let fraction = f64::from(fraction);
+        let shown = Shown { fraction, error: Coverage::error(fraction) };
+        for (mean, error) in &spectra {
+            for at in pixel * bands..(pixel + 1) * bands {
+                let (value, error) = shown.radiance(mean[at] * per_count, error[at] * per_count);
+                values.push(value as f32);
+                value_errors.push(error as f32);
             }
         }
-        all
-    };
+    }
     // The total counts what all pixels together see.
-    let of_total = |spectra: &[&[f64]]| -> Vec<f64> {
-        let scale = per_count / pixels as f64;
-        let totals = spectra.iter().flat_map(|values| &values[values.len() - stage.bands..]);
-        totals.map(|value| value * scale).collect()
-    };
+    let (fraction, error) = coverage.mean();
+    let shown = Shown { fraction, error };
+    let scale = per_count / pixels as f64;
+    let totals = spectra.iter().flat_map(|(mean, error)| {
+        let totals = mean.len() - bands..mean.len();
+        mean[totals.clone()].iter().zip(&error[totals])
+    });
+    let (mean, mean_error) =
+        totals.map(|(mean, error)| shown.radiance(mean * scale, error * scale)).unzip();
     ImageOutcome {
-        pixels: of_pixels(&means),
-        errors: of_pixels(&errors),
-        coverage: vec![1.0; pixels],
-        mean: of_total(&means),
-        mean_error: of_total(&errors),
+        pixels: values,
+        errors: value_errors,
+        coverage: coverage.fractions.clone(),
+        mean,
+        mean_error,
         zones: Sums::new(0, 0),
+    }
+}
+
+/// Fraction of an area that shows the scene.
+struct Shown {
+    fraction: f64,
+    error: f64,
+}
+
+impl Shown {
+    /// Mean radiance of what is shown, with its standard error, from the mean over the whole area; NaN
+    /// where nothing is.
+    fn radiance(&self, mean: f64, error: f64) -> (f64, f64) {
+        if self.fraction == 0.0 {
+            return (f64::NAN, f64::NAN);
+        }
+        let value = mean / self.fraction;
+        (value, (error / self.fraction).hypot(value * self.error / self.fraction))
     }
 }
 

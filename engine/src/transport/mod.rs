@@ -5,10 +5,12 @@
 
 mod analog;
 mod backward;
+mod beside;
 mod blocks;
 mod camera;
 mod components;
 mod counters;
+mod coverage;
 mod directions;
 mod emission;
 mod first_order;
@@ -31,6 +33,7 @@ mod walk;
 mod weights;
 
 use backward::Path;
+pub use beside::LightBeside;
 pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
 pub use components::{
     COMPONENT_COLUMNS, ComponentsFilm, GAP_COLUMN, GAP_RINGS, image_components_film,

@@ -4,11 +4,17 @@ use crate::accel::Ray;
 use crate::components::VirtualPlane;
 use crate::extract::Stage;
 
-/// The horizontal rectangle through which a measurement counts light, and whose area it is
-/// normalised to: the scene's own at its highest point, or a virtual plane.
+/// The horizontal rectangle that a measurement refers to: reflected light counts if it leaves through
+/// it, and powers are divided by its area.
 ///
-/// Light leaves through it if its last flight crosses it upwards. In a periodic scene every copy of
-/// the rectangle counts; one of the scene's own extent is crossed by all that goes up.
+/// - An isolated scene's own plane is the terrain's rectangle at the mean height of the ground. Light
+///   counts if the *line* of its last flight passes through it, from wherever on that line it comes:
+///   a BRF is then the mean of an orthographic image that shows just this rectangle, and whatever
+///   stands on the ground hides none of it.
+/// - A periodic scene's own plane is at its highest point. All light that goes up crosses a copy of it.
+/// - A virtual plane is crossed upwards by the last flight. Light from above it does not count.
+///
+/// `scenes/ISOLATED.md` draws all three.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferencePlane {
     /// South-west corner, m.
@@ -35,18 +41,18 @@ impl ReferencePlane {
         let scene = Self {
             corner: stage.corner,
             size: stage.size,
-            height: stage.top(),
+            height: if stage.periodic { stage.top() } else { stage.mean_ground },
             gain: 1.0,
             tile: stage.periodic.then_some(stage.size),
             is_whole: true,
             ceiling: f64::INFINITY,
         };
         let Some(plane) = plane else { return scene };
-        let height = plane.height.unwrap_or(scene.height);
+        let height = plane.height.unwrap_or_else(|| stage.top());
         let (low, high) = stage.geometry.bounds();
         // Surfaces at the plane's own height lie below it, however their points are rounded.
         let rounding = low.abs().max(high.abs()).max_element() * (-36_f64).exp2();
-        let ceiling = if height < scene.height { height + rounding } else { f64::INFINITY };
+        let ceiling = if height < stage.top() { height + rounding } else { f64::INFINITY };
         let corner = plane.center - 0.5 * plane.size;
         let is_same = |a: DVec2, b: DVec2| (a - b).abs().cmple(1e-9 * stage.size).all();
         if is_same(corner, scene.corner) && is_same(plane.size, scene.size) {
@@ -75,8 +81,9 @@ impl ReferencePlane {
             return false;
         }
         self.covers_tile() || {
-            let up = (self.height - point.z).max(0.0) / direction.z;
-            self.within((point + direction * up).truncate()).is_some()
+            // Negative where the point lies above the plane of an isolated scene.
+            let along = (self.height - point.z) / direction.z;
+            self.within((point + direction * along).truncate()).is_some()
         }
     }
 

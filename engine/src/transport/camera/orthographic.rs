@@ -97,6 +97,12 @@ impl Projection {
             })
     }
 
+    /// Whether light must leave through a plane to be seen.
+    #[must_use]
+    pub const fn has_plane(&self) -> bool {
+        self.plane.is_some()
+    }
+
     /// Number of pixels.
     #[must_use]
     pub const fn pixels(&self) -> usize {

@@ -3,11 +3,11 @@ use crate::extract::Stage;
 use crate::film::Sums;
 use crate::transport::ReferencePlane;
 
-/// The energy of all packets: what came, what left through the reference plane and elsewhere, what
-/// random choices removed less what they added, and what each surface absorbed.
+/// Energy balance of all packets: the power that enters, leaves through the reference plane and
+/// elsewhere, is absorbed by each surface, and that random choices removed less what they added.
 ///
-/// `incident = reflected + lost + roulette + Σ absorbed`, to the rounding of f64: each packet's
-/// terms telescope.
+/// `incident = reflected + beside + missed + lost + roulette + Σ absorbed`, to the rounding of f64:
+/// each packet's terms telescope.
 #[derive(Clone, Debug)]
 pub struct EnergyCounter {
     /// Number of surfaces.
@@ -21,12 +21,16 @@ impl EnergyCounter {
     pub const INCIDENT: usize = 0;
     /// Power that is scattered out through the reference plane.
     pub const REFLECTED: usize = 1;
-    /// Power that leaves elsewhere, misses the scene, or meets the earth beside it.
-    pub const LOST: usize = 2;
-    /// What the choice of lobes, roulette and the limit of orders removed less what they added.
-    pub const ROULETTE: usize = 3;
+    /// Power that is scattered upwards on lines beside the reference plane.
+    pub const BESIDE: usize = 2;
+    /// Power that passes the scene without meeting anything.
+    pub const MISSED: usize = 3;
+    /// Power that leaves downwards, or ends where an isolated ground is cut out of the earth.
+    pub const LOST: usize = 4;
+    /// Power that the choice of lobes, roulette and the limit of orders removed less what they added.
+    pub const ROULETTE: usize = 5;
     /// First cell of what surfaces absorb, in their order.
-    pub const ABSORBED: usize = 4;
+    pub const ABSORBED: usize = 6;
 
     /// Largest share over all bands of what came that the other terms do not account for.
     #[must_use]
@@ -58,8 +62,12 @@ impl Counter for EnergyCounter {
             }
             Event::Departure => tally.add(Self::ROULETTE, Share::Whole, -1.0),
             Event::Escape { ray, order, .. } => {
-                let reflected = *order > 0 && self.plane.is_left_by(ray.origin, ray.direction);
-                let cell = if reflected { Self::REFLECTED } else { Self::LOST };
+                let cell = match order {
+                    0 => Self::MISSED,
+                    _ if self.plane.is_left_by(ray.origin, ray.direction) => Self::REFLECTED,
+                    _ if ray.direction.z > 0.0 => Self::BESIDE,
+                    _ => Self::LOST,
+                };
                 tally.add(cell, Share::Whole, 1.0);
             }
             Event::Buried => tally.add(Self::LOST, Share::Whole, 1.0),

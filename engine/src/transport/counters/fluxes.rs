@@ -1,14 +1,17 @@
 use glam::{DVec3, UVec2};
 
 use super::{Counter, Event, Share, Tally};
+use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::transport::ReferencePlane;
 
 /// A surface on which flux is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FluxLevel {
-    /// The ground itself.
+    /// The ground, per m² of horizontal area.
     Terrain,
+    /// The ground, per m² of its own inclined surface. A pixel holds the mean over its horizontal area.
+    TerrainSurface,
     /// The top of the scene.
     Top,
     /// A horizontal plane at this height, m.
@@ -64,39 +67,44 @@ impl Counter for FluxCounter {
 
     fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
         for (index, &level) in self.levels.iter().enumerate() {
-            let mut add = |point, is_up, share| {
+            let mut add = |point, is_up, share, scale| {
                 for cell in self.cells_at(point, index, is_up).into_iter().flatten() {
-                    tally.add(cell, share, 1.0);
+                    tally.add(cell, share, scale);
                 }
             };
             match (level, event) {
-                (FluxLevel::Terrain, Event::Arrival { hit, wo, reflected, .. })
-                    if stage.is_ground(hit) && hit.normal.dot(*wo) > 0.0 =>
-                {
-                    add(hit.point, false, Share::Whole);
-                    add(hit.point, true, Share::Of(reflected));
+                (
+                    FluxLevel::Terrain | FluxLevel::TerrainSurface,
+                    Event::Arrival { hit, wo, reflected, .. },
+                ) if stage.is_ground(hit) && hit.normal.dot(*wo) > 0.0 => {
+                    let scale = level.per_area(hit);
+                    add(hit.point, false, Share::Whole, scale);
+                    add(hit.point, true, Share::Of(reflected), scale);
                 }
-                (FluxLevel::Terrain, Event::Emission { hit, .. }) if stage.is_ground(hit) => {
-                    add(hit.point, true, Share::Whole);
+                (FluxLevel::Terrain | FluxLevel::TerrainSurface, Event::Emission { hit, .. })
+                    if stage.is_ground(hit) =>
+                {
+                    add(hit.point, true, Share::Whole, level.per_area(hit));
                 }
                 // Nothing is above the top: light comes down through it once and goes up once.
                 (FluxLevel::Top, Event::Start { ray }) => {
-                    let along = (stage.top() - ray.origin.z) / ray.direction.z;
-                    let point = ray.origin + ray.direction * along;
-                    add(point, false, Share::Whole);
+                    add(at_height(ray, stage.top()), false, Share::Whole, 1.0);
                 }
                 (FluxLevel::Top, Event::Escape { ray, order: 1.., .. })
                     if ray.direction.z > 0.0 =>
                 {
-                    let along = (stage.top() - ray.origin.z).max(0.0) / ray.direction.z;
-                    let point = ray.origin + ray.direction * along;
-                    add(point, true, Share::Whole);
+                    add(at_height(ray, stage.top()), true, Share::Whole, 1.0);
+                }
+                // Light from outside is the same above all of the scene. Packets start at its top, and
+                // those that would cross a higher rectangle alone never start.
+                (FluxLevel::Height(height), Event::Start { ray }) if height >= stage.top() => {
+                    add(at_height(ray, stage.top()), false, Share::Whole, 1.0);
                 }
                 (FluxLevel::Height(height), Event::Flight { ray, distance }) => {
+                    let is_up = ray.direction.z > 0.0;
                     let along = (height - ray.origin.z) / ray.direction.z;
-                    if along > 0.0 && along <= *distance {
-                        let point = ray.origin + ray.direction * along;
-                        add(point, ray.direction.z > 0.0, Share::Whole);
+                    if along > 0.0 && along <= *distance && (is_up || height < stage.top()) {
+                        add(ray.origin + ray.direction * along, is_up, Share::Whole, 1.0);
                     }
                 }
                 _ => {}
@@ -104,4 +112,16 @@ impl Counter for FluxCounter {
         }
         0
     }
+}
+
+impl FluxLevel {
+    /// Factor from power per horizontal area to power per area of this surface.
+    fn per_area(self, hit: &Hit) -> f64 {
+        if self == Self::TerrainSurface { hit.normal.z.abs() } else { 1.0 }
+    }
+}
+
+/// Point at which the line of a ray crosses a height.
+fn at_height(ray: &Ray, height: f64) -> DVec3 {
+    ray.origin + ray.direction * ((height - ray.origin.z) / ray.direction.z)
 }
