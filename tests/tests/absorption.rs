@@ -6,6 +6,7 @@ use std::path::Path;
 use sunfleck::output;
 use sunfleck::products::{Faces, Product, Report};
 use sunfleck::run::{Options, Unwatched, run};
+use sunfleck::transport::EnergyCounter;
 use sunfleck_tests::{Estimate, measure, product};
 
 /// Sixteen trees and a cloud of discs, of 77 000 values of triangles in two bands: more than a block
@@ -91,7 +92,7 @@ fn instances_sum_to_the_absorbed_energy_and_triangles_to_instances() {
             let all = sum(&by_instance.values, band);
             assert!(near(all, irradiance * area * sum(&fapar.values, band), 1e-9), "{all}");
             if plane.is_empty() {
-                let absorbed = sum(&energy.values[8..], band);
+                let absorbed = sum(&energy.values[2 * EnergyCounter::ABSORBED..], band);
                 assert!(near(all, irradiance * area * absorbed, 1e-9), "{all}, {absorbed}");
             }
             assert!(near(mean.values[band] * surface, all, 1e-9));

@@ -167,7 +167,7 @@ fn films_hold_what_they_say() {
         {
             match image(system, orders) {
                 ImageFilm::Paths(mut tiles) => check_bytes("paths", &mut tiles, share),
-                ImageFilm::Packets(mut rows, ..) => check_bytes("packets", &mut rows, share),
+                ImageFilm::Packets(mut packets) => check_bytes("packets", &mut packets.rows, share),
             }
         }
     }

@@ -244,16 +244,18 @@ fn bands_choose_their_sources() {
 }
 
 /// *Scene*: an isolated plane of 4 m with a speck 3 m above it, at 4 µm by day, from 45° in the east.
-/// *Expected*: of the rectangle at the height of the speck a quarter shows the plane; what is emitted,
-/// what is reflected and their sum are all a quarter of the plane's radiance, in both systems.
+/// *Expected*: the footprint at the ground shows the plane alone; of a virtual plane at the height of the
+/// speck a quarter shows it. What is emitted, what is reflected and their sum are all the radiance of the
+/// plane or a quarter of it, in both systems.
 #[test]
 fn emitted_and_reflected_light_are_means_over_the_same_rectangle() {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let speck = "g speck\nv 2 2 3\nv 2.001 2 3\nv 2.001 2.001 3\nf 1 2 3\n";
     std::fs::write(dir.path().join("speck.obj"), speck).expect("a file");
-    for (source, emits, reflects) in
-        [("Emission", 1.0, 0.0), ("Sunlight", 0.0, 1.0), ("Both", 1.0, 1.0)]
-    {
+    let sources = [("Emission", 1.0, 0.0), ("Sunlight", 0.0, 1.0), ("Both", 1.0, 1.0)];
+    let planes = [("", 1.0), ("virtual_plane: (),", 0.25)];
+    let cases = sources.into_iter().flat_map(|source| planes.map(|plane| (source, plane)));
+    for ((source, emits, reflects), (plane, shown)) in cases {
         let report = measure(
             &format!(
                 r#"Scene(
@@ -265,16 +267,16 @@ fn emitted_and_reflected_light_are_means_over_the_same_rectangle() {
     instances: [List(of: "speck", at_m: [(0.0, 0.0, 0.0)])],
     sun: (zenith_deg: 0.0, irradiance: Constant(0.01)),
     sensors: {{
-        "back": Directions(system: Backward, views: List([(45.0, 90.0)]), until: Samples(32768), measure: [Radiance]),
-        "forth": Directions(views: List([(45.0, 90.0)]), until: Samples(65536), measure: [Radiance], system: Forward),
-        "photons": Photons(per_m2: 4096.0, measure: [RadianceViews(List([(45.0, 90.0)]))]),
+        "back": Directions({plane} system: Backward, views: List([(45.0, 90.0)]), until: Samples(32768), measure: [Radiance]),
+        "forth": Directions({plane} views: List([(45.0, 90.0)]), until: Samples(65536), measure: [Radiance], system: Forward),
+        "photons": Photons({plane} per_m2: 4096.0, measure: [RadianceViews(List([(45.0, 90.0)]))]),
     }},
 )"#
             ),
             dir.path(),
             &Options::default(),
         );
-        let truth = 0.25 * (emits * 0.7 * planck(4_000.0, 300.0) + reflects * 0.3 * 0.01 / PI);
+        let truth = shown * (emits * 0.7 * planck(4_000.0, 300.0) + reflects * 0.3 * 0.01 / PI);
         for (sensor, name) in
             [("back", "radiance"), ("forth", "radiance"), ("photons", "radiance_views")]
         {

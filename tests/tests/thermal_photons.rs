@@ -102,8 +102,11 @@ fn photons_carry_the_radiance_that_paths_find() {
             let sum: f64 =
                 weights.iter().zip(cells.values.chunks_exact(3)).map(|(w, l)| w * l[band]).sum();
             assert!((sum / whole - 1.0).abs() < 1e-9, "{boundary}: {sum} {whole}");
-            // The map leaves out what rises beyond the rectangle, as the exitance does.
-            assert!((up.values[band] / whole - 1.0).abs() < 1e-9, "{boundary}: {up:?}");
+            // The map at the top of an isolated scene leaves out what rises beyond its rectangle there.
+            assert!(up.values[band] <= whole * (1.0 + 1e-9), "{boundary}: {up:?}");
+            if boundary == "Periodic" {
+                assert!((up.values[band] / whole - 1.0).abs() < 1e-9, "{boundary}: {up:?}");
+            }
         }
         let energy = product(&report, "photons", "emitted_energy");
         for band in 0..3 {
