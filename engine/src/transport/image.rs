@@ -72,7 +72,7 @@ pub enum ImageFilm<'a> {
     /// Paths from the sensor.
     Paths(Tiles<'a>),
     /// Photon packets, and rays that find which parts of the pixels show the scene.
-    Packets(PacketImage<'a>),
+    Packets(Box<PacketImage<'a>>),
 }
 
 impl<'a> ImageFilm<'a> {
@@ -86,7 +86,7 @@ impl<'a> ImageFilm<'a> {
         match (system, camera, source) {
             (System::Forward, Camera::Orthographic(projection), _) => {
                 let scene = (stage, projection);
-                Self::Packets(PacketImage::new(scene, (source, orders), key))
+                Self::Packets(Box::new(PacketImage::new(scene, (source, orders), key)))
             }
             (System::FirstOrder, _, _) => {
                 let path = move || FirstOrder::new(orders);
