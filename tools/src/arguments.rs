@@ -75,7 +75,9 @@ impl ImportLess {
     /// Folder for the scene.
     pub(crate) fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
-            Path::new("imported").join(self.folder.file_name().unwrap_or_default())
+            // `.` has no name of its own.
+            let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
+            Path::new("imported").join(folder.file_name().unwrap_or("project".as_ref()))
         })
     }
 }

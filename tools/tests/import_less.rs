@@ -1,6 +1,7 @@
 //! Projects of LESS 1.8.8 as scenes. The projects are made up, from what is documented of the format.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::float_cmp, reason = "what is read back is exact")]
 
 use std::fs;
 use std::path::Path;
@@ -9,6 +10,7 @@ use assert_cmd::Command;
 use tempfile::{TempDir, tempdir};
 
 const GROVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/less/grove/Parameters");
+const DEFAULT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/less/default");
 
 /// A folder with a copy of the project, its `input.conf` changed.
 fn project(changes: &[(&str, &str)]) -> TempDir {
@@ -149,7 +151,10 @@ fn meshes_may_be_the_ground() {
     fs::write(folder.path().join("grove/Parameters/ground.obj"), ground).unwrap();
     import(&folder);
     let text = scene_from(&folder, "scene.ron", "meshes: ");
-    assert!(text.contains(r#"terrain: Mesh(mesh: "terrain", at_m: (10.0, 5.0, 0.0))"#), "{text}");
+    assert!(
+        text.contains(r#"terrain: Mesh(mesh: "the ground", at_m: (10.0, 5.0, 0.0))"#),
+        "{text}"
+    );
     let obj = read(folder.path(), "imported/grove/assets/terrain.obj");
     assert!(obj.starts_with("g terrain\nv -10 -5 0\nv 10 -5 1\n"), "{obj}");
 }
@@ -161,6 +166,7 @@ fn an_imported_plane_has_the_brf_of_its_reflectance() {
     let folder = project(&[
         (r#""terrain_type": "RASTER""#, r#""terrain_type": "PLANE""#),
         (r#""landcover": "classes","#, ""),
+        (r#""terrBRDFType": "Soilspect""#, r#""terrBRDFType": "Lambertian""#),
         (r#""RepetitiveScene": 15"#, r#""RepetitiveScene": 3"#),
     ]);
     fs::write(folder.path().join("grove/Parameters/instances.txt"), "").unwrap();
@@ -184,12 +190,24 @@ fn broken_projects_are_told_by_file_and_line() {
         broken(&[(leaf, r#""0.05;0.07;0.04""#)], &[]),
         broken(&[(leaf, r#""0.65,0.45;0.07,0.44;0.4,0.4""#)], &[]),
         broken(&[(leaf, r#""0.05,0.45;0.07,0.44""#)], &[]),
-        broken(&[(r#""percentage": "0.2,0.1""#, r#""percentage": "0.2""#)], &[]),
-        broken(&[("SKY_TO_TOTAL", "ATMOSPHERE")], &[]),
+        broken(&[(r#""percentage": "0.2,0.1""#, r#""percentage": "0.2,0.1,0.3""#)], &[]),
+        broken(
+            &[
+                (r#""albedo": "0.45,0.6""#, r#""albedo": "0.45,1.6""#),
+                (r#""landcover": "classes","#, ""),
+            ],
+            &[],
+        ),
         broken(&[(r#""sun_zenith": 40"#, r#""sun_zenith": "ninety""#)], &[]),
         broken(&[("660:10,865:20", "660:10,red")], &[]),
-        broken(&[(r#""sensor_type": "orthographic","#, "")], &[]),
-        broken(&[(r#""optical": "loam""#, r#""optical": "laom""#)], &[]),
+        broken(
+            &[
+                (r#""optical": "loam""#, r#""optical": "laom""#),
+                (r#""landcover": "classes","#, ""),
+                (r#""terrBRDFType": "Soilspect","#, ""),
+            ],
+            &[],
+        ),
         broken(&[(r#""terr_file": "hills""#, r#""terr_file": "hill""#)], &[]),
         broken(&[(r#""Advanced": {"#, r#""Advanced": {,"#)], &[]),
         broken(&[], &[("objects.txt", "\npine pine_crwn.obj leaf\n")]),
@@ -200,18 +218,81 @@ fn broken_projects_are_told_by_file_and_line() {
         broken(&[], &[("instances.txt", "pine 1 2 0\npin 3 4 0\n")]),
         broken(&[], &[("instances.txt", "pine 1 2\n")]),
         broken(&[], &[("instances.txt", "pine 21 2 0\n")]),
-        broken(&[], &[("hide_object.txt", "pots\n")]),
         broken(
             &[],
             &[("angles.json", r#"{"a": {"sun_zenith": "LIST:1,2", "sun_azimuth": "LIST:1"}}"#)],
         ),
-        broken(&[], &[("angles.json", r#"{"a": {"sun_zenith": "30"}}"#)]),
+        broken(&[], &[("angles.json", r#"{"a": {"sun_zenith": "LIST:30,95"}}"#)]),
+        broken(
+            &[],
+            &[("angles.json", r#"{"a": {"sun_zenith": "LIST:30,40", "sun_azimuth": "10"}}"#)],
+        ),
     ];
     insta::assert_snapshot!("broken", told.join("\n"));
     let folder = tempdir().unwrap();
     let (code, _, errors) = outcome(folder.path(), &["import-less", "."]);
     assert_eq!(code, 1);
     assert!(errors.contains("is no LESS project"), "{errors}");
+}
+
+/// *Projects*: what LESS writes when a new project is made, in two versions.
+/// *Expected*: bare soil of 100 m x 100 m in an image of 100 x 100 pixels, whose BRF is the soil's.
+#[test]
+fn the_default_projects_of_less_are_bare_soil() {
+    for version in ["newer", "older"] {
+        let folder = tempdir().unwrap();
+        let parameters = folder.path().join("grove/Parameters");
+        fs::create_dir_all(&parameters).unwrap();
+        let file = format!("{DEFAULT}/{version}/Parameters/input.conf");
+        fs::copy(file, parameters.join("input.conf")).unwrap();
+        import(&folder);
+        let scene = read(folder.path(), "imported/grove/scene.ron");
+        assert!(scene.contains("Plane(size_m: (100.0, 100.0), material: \"dark_soil_mollisol\")"));
+        assert!(scene.contains("size_px: (100, 100)") && !scene.contains("max_order"), "{scene}");
+        let arguments = ["run", "imported/grove/scene.ron", "--quality", "0.02", "--out", "out"];
+        let (code, _, errors) = outcome(folder.path(), &arguments);
+        assert_eq!(code, 0, "{errors}");
+        let summary: serde_json::Value =
+            serde_json::from_str(&read(folder.path(), "out/summary.json")).unwrap();
+        let values = summary["sensors"]["image"]["brf"]["values"].as_array().unwrap();
+        assert_eq!(values.len(), 2);
+        for (value, rho) in values.iter().zip([0.188, 0.351]) {
+            assert!((value.as_f64().unwrap() - rho).abs() < 1e-6, "{value} is not {rho}");
+        }
+    }
+}
+
+/// SOILSPECT at nadir under a vertical sun, of isotropic scatterers without a hot spot, is
+/// `ω/8 H²`; over all directions it is a number between that and a perfect mirror's.
+#[test]
+fn a_soilspect_ground_is_imported_as_a_stand_in_that_says_so() {
+    let folder = project(&[
+        (r#""landcover": "classes","#, ""),
+        (r#""albedo": "0.45,0.6""#, r#""albedo": "0.45""#),
+    ]);
+    let printed = import(&folder);
+    assert!(printed.contains("STAND-IN: sunfleck has no SOILSPECT"), "{printed}");
+    let scene = read(folder.path(), "imported/grove/scene.ron");
+    assert!(scene.contains("// ") && scene.contains("STAND-IN"), "{scene}");
+    // The parameters are those of both bands.
+    let line = scene.lines().find(|line| line.contains("\"soilspect stand-in\": ")).unwrap();
+    let at = scene.find(line).unwrap();
+    let values = &scene[at..][scene[at..].find('[').unwrap() + 1..];
+    let values: Vec<f64> = values[..values.find(']').unwrap()]
+        .split(',')
+        .map(|value| value.trim().parse().unwrap())
+        .collect();
+    assert!(values.len() == 2 && values[0] == values[1], "{values:?}");
+    assert!(values[0] > 0.1 && values[0] < 0.45, "{values:?}");
+}
+
+#[test]
+fn an_import_that_fails_leaves_nothing_behind() {
+    let folder = project(&[]);
+    fs::write(folder.path().join("grove/Parameters/objects.txt"), "pine gone.obj leaf\n").unwrap();
+    let (code, _, errors) = outcome(folder.path(), &["import-less", "grove"]);
+    assert_eq!(code, 1, "{errors}");
+    assert_eq!(fs::read_dir(folder.path().join("imported")).unwrap().count(), 0);
 }
 
 #[test]

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 
 use super::conf::{self, Node};
+use super::report::Report;
 use super::text;
 
 /// A batch has no more points.
@@ -22,13 +23,37 @@ pub(super) struct Batch {
 #[derive(Debug)]
 pub(super) struct Axis {
     pub(super) name: String,
-    pub(super) values: Vec<f64>,
+    /// Items of the list, as they are written.
+    items: Vec<String>,
     /// `file:line` of the list.
     pub(super) place: String,
+    /// Path of its keys.
+    path: String,
 }
 
-/// Files of settings beside `input.conf`.
-pub(super) fn read_all(folder: &Path) -> Result<Vec<Batch>> {
+impl Axis {
+    /// Reports the first value that is no number or has a fault.
+    pub(super) fn check(&self, fault: impl Fn(f64) -> Option<String>) -> Result<()> {
+        for item in &self.items {
+            let fault = match conf::finite(item) {
+                Some(number) => fault(number),
+                None => Some(format!("{:?} is not a number", text::excerpt(item))),
+            };
+            if let Some(fault) = fault {
+                bail!("{}: {}: {fault}", self.place, self.path);
+            }
+        }
+        Ok(())
+    }
+
+    /// Its values; `check` has seen that they are numbers.
+    fn values(&self) -> Vec<f64> {
+        self.items.iter().filter_map(|item| conf::finite(item)).collect()
+    }
+}
+
+/// Batches among the files of settings beside `input.conf`.
+pub(super) fn read_all(folder: &Path, report: &Report) -> Result<Vec<Batch>> {
     let entries = folder.read_dir().with_context(|| format!("cannot read {}", folder.display()))?;
     let mut files: Vec<_> = entries.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
     files.retain(|file| {
@@ -36,7 +61,24 @@ pub(super) fn read_all(folder: &Path) -> Result<Vec<Batch>> {
         is_settings && file.is_file() && file.file_name().is_some_and(|name| name != "input.conf")
     });
     files.sort();
-    files.iter().map(|file| read(file)).collect()
+    let mut batches = Vec::new();
+    for file in files {
+        if holds_lists(&file) {
+            batches.push(read(&file)?);
+        } else {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            report.left_out(&name, "", "not a batch: it holds no \"LIST:..\"");
+        }
+    }
+    Ok(batches)
+}
+
+/// Mark of a list of values.
+const LIST: &str = "LIST:";
+
+/// Returns true if a file has the mark of batches; other files of a project have the same extensions.
+fn holds_lists(file: &Path) -> bool {
+    text::whole(file, conf::LARGEST).is_ok_and(|text| text.contains(LIST))
 }
 
 fn read(file: &Path) -> Result<Batch> {
@@ -45,8 +87,8 @@ fn read(file: &Path) -> Result<Batch> {
     for (_, group) in root.entries() {
         let axes: Vec<Axis> =
             group.entries().iter().map(|(name, node)| axis(name, node)).collect::<Result<_>>()?;
-        if let Some(other) = axes.iter().find(|axis| axis.values.len() != axes[0].values.len()) {
-            let (first, n, m) = (&axes[0].name, axes[0].values.len(), other.values.len());
+        if let Some(other) = axes.iter().find(|axis| axis.items.len() != axes[0].items.len()) {
+            let (first, n, m) = (&axes[0].name, axes[0].items.len(), other.items.len());
             return Err(group.wrong(&format!(
                 "`{first}` has {n} values and `{}` has {m}: those of a group go together",
                 other.name
@@ -57,7 +99,7 @@ fn read(file: &Path) -> Result<Batch> {
         }
         groups.push(axes);
     }
-    let points = groups.iter().map(|axes| axes[0].values.len());
+    let points = groups.iter().map(|axes| axes[0].items.len());
     if points.fold(1_usize, usize::saturating_mul) > MOST_POINTS {
         return Err(root.wrong(&format!("the batch has more than {MOST_POINTS} points")));
     }
@@ -67,12 +109,16 @@ fn read(file: &Path) -> Result<Batch> {
 
 fn axis(name: &str, node: &Node) -> Result<Axis> {
     let text = node.text()?;
-    let list = text.strip_prefix("LIST:").ok_or_else(|| {
+    let list = text.strip_prefix(LIST).ok_or_else(|| {
         node.wrong(&format!("{:?} is no list: write \"LIST:30,45\"", text::excerpt(&text)))
     })?;
-    let values =
-        conf::numbers(list).map_err(|part| node.wrong(&format!("{part:?} is not a number")))?;
-    Ok(Axis { name: name.to_owned(), values, place: node.place.clone() })
+    let items = list.trim().trim_end_matches(',').split(',').map(|item| item.trim().to_owned());
+    Ok(Axis {
+        name: name.to_owned(),
+        items: items.collect(),
+        place: node.place.clone(),
+        path: node.path.clone(),
+    })
 }
 
 impl Batch {
@@ -92,17 +138,18 @@ impl Batch {
     /// The scene's `sweep`; none if nothing varies.
     pub(super) fn sweep(&self) -> Option<String> {
         let grid = self.groups.iter().all(|group| group.len() == 1);
-        let (mut before, mut after) = (1, self.groups.iter().map(|g| g[0].values.len()).product());
+        let (mut before, mut after) = (1, self.groups.iter().map(|g| g[0].items.len()).product());
         let mut axes = Vec::new();
         for group in &self.groups {
-            let count = group[0].values.len();
+            let count = group[0].items.len();
             after /= count.max(1);
             for axis in group {
                 let each = |&value: &f64| std::iter::repeat_n(value, after);
+                let own = axis.values();
                 let values: Vec<f64> = if grid || self.groups.len() == 1 {
-                    axis.values.clone()
+                    own
                 } else {
-                    (0..before).flat_map(|_| axis.values.iter().flat_map(each)).collect()
+                    (0..before).flat_map(|_| own.iter().flat_map(each)).collect()
                 };
                 axes.push(format!("{}: {}", text::quoted(&axis.name), text::list(&values)));
             }

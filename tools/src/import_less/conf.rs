@@ -11,7 +11,7 @@ use serde_json::value::RawValue;
 use super::text;
 
 /// A file of settings is not larger, bytes.
-const LARGEST: u64 = 16 << 20;
+pub(super) const LARGEST: u64 = 16 << 20;
 
 /// A value of a JSON file.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ pub(super) struct Node {
 #[derive(Debug)]
 enum Content {
     Object(Vec<(String, Node)>),
-    /// Number, text, truth value or list, as text.
+    /// Number, text, truth value or list, as text; items of a list have commas between them.
     Scalar(String),
     Nothing,
 }
@@ -47,10 +47,58 @@ impl Node {
         Tree { text, starts, file: path.display().to_string() }.node(raw, String::new())
     }
 
-    /// The value of a key.
+    /// The value of a key; none if it is absent, null or a blank text.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
-        let found = self.entries().iter().find(|(name, _)| name == key);
-        found.map(|(_, node)| node).filter(|node| !matches!(node.content, Content::Nothing))
+        self.entry(key).filter(|node| match &node.content {
+            Content::Nothing => false,
+            Content::Scalar(text) => !text.trim().is_empty(),
+            Content::Object(_) => true,
+        })
+    }
+
+    /// How a key without a value is written in the file: absent, null or empty.
+    pub(super) fn lack_of(&self, key: &str) -> &'static str {
+        match self.entry(key).map(|node| &node.content) {
+            None => "absent",
+            Some(Content::Nothing) => "null",
+            Some(_) => "empty",
+        }
+    }
+
+    /// The value of a key, whatever it is.
+    fn entry(&self, key: &str) -> Option<&Self> {
+        self.entries().iter().find(|(name, _)| name == key).map(|(_, node)| node)
+    }
+
+    /// Makes sure that the keys lead to objects: those without a value become empty ones.
+    pub(super) fn ensure_object(&mut self, keys: &[&str]) -> Result<()> {
+        let Some((key, rest)) = keys.split_first() else { return Ok(()) };
+        let path = self.path_of(key);
+        let empty = Self {
+            place: self.place.clone(),
+            path,
+            content: Content::Object(Vec::new()),
+            is_read: Cell::new(false),
+        };
+        let has_value = self.get(key).is_some();
+        let Content::Object(entries) = &mut self.content else { return Ok(()) };
+        let index = match entries.iter().position(|(name, _)| name == key) {
+            Some(index) if has_value => index,
+            Some(index) => {
+                entries[index].1 = empty;
+                index
+            }
+            None => {
+                entries.push(((*key).to_owned(), empty));
+                entries.len() - 1
+            }
+        };
+        let node = &mut entries[index].1;
+        if let Content::Scalar(text) = &node.content {
+            let text = text::excerpt(text);
+            return Err(node.wrong(&format!("{text:?} is not an object: write {{ .. }}")));
+        }
+        node.ensure_object(rest)
     }
 
     /// The value at the end of several keys.
@@ -61,8 +109,11 @@ impl Node {
     /// The value of a key that has to be there.
     pub(super) fn need(&self, key: &str) -> Result<&Self> {
         self.get(key).with_context(|| {
-            let path = if self.path.is_empty() { key.to_owned() } else { self.key(key) };
-            format!("{}: there is no `{path}`", self.place)
+            let path = self.path_of(key);
+            match self.lack_of(key) {
+                "absent" => format!("{}: there is no `{path}`", self.place),
+                lack => format!("{}: `{path}` is {lack}", self.place),
+            }
         })
     }
 
@@ -77,7 +128,8 @@ impl Node {
     /// A number, or text that is one.
     pub(super) fn number(&self) -> Result<f64> {
         let text = self.text()?;
-        finite(&text).ok_or_else(|| self.wrong(&format!("{text:?} is not a number")))
+        finite(&text)
+            .ok_or_else(|| self.wrong(&format!("{:?} is not a number", text::excerpt(&text))))
     }
 
     /// A text; of a number or a truth value what it is written as.
@@ -94,14 +146,23 @@ impl Node {
         match self.text()?.to_ascii_lowercase().as_str() {
             "true" | "1" => Ok(true),
             "false" | "0" | "" => Ok(false),
-            other => Err(self.wrong(&format!("{other:?} is neither true nor false"))),
+            other => {
+                let other = text::excerpt(other);
+                Err(self.wrong(&format!("{other:?} is neither true nor false")))
+            }
         }
+    }
+
+    /// The flag of a key; false if it has no value.
+    pub(super) fn flag_of(&self, key: &str) -> Result<bool> {
+        self.get(key).map_or(Ok(false), Self::flag)
     }
 
     /// Numbers with commas between them.
     pub(super) fn numbers(&self) -> Result<Vec<f64>> {
         let text = self.text()?;
-        numbers(&text).map_err(|part| self.wrong(&format!("{part:?} is not a number")))
+        numbers(&text)
+            .map_err(|part| self.wrong(&format!("{:?} is not a number", text::excerpt(part))))
     }
 
     /// The last key of its path.
@@ -109,7 +170,7 @@ impl Node {
         self.path.rsplit('.').next().unwrap_or_default()
     }
 
-    /// What a person reads if the value is wrong.
+    /// The error of a wrong value: file, line, path and `what`.
     pub(super) fn wrong(&self, what: &str) -> anyhow::Error {
         anyhow!("{}: {}: {what}", self.place, self.path)
     }
@@ -135,19 +196,31 @@ impl Node {
             Content::Object(entries) if !self.is_read.get() => {
                 entries.iter().flat_map(|(_, node)| node.unread()).collect()
             }
-            Content::Scalar(_) if !self.is_read.get() => vec![self],
+            Content::Scalar(text) if !self.is_read.get() && !text.trim().is_empty() => vec![self],
             _ => Vec::new(),
         }
     }
 
-    fn key(&self, key: &str) -> String {
+    /// The path of one of its keys.
+    pub(super) fn path_of(&self, key: &str) -> String {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 }
 
-/// Numbers with commas between them, or the part that is none.
+/// Numbers with commas between them, perhaps one behind the last, or the part that is none.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, &str> {
+    let text = text.trim();
+    let text = text.strip_suffix(',').unwrap_or(text);
     text.split(',').map(|part| finite(part).ok_or(part)).collect()
+}
+
+/// The items of a list as LESS writes lists: a text with commas.
+fn joined(items: &[Value]) -> String {
+    let item = |item: &Value| match item {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    items.iter().map(item).collect::<Vec<_>>().join(",")
 }
 
 /// A finite number.
@@ -179,11 +252,12 @@ impl Tree<'_> {
             Value::Object(_) => {
                 let entries: IndexMap<String, &RawValue> = serde_json::from_str(raw.get())?;
                 let entry = |(key, raw): (String, &RawValue)| {
-                    let child = self.node(raw, node.key(&key))?;
+                    let child = self.node(raw, node.path_of(&key))?;
                     Ok((key, child))
                 };
                 Content::Object(entries.into_iter().map(entry).collect::<Result<_>>()?)
             }
+            Value::Array(items) => Content::Scalar(joined(&items)),
             other => Content::Scalar(other.to_string()),
         };
         if node.path.is_empty() && !matches!(node.content, Content::Object(_)) {

@@ -7,10 +7,11 @@ use std::io::{BufWriter, Write as _};
 use anyhow::{Context as _, Result, bail};
 use indexmap::IndexMap;
 
-use super::objects::Bounds;
+use super::conf;
+use super::objects::{Bounds, ListFile};
 use super::optics::unknown;
+use super::project::{Project, Section};
 use super::text::{self, quoted};
-use super::{Project, Section, conf};
 
 /// Where an object stands: x, y, z (m), yaw (degrees), horizontal and vertical scale.
 type Row = [f64; 6];
@@ -19,19 +20,29 @@ impl Project {
     /// The scene's `instances` and `hide`: a table for each object.
     pub(super) fn instances_ron(
         &mut self,
-        objects: &IndexMap<String, Bounds>,
+        objects: &IndexMap<String, Option<Bounds>>,
         section: &mut Section,
     ) -> Result<()> {
-        let Some((name, place)) = self.list_file("tree_pos_file", "instances.txt")? else {
+        let Some(ListFile { name, path, place }) =
+            self.list_file("tree_pos_file", "instances.txt")?
+        else {
             return Ok(());
         };
         let mut rows: IndexMap<String, Vec<Row>> = IndexMap::new();
         let (width, height) = self.size;
         let is_bounded = !section.terrain.starts_with("terrain: Mesh");
-        text::lines(&self.parameters.join(&name), |line| {
-            let (object, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-            let Some(bounds) = objects.get(object) else {
-                bail!(unknown("object", object, objects.keys()));
+        let mut without = 0;
+        text::lines(&path, |line| {
+            let (object, rest) = name_of(line, objects);
+            let bounds = match objects.get(object) {
+                Some(Some(bounds)) => bounds,
+                Some(None) => {
+                    without += 1;
+                    return Ok(());
+                }
+                None => {
+                    bail!(unknown("object", "scene.forest.objects_file", object, objects.keys()))
+                }
             };
             let numbers: Option<Vec<f64>> = rest.split_whitespace().map(conf::finite).collect();
             let (x, y, z, yaw, scale) = match numbers.as_deref() {
@@ -57,17 +68,23 @@ impl Project {
             rows.entry(object.to_owned()).or_default().push([x, north, z, yaw, scale.0, scale.1]);
             Ok(())
         })
-        .with_context(|| place)?;
+        .context(place)?;
+        if without > 0 {
+            let what = "places of objects that have no components";
+            self.report.left_out(&name, &without.to_string(), what);
+        }
         if rows.values().flatten().any(|row| row[3] != 0.0) {
             let what = "taken as counter-clockwise seen from above";
-            self.report.add(&name, "rotations", what);
+            self.report.differs(&name, "rotations", what);
         }
         if rows.values().flatten().any(|row| (row[4], row[5]) != (1.0, 1.0)) {
             let what = "scaled by the extent of the whole object; LESS took its first component's";
-            self.report.add(&name, "diameters and heights", what);
+            self.report.differs(&name, "diameters and heights", what);
         }
-        for object in objects.keys().filter(|object| !rows.contains_key(*object)) {
-            self.report.add(&name, object, "stands nowhere");
+        let is_nowhere = |object: &&String| !rows.contains_key(*object);
+        let defined = objects.iter().filter(|(_, bounds)| bounds.is_some());
+        for object in defined.map(|(object, _)| object).filter(is_nowhere) {
+            self.report.differs(&name, object, "stands nowhere");
         }
         section.instances.push_str("instances: [\n");
         let mut files = Vec::new();
@@ -115,7 +132,7 @@ impl Project {
     /// Objects that the user has hidden; LESS leaves them out of the simulation too.
     fn hidden(
         &self,
-        objects: &IndexMap<String, Bounds>,
+        objects: &IndexMap<String, Option<Bounds>>,
         rows: &IndexMap<String, Vec<Row>>,
         section: &mut Section,
     ) -> Result<()> {
@@ -125,11 +142,16 @@ impl Project {
         }
         let mut hidden: Vec<String> = Vec::new();
         text::lines(&file, |line| {
-            for name in line.split_whitespace() {
+            // One name on each line, or all on one.
+            let names = if objects.contains_key(line) {
+                vec![line]
+            } else {
+                line.split_whitespace().collect()
+            };
+            for name in names {
                 if !objects.contains_key(name) {
-                    bail!(unknown("object", name, objects.keys()));
+                    self.report.left_out("hide_object.txt", name, "there is no such object");
                 }
-                // Whatever stands nowhere has been told of already.
                 if rows.contains_key(name) {
                     hidden.push(quoted(name));
                 }
@@ -140,5 +162,18 @@ impl Project {
             writeln!(section.instances, "hide: [{}],", hidden.join(", "))?;
         }
         Ok(())
+    }
+}
+
+/// Splits a line into the name of an object and the rest. Names may hold spaces: the longest one of those
+/// that are known is taken.
+fn name_of<'a>(line: &'a str, objects: &IndexMap<String, Option<Bounds>>) -> (&'a str, &'a str) {
+    let ends_name = |rest: &&str| rest.is_empty() || rest.starts_with(char::is_whitespace);
+    let known = objects
+        .keys()
+        .filter(|name| line.strip_prefix(name.as_str()).as_ref().is_some_and(ends_name));
+    match known.map(String::len).max() {
+        Some(length) => line.split_at(length),
+        None => line.split_once(char::is_whitespace).unwrap_or((line, "")),
     }
 }

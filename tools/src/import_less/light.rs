@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 
 use anyhow::{Context as _, Result};
 
-use super::Project;
 use super::conf::{self, Node};
+use super::project::Project;
+use super::report::Report;
+use super::settings::{Choice, Rule};
 use super::swept::Swept;
 use super::text::{list, quoted};
 
@@ -23,19 +25,42 @@ pub(super) struct Band {
     width: f64,
 }
 
+/// Bands of a project that names none.
+const USUAL_BANDS: &str = "600:10,900:10";
+
+/// Wavelengths up to here surfaces on Earth emit nothing that is measured, nm.
+const EMISSION_STARTS: f64 = 2500.0;
+
 /// The bands of `sensor.bands`.
-pub(super) fn bands(sensor: &Node) -> Result<Vec<Band>> {
-    let node = sensor.need("bands")?;
-    let text = node.text()?;
-    let band = |part: &str| {
-        let (center, width) = part.split_once(':').unwrap_or((part, "0"));
+pub(super) fn bands(sensor: &Node, report: &Report) -> Result<Vec<Band>> {
+    let Some(node) = sensor.get("bands") else {
+        let what = format!("{USUAL_BANDS}, as LESS has it");
+        report.assumed(&sensor.path_of("bands"), sensor.lack_of("bands"), what);
+        return Ok(parsed(USUAL_BANDS).expect("the usual bands are a list of bands"));
+    };
+    let bands = parsed(&node.text()?).map_err(|part| {
+        let part = super::text::excerpt(part.trim());
+        node.wrong(&format!("{part:?} is not `centre:width` in nm"))
+    })?;
+    if bands.iter().any(|band| band.center < EMISSION_STARTS)
+        && sensor.flag_of("thermal_radiation").unwrap_or(false)
+    {
+        let what = "thermal radiation alone: surfaces on Earth emit next to nothing below 2500 nm";
+        report.differs(&node.path, &node.shown(), what);
+    }
+    Ok(bands)
+}
+
+/// The bands of a list, or the item that is none.
+fn parsed(text: &str) -> Result<Vec<Band>, String> {
+    let text = text.trim().trim_end_matches(',');
+    let band = |item: &str| {
+        let (center, width) = item.split_once(':').unwrap_or((item, "0"));
         let band = Band { center: conf::finite(center)?, width: conf::finite(width)? };
-        (band.center > 0.0 && band.width >= 0.0).then_some(band)
+        let is_valid = band.center > 0.0 && band.width >= 0.0 && band.width < 2.0 * band.center;
+        is_valid.then_some(band)
     };
-    let read = |part: &str| {
-        band(part).ok_or_else(|| node.wrong(&format!("{part:?} is not `centre:width` in nm")))
-    };
-    text.split(',').map(read).collect()
+    text.split(',').map(|item| band(item).ok_or_else(|| item.to_owned())).collect()
 }
 
 impl Project {
@@ -70,104 +95,174 @@ impl Project {
     pub(super) fn light_ron(&self, swept: &mut Swept<'_>) -> Result<String> {
         let illumination = self.conf.need("illumination")?;
         let sun = illumination.need("sun")?;
-        let zenith = sun.need("sun_zenith")?;
-        let angle = zenith.number()?;
-        if !(0.0..90.0).contains(&angle) {
-            return Err(zenith.wrong(&format!("{angle}° is not from 0 to below 90")));
-        }
-        let mut text = "sun: (\n".to_owned();
-        writeln!(text, "zenith_deg: {},", swept.term(zenith)?)?;
-        writeln!(text, "azimuth_deg: {},", swept.term(sun.need("sun_azimuth")?)?)?;
+        let zenith = swept.term(sun, "sun_zenith", &Rule::SUN_ZENITH, &self.report)?;
+        let azimuth = swept.term(sun, "sun_azimuth", &Rule::SUN_AZIMUTH, &self.report)?;
+        let mut text = format!("sun: (\nzenith_deg: {zenith},\nazimuth_deg: {azimuth},\n");
         let spectrum = sun.get("sun_spectrum");
-        if let Some(spectrum) = spectrum {
-            writeln!(text, "irradiance: Bands({}),", list(&self.per_band(spectrum)?))?;
+        let direct = spectrum.map(|node| self.irradiance(node)).transpose()?;
+        if let Some(direct) = &direct {
+            writeln!(text, "irradiance: Bands({}),", list(direct))?;
         } else if self.needs_solar_table() {
             writeln!(text, "irradiance: Table(file: {SOLAR_FILE:?}),")?;
             let what =
                 "the sun of ASTM G173-03 in place of LESS's own table; BRF does not depend on it";
-            self.report.add("illumination.sun", "", what);
+            self.report.differs("illumination.sun", "", what);
         } else if !self.is_thermal {
-            let what = "bands beyond the sun's table: an irradiance of 1; give `sun.irradiance`";
-            self.report.add("illumination.sun", "", what);
+            text += "irradiance: Constant(1.0),\n";
+            let what = "bands beyond the sun's table: an irradiance of 1 W m⁻² nm⁻¹, so that \
+                        radiances are relative; give `sun.irradiance`";
+            self.report.differs("illumination.sun", "", what);
         }
         text += "),\n";
-        if let Some(calculator) = illumination.get("sun_calculator")
-            && calculator.flag()?
-        {
+        if illumination.flag_of("sun_calculator")? {
             let what = "angles kept as stored; the calculator of LESS 1.8.8 took the next month";
-            self.report.add(&calculator.path, "true", what);
+            self.report.differs("illumination.sun_calculator", "true", what);
         }
         if let Some(parameters) = illumination.get("calculator_params") {
-            let what = "not imported: the angles are; `sun.position: Spa(..)` computes them anew";
-            self.report.add(&parameters.path, &parameters.shown(), what);
+            let what = "the angles are imported; `sun.position: Spa(..)` computes them anew";
+            self.report.left_out(&parameters.path, &parameters.shown(), what);
             parameters.settle();
         }
-        let Some(atmosphere) = illumination.get("atmosphere") else { return Ok(text) };
-        self.sky(atmosphere, spectrum.is_some(), &mut text, swept)?;
+        let atmosphere = illumination.need("atmosphere")?;
+        text += &match (spectrum, &direct) {
+            (Some(spectrum), Some(direct)) => self.sky_spectrum(atmosphere, spectrum, direct)?,
+            _ => self.sky_fraction(atmosphere, swept)?,
+        };
+        text += &self.thermal_sky(atmosphere)?;
         Ok(text)
     }
 
-    fn sky(
-        &self,
-        atmosphere: &Node,
-        is_manual: bool,
-        text: &mut String,
-        swept: &mut Swept<'_>,
-    ) -> Result<()> {
-        if let Some(kind) = atmosphere.get("ats_type") {
-            let name = kind.text()?;
-            if name != "SKY_TO_TOTAL" {
-                return Err(kind.wrong(&format!(
-                    "{name:?} has no equal in sunfleck: choose SKY_TO_TOTAL and its percentages"
-                )));
+    /// The sky of a project that gives the irradiance of the sun in numbers.
+    fn sky_spectrum(&self, atmosphere: &Node, spectrum: &Node, direct: &[f64]) -> Result<String> {
+        for key in ["percentage", "ats_type"] {
+            if let Some(node) = atmosphere.get(key) {
+                self.report.unneeded(&node.path, &node.shown(), "spectra are given in its place");
+                node.settle();
             }
         }
-        let shares = atmosphere.get("percentage");
-        if let Some(sky) = atmosphere.get("sky_spectrum").filter(|_| is_manual) {
-            let values = self.per_band(sky)?;
-            if values.iter().any(|&value| value > 0.0) {
-                writeln!(text, "sky: Isotropic(irradiance: Bands({})),", list(&values))?;
-            }
-            if let Some(shares) = shares {
-                shares.settle();
-            }
-        } else if let Some(shares) = shares {
-            let values = self.per_band(shares)?;
-            if let Some(wrong) = values.iter().find(|&share| !(0.0..=1.0).contains(share)) {
-                return Err(shares.wrong(&format!("{wrong} is not between 0 and 1")));
-            }
-            if self.bands.len() == 1 && swept.varies(shares.name()) {
-                writeln!(text, "sky: Fraction([{}]),", swept.term(shares)?)?;
-            } else if values.iter().any(|&value| value > 0.0) {
-                writeln!(text, "sky: Fraction({}),", list(&values))?;
-            }
+        let diffuse = if let Some(node) = atmosphere.get("sky_spectrum") {
+            self.irradiance(node)?
+        } else {
+            let lack = atmosphere.lack_of("sky_spectrum");
+            let what = "0 in each band, as LESS has it";
+            self.report.assumed(&atmosphere.path_of("sky_spectrum"), lack, what);
+            vec![0.0; direct.len()]
+        };
+        let is_dark = |(sun, sky): (&f64, &f64)| *sun <= 0.0 && *sky <= 0.0;
+        if let Some(band) = direct.iter().zip(&diffuse).position(is_dark)
+            && !self.is_thermal
+        {
+            let what = format!("neither sun nor sky lights band {}", band + 1);
+            return Err(spectrum.wrong(&what));
         }
-        if let Some(node) = atmosphere.get("AtsTemperature") {
-            let name = node.text()?;
-            let mean = match conf::finite(&name) {
-                Some(kelvin) => kelvin,
-                None => {
-                    self.materials.mean_temperature(&name).with_context(|| node.place.clone())?
-                }
-            };
-            writeln!(text, "thermal_sky: BlackBody({mean:?}),")?;
-        }
-        Ok(())
+        Ok(if diffuse.iter().any(|&value| value > 0.0) {
+            format!("sky: Isotropic(irradiance: Bands({})),\n", list(&diffuse))
+        } else {
+            String::new()
+        })
     }
 
-    /// A list with a value for each band.
-    fn per_band(&self, node: &Node) -> Result<Vec<f64>> {
+    /// The sky as a share of all light.
+    fn sky_fraction(&self, atmosphere: &Node, swept: &mut Swept<'_>) -> Result<String> {
+        let types = Choice { choices: &[("SKY_TO_TOTAL", ())], may_be_absent: true };
+        types.read(atmosphere, "ats_type", &self.report)?;
+        if let Some(node) = atmosphere.get("sky_spectrum") {
+            self.report.unneeded(&node.path, &node.shown(), "there is no `sun_spectrum` beside it");
+            node.settle();
+        }
+        let Some(node) = atmosphere.get("percentage") else {
+            let what = "0 in each band, as LESS has it: no sky";
+            let lack = atmosphere.lack_of("percentage");
+            self.report.assumed(&atmosphere.path_of("percentage"), lack, what);
+            return Ok(String::new());
+        };
+        let mut values = node.numbers()?;
+        if let Some(wrong) = values.iter().find(|&share| !(0.0..=1.0).contains(share)) {
+            return Err(node.wrong(&format!("{wrong} is not between 0 and 1")));
+        }
+        let (count, bands) = (values.len(), self.bands.len());
+        if count != bands {
+            let is_even = values.windows(2).all(|pair| pair[0].total_cmp(&pair[1]).is_eq());
+            if count > bands && !is_even {
+                return Err(
+                    node.wrong(&format!("has {}, `sensor.bands` has {bands}", counted(count)))
+                );
+            }
+            let what = match count {
+                _ if count > bands => {
+                    format!("the first {bands} of {count} values, which are equal")
+                }
+                _ => format!("0 in the bands after the first {count}, as LESS's window has it"),
+            };
+            self.report.differs(&node.path, &node.shown(), what);
+            values.resize(bands, 0.0);
+        }
+        if bands == 1 && swept.varies(node.name()) {
+            let rule = Rule::SHARE;
+            return Ok(format!(
+                "sky: Fraction([{}]),\n",
+                swept.term(atmosphere, "percentage", &rule, &self.report)?
+            ));
+        }
+        Ok(if values.iter().any(|&value| value > 0.0) {
+            format!("sky: Fraction({}),\n", list(&values))
+        } else {
+            String::new()
+        })
+    }
+
+    /// The scene's `thermal_sky`.
+    fn thermal_sky(&self, atmosphere: &Node) -> Result<String> {
+        let Some(node) = atmosphere.get("AtsTemperature") else {
+            if self.is_thermal {
+                let lack = atmosphere.lack_of("AtsTemperature");
+                let what = "the sky emits nothing";
+                self.report.assumed(&atmosphere.path_of("AtsTemperature"), lack, what);
+            }
+            return Ok(String::new());
+        };
+        let name = node.text()?;
+        let mean = match conf::finite(&name) {
+            Some(kelvin) if kelvin >= 0.0 => kelvin,
+            Some(kelvin) if self.is_thermal => {
+                return Err(node.wrong(&format!("{kelvin} K is no temperature")));
+            }
+            None if self.is_thermal => self
+                .materials
+                .mean_temperature(&name)
+                .with_context(|| format!("{}: {}", node.place, node.path))?,
+            _ => {
+                if let Ok(kelvin) = self.materials.mean_temperature(&name) {
+                    kelvin
+                } else {
+                    self.report.unneeded(&node.path, &node.shown(), "no thermal radiation");
+                    return Ok(String::new());
+                }
+            }
+        };
+        Ok(format!("thermal_sky: BlackBody({mean:?}),\n"))
+    }
+
+    /// Irradiances, one for each band.
+    fn irradiance(&self, node: &Node) -> Result<Vec<f64>> {
         let values = node.numbers()?;
         if values.len() != self.bands.len() {
-            let (n, bands) = (values.len(), self.bands.len());
-            let values = if n == 1 { "value" } else { "values" };
-            return Err(node.wrong(&format!("has {n} {values}, `sensor.bands` has {bands}")));
+            let (values, bands) = (counted(values.len()), self.bands.len());
+            return Err(node.wrong(&format!("has {values}, `sensor.bands` has {bands}")));
         }
-        Ok(values)
+        match values.iter().find(|value| **value < 0.0) {
+            Some(wrong) => Err(node.wrong(&format!("{wrong} is not an irradiance of 0 or more"))),
+            None => Ok(values),
+        }
     }
 
     /// Bands in which a person sees.
     pub(super) fn visible_bands(&self) -> usize {
         self.bands.iter().filter(|band| (380.0..=780.0).contains(&band.center)).count()
     }
+}
+
+/// `1 value`, `2 values`.
+pub(super) fn counted(count: usize) -> String {
+    format!("{count} value{}", if count == 1 { "" } else { "s" })
 }

@@ -3,14 +3,15 @@
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 use indexmap::IndexMap;
 
+use super::components::{self, Component};
 use super::conf;
+use super::project::{Project, Section};
 use super::text::{self, quoted};
-use super::{Project, Section};
 
 /// Extent of an object, m.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +64,7 @@ impl Obj {
     pub(super) fn append(&mut self, part: &str, path: &Path) -> Result<()> {
         let base = self.vertices;
         writeln!(self.file, "g {part}")?;
-        text::lines(path, |line| {
+        text::lossy_lines(path, |line| {
             let mut words = line.split_whitespace();
             match words.next() {
                 Some("v") => {
@@ -103,128 +104,97 @@ impl Obj {
     }
 }
 
-/// A component of an object, as `objects.txt` has it.
-struct Component {
-    file: String,
-    optics: String,
-    temperature: Option<String>,
-}
-
 impl Project {
-    /// Name of a file in `Parameters/` that a setting gives.
-    pub(super) fn list_file(&self, key: &str, usual: &str) -> Result<Option<(String, String)>> {
-        let Some(forest) = self.conf.at(&["scene", "forest"]) else { return Ok(None) };
+    /// The list that a setting names, and `file:line: path` of the setting. LESS writes these files once
+    /// there is something to put into them.
+    pub(super) fn list_file(&self, key: &str, usual: &str) -> Result<Option<ListFile>> {
+        let forest = self.conf.need("scene")?.need("forest")?;
         let (name, place) = match forest.get(key) {
-            Some(node) => (node.text()?, &node.place),
-            None => (usual.to_owned(), &forest.place),
+            Some(node) => (node.text()?, format!("{}: {}", node.place, node.path)),
+            None => (usual.to_owned(), format!("{}: {}", forest.place, forest.path_of(key))),
         };
-        if name.is_empty() {
-            return Ok(None);
+        if let Ok(path) = self.locate(&name) {
+            Ok(Some(ListFile { name, path, place }))
+        } else {
+            let what = format!("there is no file {name}: none");
+            self.report.assumed(&forest.path_of(key), &name, what);
+            Ok(None)
         }
-        // LESS makes these files once there is something to put into them.
-        let is_there = self.parameters.join(&name).exists();
-        Ok((is_there || name != usual).then(|| (name, place.clone())))
     }
 
-    /// The scene's `meshes`, and the extent of each object.
+    /// The scene's `meshes`, and the extent of each object; none for objects that have no components yet.
     pub(super) fn objects_ron(
         &mut self,
         section: &mut Section,
-    ) -> Result<IndexMap<String, Bounds>> {
+    ) -> Result<IndexMap<String, Option<Bounds>>> {
         let mut objects = IndexMap::new();
-        let Some((name, place)) = self.list_file("objects_file", "objects.txt")? else {
+        let Some(ListFile { path, place, .. }) = self.list_file("objects_file", "objects.txt")?
+        else {
             return Ok(objects);
         };
         let mut colours = 0;
-        text::lines(&self.parameters.join(&name), |line| {
-            let mut words = line.split_whitespace();
-            let object = words.next().unwrap_or_default();
+        text::lines(&path, |line| {
+            let (object, rest) = components::object(line);
             if objects.contains_key(object) {
                 bail!("the object {object:?} is there twice");
             }
-            let components = components(words, &mut colours)?;
+            let components = components::read(rest)?;
             if components.is_empty() {
-                bail!(
-                    "the object {object:?} has no components: write `{object} file.obj property`"
-                );
+                self.report.left_out("objects.txt", object, "has no components yet");
+                objects.insert(object.to_owned(), None);
+                return Ok(());
             }
-            let mesh = self.mesh_name(object);
-            let file = format!("assets/{mesh}.obj");
-            let mut obj = Obj::create(&self.out.join(&file))?;
-            let mut parts: IndexMap<String, String> = IndexMap::new();
-            for Component { file, optics, temperature } in components {
-                let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
-                let mut part =
-                    text::file_name(stem.strip_prefix(&format!("{object}_")).unwrap_or(&stem));
-                while parts.contains_key(&part) {
-                    part.push('_');
-                }
-                obj.append(&part, &self.parameters.join(&file))?;
-                parts.insert(part, self.materials.wear(&optics, temperature.as_deref())?);
-            }
-            let parts: Vec<_> = parts
-                .iter()
-                .map(|(part, material)| format!("{}: {}", quoted(part), quoted(material)))
-                .collect();
-            writeln!(
-                section.meshes,
-                "{}: Obj(file: {}, up: Z, unit_m: 1.0, parts: {{ {} }}),",
-                quoted(object),
-                quoted(&file),
-                parts.join(", ")
-            )?;
-            objects.insert(object.to_owned(), obj.finish()?);
+            colours += components.iter().filter(|component| component.has_colour).count();
+            objects.insert(object.to_owned(), Some(self.object_ron(object, components, section)?));
             Ok(())
         })
-        .with_context(|| place)?;
+        .context(place)?;
         if colours > 0 {
-            let what = "not imported: colours of LESS's viewer";
-            self.report.add("objects.txt", &format!("{colours} colours"), what);
+            let what = "colours of LESS's viewer";
+            self.report.unneeded("objects.txt", &format!("{colours} colours"), what);
         }
         Ok(objects)
     }
 
-    /// A name for the file of a mesh that no other has.
-    pub(super) fn mesh_name(&mut self, object: &str) -> String {
-        let mut name = text::file_name(object);
-        while !self.mesh_files.insert(name.to_ascii_lowercase()) {
-            name.push('_');
+    /// Writes the mesh of an object, and returns its extent.
+    fn object_ron(
+        &mut self,
+        object: &str,
+        components: Vec<Component>,
+        section: &mut Section,
+    ) -> Result<Bounds> {
+        let file = format!("assets/{}.obj", self.asset_name(object));
+        let mut obj = Obj::create(&self.out.join(&file))?;
+        let mut parts: IndexMap<String, String> = IndexMap::new();
+        for Component { file, optics, temperature, .. } in components {
+            let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
+            let mut part =
+                text::file_name(stem.strip_prefix(&format!("{object}_")).unwrap_or(&stem));
+            while parts.contains_key(&part) {
+                part.push('_');
+            }
+            obj.append(&part, &self.locate(&file)?)?;
+            parts.insert(part, self.materials.of_surface(&optics, temperature.as_deref())?);
         }
-        name
+        let parts: Vec<_> = parts
+            .iter()
+            .map(|(part, material)| format!("{}: {}", quoted(part), quoted(material)))
+            .collect();
+        writeln!(
+            section.meshes,
+            "{}: Obj(file: {}, up: Z, unit_m: 1.0, parts: {{ {} }}),",
+            quoted(object),
+            quoted(&file),
+            parts.join(", ")
+        )?;
+        obj.finish()
     }
 }
 
-fn components<'a>(
-    words: impl Iterator<Item = &'a str>,
-    colours: &mut usize,
-) -> Result<Vec<Component>> {
-    let mut groups: Vec<Vec<&str>> = Vec::new();
-    for word in words {
-        let is_file =
-            Path::new(word).extension().is_some_and(|ext| ext.eq_ignore_ascii_case("obj"));
-        match groups.last_mut() {
-            _ if is_file => groups.push(vec![word]),
-            Some(group) => group.push(word),
-            None => bail!("{word:?} is no `.obj` file"),
-        }
-    }
-    let component = |group: &Vec<&str>| {
-        let (file, rest) = (group[0], &group[1..]);
-        let [optics, rest @ ..] = rest else { bail!("{file:?} has no optical property") };
-        let (shades, temperatures): (Vec<&str>, Vec<&str>) =
-            rest.iter().partition(|word| word.starts_with("0x") || word.starts_with('#'));
-        if temperatures.len() > 1 || shades.len() > 1 {
-            bail!(
-                "{:?} is no component: `file.obj property temperature 0xcolour`",
-                group.join(" ")
-            );
-        }
-        *colours += shades.len();
-        Ok(Component {
-            file: file.to_owned(),
-            optics: (*optics).to_owned(),
-            temperature: temperatures.first().map(|&name| name.to_owned()),
-        })
-    };
-    groups.iter().map(component).collect()
+/// A list of objects or places.
+pub(super) struct ListFile {
+    pub(super) name: String,
+    pub(super) path: PathBuf,
+    /// `file:line: path` of the setting that names it.
+    pub(super) place: String,
 }

@@ -7,77 +7,174 @@ use indexmap::IndexMap;
 use sunfleck::document::nearest;
 
 use super::conf::{self, Node};
+use super::light::counted;
 use super::report::Report;
 use super::text::{list, quoted};
+
+/// Name of the temperature of what has none, in a thermal project; that of LESS's window.
+const USUAL_TEMPERATURE: (&str, Temperature) = ("T300", Temperature { mean: 300.0, range: 5.0 });
+
+/// Sums of reflectance and transmittance up to this are rounding of LESS's four digits.
+const ROUNDED_SUM: f64 = 1.001;
+
+/// Leaves of a new project, whose transmittance the file has as 0.
+const BIRCH_LEAF: &str = "birch_leaf_green";
 
 /// Materials of the scene by name. One optical property at two temperatures is two materials.
 #[derive(Debug, Default)]
 pub(super) struct Materials {
-    optics: IndexMap<String, Optics>,
-    /// Mean and range of temperatures, K, by name.
-    temperatures: IndexMap<String, (f64, f64)>,
+    optics: IndexMap<String, Result<Optics, String>>,
+    temperatures: IndexMap<String, Result<Temperature, String>>,
     /// Name of the material of each pair of optical property and temperature.
-    worn: IndexMap<(String, Option<String>), String>,
+    used: IndexMap<(String, Option<String>), String>,
+    is_thermal: bool,
+    /// Remarks for the report.
+    remarks: Vec<Remark>,
 }
 
-/// Reflectance of front and back, and transmittance, band by band.
+/// An optical property.
 #[derive(Debug)]
-struct Optics([Vec<f64>; 3]);
+struct Optics {
+    /// Reflectance of front and back, and transmittance, shape `[3][bands]`.
+    sides: [Vec<f64>; 3],
+    /// Remarks for the report if the property is used.
+    remarks: Vec<Remark>,
+}
+
+/// A mean and the range between sunlit and shaded, K.
+#[derive(Clone, Copy, Debug)]
+struct Temperature {
+    mean: f64,
+    range: f64,
+}
+
+/// An error with the place where it is: places that lead to it would only hide it.
+#[derive(Debug)]
+pub(super) struct Located(String);
+
+impl std::fmt::Display for Located {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Located {}
+
+/// Path, value and what became of it.
+type Remark = (String, String, String);
 
 impl Materials {
-    /// Those of a project with so many bands.
-    pub(super) fn read(scene: &Node, bands: usize, report: &Report) -> Result<Self> {
-        let mut materials = Self::default();
+    /// The properties of a project with `bands` bands. What is wrong with one is an error once it is used.
+    pub(super) fn read(scene: &Node, bands: usize, is_thermal: bool) -> Self {
+        let mut materials = Self { is_thermal, ..Self::default() };
         for (name, node) in scene.get("optical_properties").map_or(&[][..], Node::entries) {
-            materials.optics.insert(name.clone(), optics(name, node, bands, report)?);
+            let optics = optics(name, node, bands).map_err(|error| format!("{error:#}"));
+            node.settle();
+            materials.optics.insert(name.clone(), optics);
         }
         for (name, node) in scene.get("temperature_properties").map_or(&[][..], Node::entries) {
-            let text = node.text()?;
-            let parts: Option<Vec<f64>> = text.split(':').map(conf::finite).collect();
-            let (mean, range) = match parts.as_deref() {
-                Some([mean]) => (*mean, 0.0),
-                Some([mean, range]) => (*mean, *range),
-                _ => return Err(node.wrong(&format!("{text:?} is not `mean:range` in K"))),
-            };
-            materials.temperatures.insert(name.clone(), (mean, range));
+            let temperature = temperature(node).map_err(|error| format!("{error:#}"));
+            node.settle();
+            materials.temperatures.insert(name.clone(), temperature);
         }
-        Ok(materials)
+        materials
+    }
+
+    /// Returns true if there is a sound optical property of this name.
+    pub(super) fn has(&self, optics: &str) -> bool {
+        matches!(self.optics.get(optics), Some(Ok(_)))
+    }
+
+    /// Adds an opaque surface, and returns the name of its property.
+    pub(super) fn add_opaque(&mut self, name: &str, reflectance: Vec<f64>) -> String {
+        let mut name = name.to_owned();
+        while self.optics.contains_key(&name) {
+            name.push('_');
+        }
+        let through = vec![0.0; reflectance.len()];
+        let optics =
+            Optics { sides: [reflectance.clone(), reflectance, through], remarks: Vec::new() };
+        self.optics.insert(name.clone(), Ok(optics));
+        name
     }
 
     /// Name of the material of an optical property, perhaps at a temperature.
-    pub(super) fn wear(&mut self, optics: &str, temperature: Option<&str>) -> Result<String> {
-        if !self.optics.contains_key(optics) {
-            bail!(unknown("optical property", optics, self.optics.keys()));
+    pub(super) fn of_surface(&mut self, optics: &str, temperature: Option<&str>) -> Result<String> {
+        match self.optics.get_mut(optics) {
+            Some(Ok(optics)) => self.remarks.append(&mut optics.remarks),
+            Some(Err(error)) => bail!(Located(error.clone())),
+            None => bail!(unknown(
+                "optical property",
+                "scene.optical_properties",
+                optics,
+                self.optics.keys()
+            )),
         }
-        if let Some(name) = temperature {
-            self.mean_temperature(name)?;
-        }
+        let (usual, kelvin) = USUAL_TEMPERATURE;
+        let temperature = match temperature {
+            None if self.is_thermal => {
+                self.temperatures.entry(usual.to_owned()).or_insert(Ok(kelvin));
+                let what = format!("no temperature: {usual}, as LESS has it");
+                self.remarks.push((optics.to_owned(), String::new(), what));
+                Some(usual)
+            }
+            temperature => temperature,
+        };
+        let temperature = match temperature.map(|name| (name, self.mean_temperature(name))) {
+            Some((name, Ok(_))) => Some(name),
+            Some((_, Err(error))) if self.is_thermal => return Err(error),
+            Some((name, Err(error))) => {
+                let what = format!("{error}; not needed without thermal radiation");
+                self.remarks.push((optics.to_owned(), name.to_owned(), what));
+                None
+            }
+            None => None,
+        };
         let pair = (optics.to_owned(), temperature.map(str::to_owned));
-        let is_first = !self.worn.keys().any(|(other, _)| other == optics);
+        let is_first = !self.used.keys().any(|(other, _)| other == optics);
         let name = match temperature {
             Some(temperature) if !is_first => format!("{optics} {temperature}"),
             None if !is_first => format!("{optics} without temperature"),
             _ => optics.to_owned(),
         };
-        Ok(self.worn.entry(pair).or_insert(name).clone())
+        Ok(self.used.entry(pair).or_insert(name).clone())
     }
 
     /// Mean of a temperature, K.
     pub(super) fn mean_temperature(&self, name: &str) -> Result<f64> {
-        let known = self.temperatures.get(name).map(|&(mean, _)| mean);
-        known.ok_or_else(|| anyhow!(unknown("temperature", name, self.temperatures.keys())))
+        match self.temperatures.get(name) {
+            Some(Ok(temperature)) => Ok(temperature.mean),
+            Some(Err(error)) => bail!(Located(error.clone())),
+            None => Err(anyhow!(unknown(
+                "temperature",
+                "scene.temperature_properties",
+                name,
+                self.temperatures.keys()
+            ))),
+        }
     }
 
-    /// The scene's `materials`; those that nothing wears too.
-    pub(super) fn ron(&mut self) -> Result<String> {
-        for name in self.optics.keys().cloned().collect::<Vec<_>>() {
-            if !self.worn.keys().any(|(optics, _)| *optics == name) {
-                self.wear(&name, None)?;
+    /// The scene's `materials`; those that no surface has too.
+    pub(super) fn ron(&mut self, report: &Report) -> Result<String> {
+        for (name, optics) in &self.optics {
+            match optics {
+                Ok(_) => {
+                    if !self.used.keys().any(|(optics, _)| optics == name) {
+                        self.used.insert((name.clone(), None), name.clone());
+                    }
+                }
+                Err(error) => report.left_out(name, "not used", error),
             }
         }
+        for (path, value, what) in self.remarks.drain(..) {
+            report.differs(&path, &value, what);
+        }
         let mut text = "materials: {\n".to_owned();
-        for ((optics, temperature), name) in &self.worn {
-            let Optics([front, back, through]) = &self.optics[optics];
+        for ((optics, temperature), name) in &self.used {
+            let Some(Ok(Optics { sides: [front, back, through], .. })) = self.optics.get(optics)
+            else {
+                continue;
+            };
             let is_leaf = through.iter().any(|&value| value > 0.0);
             let kind = if is_leaf { "Leaf" } else { "Lambertian" };
             write!(text, "{}: {kind}(reflectance: Bands({}), ", quoted(name), list(front))?;
@@ -87,8 +184,8 @@ impl Materials {
             if front != back {
                 write!(text, "back_reflectance: Bands({}), ", list(back))?;
             }
-            if let Some(temperature) = temperature {
-                let (mean, range) = self.temperatures[temperature];
+            let temperature = temperature.as_ref().and_then(|name| self.temperatures.get(name));
+            if let Some(Ok(Temperature { mean, range })) = temperature {
                 write!(text, "temperature: MeanDelta(mean_k: {mean:?}, delta_k: {range:?}), ")?;
             }
             text += "),\n";
@@ -97,8 +194,23 @@ impl Materials {
     }
 }
 
-fn optics(name: &str, node: &Node, bands: usize, report: &Report) -> Result<Optics> {
-    let value = node.need("value")?;
+fn temperature(node: &Node) -> Result<Temperature> {
+    let text = node.text()?;
+    let parts: Option<Vec<f64>> = text.split(':').map(conf::finite).collect();
+    let (mean, range) = match parts.as_deref() {
+        Some([mean]) => (*mean, 0.0),
+        Some([mean, range]) => (*mean, *range),
+        _ => return Err(node.wrong(&format!("{text:?} is not `mean:range` in K"))),
+    };
+    if mean - 0.5 * range.abs() < 0.0 {
+        return Err(node.wrong(&format!("{text:?} reaches below 0 K")));
+    }
+    Ok(Temperature { mean, range })
+}
+
+fn optics(name: &str, node: &Node, bands: usize) -> Result<Optics> {
+    // Older files have the text itself in the place of an object that holds it.
+    let value = if node.entries().is_empty() { node } else { node.need("value")? };
     let text = value.text()?;
     let parts: Vec<&str> = text.split(';').collect();
     let [front, back, through] = parts[..] else {
@@ -109,75 +221,109 @@ fn optics(name: &str, node: &Node, bands: usize, report: &Report) -> Result<Opti
         let values = conf::numbers(part)
             .map_err(|part| value.wrong(&format!("{part:?} is not a number")))?;
         if values.len() != bands {
-            let n = values.len();
-            let values = if n == 1 { "value" } else { "values" };
-            return Err(
-                value.wrong(&format!("{what} has {n} {values}, `sensor.bands` has {bands}"))
-            );
+            let values = counted(values.len());
+            return Err(value.wrong(&format!("{what} has {values}, `sensor.bands` has {bands}")));
         }
         match values.iter().find(|&value| !(0.0..=1.0).contains(value)) {
             Some(wrong) => Err(value.wrong(&format!("{what} {wrong} is not between 0 and 1"))),
             None => Ok(values),
         }
     };
-    let sides = [
-        read("reflectance of the front", front)?,
-        read("reflectance of the back", back)?,
-        read("transmittance", through)?,
-    ];
-    for side in &sides[..2] {
-        for (band, (r, t)) in side.iter().zip(&sides[2]).enumerate() {
-            if r + t > 1.0 {
-                return Err(value.wrong(&format!(
-                    "reflectance {r} and transmittance {t} of band {} sum to more than 1",
+    let mut optics = Optics {
+        sides: [
+            read("reflectance of the front", front)?,
+            read("reflectance of the back", back)?,
+            read("transmittance", through)?,
+        ],
+        remarks: Vec::new(),
+    };
+    optics.limit_sums(value)?;
+    optics.remark_on(name, node)?;
+    Ok(optics)
+}
+
+impl Optics {
+    /// Scales values whose sum is above 1 by rounding; refuses larger sums.
+    fn limit_sums(&mut self, node: &Node) -> Result<()> {
+        let [front, back, through] = &mut self.sides;
+        for (band, t) in through.iter_mut().enumerate() {
+            let (r, before) = (front[band].max(back[band]), *t);
+            let sum = r + before;
+            if sum <= 1.0 {
+                continue;
+            }
+            if sum > ROUNDED_SUM {
+                return Err(node.wrong(&format!(
+                    "reflectance {r} and transmittance {before} of band {} sum to more than 1",
                     band + 1
                 )));
             }
+            *t = 1.0 - r;
+            let what = format!(
+                "transmittance {before} of band {} taken as {t:?}: with reflectance {r} it sums to more than 1",
+                band + 1
+            );
+            self.remarks.push((node.path.clone(), String::new(), what));
         }
+        Ok(())
     }
-    let path = &node.path;
-    if let Some(kind) = node.get("Type") {
-        match kind.text()?.as_str() {
-            "0" => report.add(
-                path,
-                name,
-                "values as stored here; LESS read them again from its database",
-            ),
-            "1" => {}
-            "2" => report.add(path, name, "values of PROSPECT as stored here, not its parameters"),
-            other => report.add(path, other, "unknown type; the values as stored"),
-        }
-    }
-    if let Some(prospect) = node.get("ProspectDParams") {
-        let shown = match prospect.entries() {
-            [] => prospect.shown(),
-            all => {
-                all.iter().map(|(k, v)| format!("{k} {}", v.shown())).collect::<Vec<_>>().join(", ")
-            }
+
+    fn remark_on(&mut self, name: &str, node: &Node) -> Result<()> {
+        let mut remark = |path: &str, value: &str, what: &str| {
+            self.remarks.push((path.to_owned(), value.to_owned(), what.to_owned()));
         };
-        report.add(&prospect.path, &shown, "not kept; `Prospect(..)` computes such spectra anew");
-        prospect.settle();
+        let path = &node.path;
+        let is_dark = |side: &[f64]| side.iter().all(|&value| value <= 0.0);
+        let [front, back, through] = &self.sides;
+        let kind = node.get("Type").map(Node::text).transpose()?;
+        match kind.as_deref() {
+            Some("0") => {
+                let what = "values as stored here; LESS reads them again from its database";
+                remark(path, name, what);
+            }
+            None | Some("1") => {}
+            Some("2") => {
+                remark(path, name, "values of PROSPECT as stored here, not its parameters");
+            }
+            Some(other) => remark(path, other, "unknown type; the values as stored"),
+        }
+        if name == BIRCH_LEAF && is_dark(through) {
+            let what = "transmittance 0 as stored here; LESS's database has 0.056 at 600 nm and \
+                        0.486 at 900 nm";
+            remark(path, name, what);
+        }
+        if let Some(prospect) = node.get("ProspectDParams") {
+            let shown = match prospect.entries() {
+                [] => prospect.shown(),
+                all => {
+                    let each = all.iter().map(|(k, v)| format!("{k} {}", v.shown()));
+                    each.collect::<Vec<_>>().join(", ")
+                }
+            };
+            let what = "not kept; `Prospect(..)` computes such spectra anew";
+            remark(&prospect.path, &shown, what);
+        }
+        if is_dark(back) && is_dark(through) && !is_dark(front) {
+            let what = "black from behind, as in LESS; take out `back_reflectance` if not meant";
+            remark(path, name, what);
+        }
+        Ok(())
     }
-    let is_dark = |side: &[f64]| side.iter().all(|&value| value <= 0.0);
-    if is_dark(&sides[1]) && is_dark(&sides[2]) && !is_dark(&sides[0]) {
-        report.add(
-            path,
-            name,
-            "black from behind, as in LESS; take out `back_reflectance` if not meant",
-        );
-    }
-    Ok(Optics(sides))
 }
 
-/// What a person reads of a name that nothing has.
+/// The error of a name that nothing among the entries of `key` has.
 pub(super) fn unknown<'a>(
     what: &str,
+    key: &str,
     name: &str,
     known: impl Iterator<Item = &'a String> + Clone,
 ) -> String {
     if let Some(near) = nearest(name, known.clone().map(String::as_str)) {
-        return format!("there is no {what} {name:?}; the nearest is {near:?}");
+        return format!("there is no {what} {name:?} in `{key}`; the nearest is {near:?}");
     }
     let known: Vec<_> = known.take(10).map(String::as_str).collect();
-    format!("there is no {what} {name:?}; there is {}", known.join(", "))
+    match known[..] {
+        [] => format!("there is no {what} {name:?}: `{key}` has none"),
+        _ => format!("there is no {what} {name:?} in `{key}`; there is {}", known.join(", ")),
+    }
 }

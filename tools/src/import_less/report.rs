@@ -1,34 +1,86 @@
-//! What a person is told about an import.
+//! The report of an import: every setting that the scene does not hold just as the project does.
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
-/// What became of the settings that sunfleck has no equal of.
+/// Kinds of remarks, in the order in which they are printed.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Remark {
+    Differs,
+    Default,
+    LeftOut,
+    Unneeded,
+}
+
+impl Remark {
+    const ALL: [(Self, &'static str); 4] = [
+        (Self::Differs, "what is not as in LESS:"),
+        (Self::Default, "what the project does not say, and the defaults that were taken:"),
+        (Self::LeftOut, "what has no counterpart in sunfleck and was left out:"),
+        (Self::Unneeded, "what sunfleck does not need:"),
+    ];
+}
+
+/// A remark about one setting: the setting, its value, and what became of it.
+#[derive(Debug, PartialEq)]
+struct Row {
+    remark: Remark,
+    cells: [String; 3],
+}
+
+/// Remarks about the settings of a project.
 #[derive(Debug, Default)]
 pub(super) struct Report {
-    rows: RefCell<Vec<[String; 3]>>,
+    rows: RefCell<Vec<Row>>,
 }
 
 impl Report {
-    /// Says what became of a setting.
-    pub(super) fn add(&self, setting: &str, value: &str, what: impl Into<String>) {
-        let row = [setting.to_owned(), value.to_owned(), what.into()];
+    /// The setting is imported, and means something else than in LESS.
+    pub(super) fn differs(&self, setting: &str, value: &str, what: impl Into<String>) {
+        self.add(Remark::Differs, setting, value, what);
+    }
+
+    /// The project has no value for the setting.
+    pub(super) fn assumed(&self, setting: &str, lack: &str, what: impl Into<String>) {
+        self.add(Remark::Default, setting, lack, what);
+    }
+
+    /// The setting is not imported.
+    pub(super) fn left_out(&self, setting: &str, value: &str, what: impl Into<String>) {
+        self.add(Remark::LeftOut, setting, value, what);
+    }
+
+    /// The setting has no influence on results.
+    pub(super) fn unneeded(&self, setting: &str, value: &str, what: impl Into<String>) {
+        self.add(Remark::Unneeded, setting, value, what);
+    }
+
+    fn add(&self, remark: Remark, setting: &str, value: &str, what: impl Into<String>) {
+        let row = Row { remark, cells: [setting.to_owned(), value.to_owned(), what.into()] };
         let mut rows = self.rows.borrow_mut();
         if !rows.contains(&row) {
             rows.push(row);
         }
     }
 
-    /// A line for each setting, in columns.
+    /// A heading for each kind of remark and a line for each setting, in columns.
     pub(super) fn lines(&self) -> Vec<String> {
         let rows = self.rows.borrow();
-        let width =
-            |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let (first, second) = (width(0), width(1));
-        let line = |[setting, value, what]: &[String; 3]| {
-            format!("{setting:first$}  {value:second$}  {what}")
+        let width = |column: usize| {
+            rows.iter().map(|row| row.cells[column].chars().count()).max().unwrap_or(0)
         };
-        rows.iter().map(line).collect()
+        let (first, second) = (width(0), width(1));
+        let mut lines = Vec::new();
+        for (remark, heading) in Remark::ALL {
+            let mut rows = rows.iter().filter(|row| row.remark == remark).peekable();
+            if rows.peek().is_some() {
+                lines.push(heading.to_owned());
+            }
+            for Row { cells: [setting, value, what], .. } in rows {
+                lines.push(format!("  {setting:first$}  {value:second$}  {what}"));
+            }
+        }
+        lines
     }
 
     /// The table for a terminal.
@@ -36,7 +88,7 @@ impl Report {
         let mut text = String::new();
         for line in self.lines() {
             // Writing to a string cannot fail.
-            let _infallible = writeln!(text, "  {line}");
+            let _infallible = writeln!(text, "{line}");
         }
         text
     }

@@ -3,8 +3,10 @@
 use anyhow::Result;
 use indexmap::IndexMap;
 
-use super::batch::Batch;
+use super::batch::{Axis, Batch};
 use super::conf::Node;
+use super::report::Report;
+use super::settings::Rule;
 use super::term::Term;
 
 /// Settings that a batch varies, and those of them that the scene follows.
@@ -20,19 +22,41 @@ impl<'a> Swept<'a> {
         Self { batch, params: IndexMap::new() }
     }
 
-    /// Whether the batch varies a setting.
+    /// Returns true if the batch varies a setting.
     pub(super) fn varies(&self, name: &str) -> bool {
-        self.batch.is_some_and(|batch| batch.axes().any(|axis| axis.name == name))
+        self.axis(name).is_some()
     }
 
-    /// The number of a setting, or the parameter that holds it.
-    pub(super) fn term(&mut self, node: &Node) -> Result<Term> {
-        let number = node.number()?;
-        let name = node.name();
-        if !self.varies(name) {
-            return Ok(Term::Number(number));
-        }
-        self.params.entry(name.to_owned()).or_insert(number);
-        Ok(Term::Formula(name.to_owned()))
+    fn axis(&self, name: &str) -> Option<&'a Axis> {
+        self.batch.and_then(|batch| batch.axes().find(|axis| axis.name == name))
+    }
+
+    /// The number of a key, or the parameter that holds it.
+    pub(super) fn term(
+        &mut self,
+        parent: &Node,
+        key: &str,
+        rule: &Rule,
+        report: &Report,
+    ) -> Result<Term> {
+        let number = rule.read(parent, key, report)?;
+        let Some(axis) = self.axis(key) else { return Ok(Term::Number(number)) };
+        axis.check(|value| rule.fault(value))?;
+        self.params.entry(key.to_owned()).or_insert(number);
+        Ok(Term::Formula(key.to_owned()))
+    }
+
+    /// Whole numbers from 2 on: sunfleck estimates errors from the differences between samples.
+    pub(super) fn samples(&mut self, parent: &Node, key: &str, report: &Report) -> Result<Term> {
+        let term = self.term(parent, key, &Rule::SAMPLES, report)?;
+        Ok(match term {
+            Term::Number(number) if number < 2.0 => {
+                let what = "2 samples per pixel: one alone has no error estimate";
+                report.differs(&parent.path_of(key), "1", what);
+                Term::Number(2.0)
+            }
+            Term::Formula(formula) => Term::Formula(format!("max({formula}, 2)")),
+            term @ Term::Number(_) => term,
+        })
     }
 }

@@ -8,198 +8,313 @@ use anyhow::{Context as _, Result, bail};
 
 use super::conf::Node;
 use super::objects::Obj;
+use super::project::{Project, Section};
+use super::settings::{Choice, Rule};
+use super::soil;
 use super::text::{self, quoted};
-use super::{Project, Section};
 
-/// An ENVI header is not larger, bytes.
+/// Largest ENVI header, bytes.
 const LARGEST_HEADER: u64 = 1 << 20;
 
-/// The ground that a project has where it says no more.
+/// Heights of a flat ground with classes.
 const FLAT: &str = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0\n0 0\n";
 
+/// Optical property of the ground of a new project.
+const USUAL_SOIL: &str = "dark_soil_mollisol";
+
+/// Types of terrain.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Ground {
+    Plane,
+    Raster,
+    Mesh,
+}
+
+/// Reflection models of the ground.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Brdf {
+    Lambertian,
+    Soilspect,
+    AlbedoMap,
+}
+
 impl Project {
-    /// Extent of the scene to the east and to the south, m.
-    pub(super) fn extent(scene: &Node) -> Result<(f64, f64)> {
-        let terrain = scene.need("terrain")?;
-        let side = |key| {
-            let node = terrain.need(key)?;
-            let side = node.number()?;
-            if side > 0.0 { Ok(side) } else { Err(node.wrong(&format!("{side} m is no extent"))) }
-        };
-        Ok((side("extent_width")?, side("extent_height")?))
+    fn terrain(&self) -> Result<&Node> {
+        self.conf.need("scene")?.need("terrain")
+    }
+
+    /// The type of the ground; a plane where a file is needed and none is named.
+    fn ground(&self) -> Result<Ground> {
+        let terrain = self.terrain()?;
+        let choices =
+            [("PLANE", Ground::Plane), ("RASTER", Ground::Raster), ("MESH", Ground::Mesh)];
+        let choice = Choice { choices: &choices, may_be_absent: false };
+        let ground = choice.read(terrain, "terrain_type", &self.report)?;
+        let key = "terr_file";
+        match terrain.get(key) {
+            None if ground != Ground::Plane => {
+                let what = "a plane: the terrain needs a file, and none is named";
+                self.report.differs(&terrain.path_of(key), terrain.lack_of(key), what);
+                Ok(Ground::Plane)
+            }
+            Some(file) if ground == Ground::Plane => {
+                self.report.unneeded(&file.path, &file.shown(), "a plane has no file");
+                file.settle();
+                Ok(ground)
+            }
+            _ => Ok(ground),
+        }
+    }
+
+    /// Returns true if the ground is a plane at height 0.
+    pub(super) fn is_flat(&self) -> Result<bool> {
+        Ok(self.ground()? == Ground::Plane)
     }
 
     /// The scene's `terrain`, and the mesh that it may need.
     pub(super) fn terrain_ron(&mut self) -> Result<Section> {
-        let terrain = self.conf.need("scene")?.need("terrain")?;
-        let temperature = match terrain.get("temperature") {
-            Some(node) => Some(node.text()?).filter(|name| !name.is_empty()),
+        let ground = self.ground()?;
+        let temperature = match self.terrain()?.get("temperature") {
+            Some(node) => Some(node.text()?),
             None => None,
         };
-        let wear = |materials: &mut super::optics::Materials, optics: &str, place: &str| {
-            materials.wear(optics, temperature.as_deref()).with_context(|| place.to_owned())
-        };
-        let optical = terrain.get("optical").with_context(|| {
-            format!(
-                "{}: there is no `scene.terrain.optical`: name an optical property",
-                terrain.place
-            )
-        })?;
-        let material = wear(&mut self.materials, &optical.text()?, &optical.place)?;
-        if let Some(model) = terrain.get("terrBRDFType") {
-            let name = model.text()?;
-            if name != "Lambertian" {
-                let what = format!(
-                    "no equal in sunfleck: Lambertian, of the optical property {material:?}"
-                );
-                self.report.add(&model.path, &name, what);
-            }
-        }
-        for key in ["soilSpectParams", "landalbedo"] {
-            if let Some(node) = terrain.get(key) {
-                self.report.add(&node.path, &node.shown(), "not imported: see `terrBRDFType`");
-                node.settle();
-            }
-        }
-        let kind = terrain.need("terrain_type")?;
-        let name = kind.text()?;
-        let file =
-            terrain.get("terr_file").map(Node::text).transpose()?.filter(|file| !file.is_empty());
         let (width, height) = self.size;
-        let cover = self.land_cover(name == "MESH", temperature.as_deref())?;
-        let terrain = self.conf.need("scene")?.need("terrain")?;
-        let kind = terrain.need("terrain_type")?;
-        let wears = cover.clone().unwrap_or(format!("material: {},\n", quoted(&material)));
-        let stretched = |file: &str| {
-            format!(
-                "terrain: Raster(\nfile: {},\n{wears}coordinates: Metres,\n\
-                 corner_m: (0.0, 0.0),\nsize_m: ({width:?}, {height:?}),\n\
-                 lowest_m: 0.0,\n),\n",
-                quoted(file)
-            )
-        };
         let mut section = Section::default();
-        match name.as_str() {
-            "PLANE" if cover.is_some() => {
-                // Classes need a raster of heights to lie on.
-                self.write("assets/plane.asc", FLAT)?;
-                section.terrain = stretched("assets/plane.asc");
-            }
-            "PLANE" => {
-                let material = quoted(&material);
+        if let Some(cover) = self.land_cover(ground, temperature.as_deref())? {
+            let file = match ground {
+                Ground::Raster => self.heights()?,
+                Ground::Plane | Ground::Mesh => {
+                    // Classes need a raster of heights to lie on.
+                    let name = self.asset_name("plane");
+                    self.write(&format!("assets/{name}.asc"), FLAT)?;
+                    format!("assets/{name}.asc")
+                }
+            };
+            section.terrain = self.stretched(&file, &cover);
+            return Ok(section);
+        }
+        let material = quoted(&self.soil_material(temperature.as_deref())?);
+        match ground {
+            Ground::Plane => {
                 section.terrain = format!(
                     "terrain: Plane(size_m: ({width:?}, {height:?}), material: {material}),\n"
                 );
             }
-            "RASTER" => {
-                let file =
-                    file.with_context(|| kind.wrong("there is no `terr_file`").to_string())?;
-                let place = terrain.need("terr_file")?;
-                let copy = self.copy_envi(&file).with_context(|| place.place.clone())?;
-                let what =
-                    "stretched over the extent as in LESS, heights at the cells' own centres";
-                self.report.add(&place.path, &file, what);
-                section.terrain = stretched(&copy);
+            Ground::Raster => {
+                let file = self.heights()?;
+                section.terrain = self.stretched(&file, &format!("material: {material},\n"));
             }
-            "MESH" => {
-                let file =
-                    file.with_context(|| kind.wrong("there is no `terr_file`").to_string())?;
-                let place = terrain.need("terr_file")?;
-                let mut obj = Obj::create(&self.out.join("assets/terrain.obj"))?;
-                obj.append("terrain", &self.parameters.join(&file))
-                    .with_context(|| place.place.clone())?;
-                obj.finish()?;
-                let (x, y) = (0.5 * width, 0.5 * height);
-                let mut mesh = self.mesh_name("terrain");
-                while self.conf.at(&["scene", "optical_properties", &mesh]).is_some() {
-                    mesh += "_mesh";
-                }
-                let material = quoted(&material);
-                writeln!(
-                    section.meshes,
-                    "{}: Obj(file: \"assets/terrain.obj\", up: Z, unit_m: 1.0, material: {material}),",
-                    quoted(&mesh)
-                )?;
-                section.terrain =
-                    format!("terrain: Mesh(mesh: {}, at_m: ({x:?}, {y:?}, 0.0)),\n", quoted(&mesh));
-            }
-            other => {
-                let what = format!("{other:?} is none of PLANE, RASTER and MESH");
-                return Err(kind.wrong(&what));
-            }
+            Ground::Mesh => self.ground_mesh(&material, &mut section)?,
         }
         Ok(section)
     }
 
-    /// `land_cover` of the ground, if the project has classes.
-    fn land_cover(&mut self, is_mesh: bool, temperature: Option<&str>) -> Result<Option<String>> {
-        let terrain = self.conf.need("scene")?.need("terrain")?;
-        let cover = match terrain.get("landcover") {
-            Some(node) if is_mesh => {
-                self.report.add(&node.path, &node.shown(), "not imported: a mesh has no classes");
-                node.settle();
-                None
-            }
-            Some(node) if !["false", ""].contains(&node.text()?.as_str()) => Some(node),
-            _ => None,
-        };
-        match cover {
-            Some(node) => {
-                let named = node.text()?;
-                let named = if named == "true" { "landcover" } else { named.as_str() };
-                let file = self.copy_envi(named).with_context(|| node.place.clone())?;
-                let mut classes = Vec::new();
-                let list = self.parameters.join("landcover.txt");
-                let materials = &mut self.materials;
-                text::lines(&list, |line| {
-                    let Some((class, optics)) = line.split_once(char::is_whitespace) else {
-                        bail!("not `class property`: {:?}", text::excerpt(line));
-                    };
-                    let material = materials.wear(optics.trim(), temperature)?;
-                    classes.push(format!("{}: {}", quoted(class), quoted(&material)));
-                    Ok(())
-                })?;
-                let what = "imported; LESS 1.8.8 itself failed on land cover";
-                self.report.add(&node.path, &node.shown(), what);
-                let classes = classes.join(", ");
-                Ok(Some(format!(
-                    "land_cover: (file: {}, classes: {{ {classes} }}),\n",
-                    quoted(&file)
-                )))
-            }
-            None => Ok(None),
-        }
+    /// A raster laid over the whole extent.
+    fn stretched(&self, file: &str, surface: &str) -> String {
+        let (width, height) = self.size;
+        format!(
+            "terrain: Raster(\nfile: {},\n{surface}coordinates: Metres,\n\
+             corner_m: (0.0, 0.0),\nsize_m: ({width:?}, {height:?}),\nlowest_m: 0.0,\n),\n",
+            quoted(file)
+        )
     }
 
-    /// Copies an ENVI raster, without what says where on Earth it lies: LESS lays it over the scene.
-    fn copy_envi(&self, name: &str) -> Result<String> {
-        let from = self.parameters.join(name);
-        if !from.is_file() {
-            bail!("there is no file {}", from.display());
+    /// Copies the raster of heights, and returns its name beside the scene.
+    fn heights(&mut self) -> Result<String> {
+        let node = self.terrain()?.need("terr_file")?;
+        let (file, place) = (node.text()?, format!("{}: {}", node.place, node.path));
+        let what = "stretched over the extent as in LESS, heights at the cells' own centres";
+        self.report.differs(&node.path, &file, what);
+        self.copy_raster(&file).context(place)
+    }
+
+    fn ground_mesh(&mut self, material: &str, section: &mut Section) -> Result<()> {
+        let node = self.terrain()?.need("terr_file")?;
+        let (file, place) = (node.text()?, format!("{}: {}", node.place, node.path));
+        let path = self.locate(&file).with_context(|| place.clone())?;
+        let name = self.asset_name("terrain");
+        let mut obj = Obj::create(&self.out.join(format!("assets/{name}.obj")))?;
+        obj.append("terrain", &path).context(place)?;
+        obj.finish()?;
+        let (x, y) = (0.5 * self.size.0, 0.5 * self.size.1);
+        writeln!(
+            section.meshes,
+            "{}: Obj(file: \"assets/{name}.obj\", up: Z, unit_m: 1.0, material: {material}),",
+            quoted(GROUND)
+        )?;
+        section.terrain =
+            format!("terrain: Mesh(mesh: {}, at_m: ({x:?}, {y:?}, 0.0)),\n", quoted(GROUND));
+        Ok(())
+    }
+
+    /// The material of a ground that has one.
+    fn soil_material(&mut self, temperature: Option<&str>) -> Result<String> {
+        let place = self.terrain()?.place.clone();
+        let optics = match self.brdf()? {
+            Brdf::Lambertian => self.usual_optics()?,
+            Brdf::AlbedoMap => self.albedo_stand_in()?,
+            Brdf::Soilspect => self.soilspect_stand_in()?,
+        };
+        let place = self.terrain()?.get("optical").map_or(place, |node| node.place.clone());
+        self.materials
+            .of_surface(&optics, temperature)
+            .with_context(|| format!("{place}: scene.terrain.optical"))
+    }
+
+    /// The reflection model. Maps of albedo have had several names.
+    fn brdf(&self) -> Result<Brdf> {
+        let terrain = self.terrain()?;
+        let choices = [
+            ("Lambertian", Brdf::Lambertian),
+            ("Soilspect", Brdf::Soilspect),
+            ("Land Albedo Map", Brdf::AlbedoMap),
+            ("LandAlbedoMap", Brdf::AlbedoMap),
+            ("landalbedo", Brdf::AlbedoMap),
+        ];
+        let choice = Choice { choices: &choices, may_be_absent: true };
+        let brdf = choice.read(terrain, "terrBRDFType", &self.report)?;
+        for (key, own) in [("soilSpectParams", Brdf::Soilspect), ("landalbedo", Brdf::AlbedoMap)] {
+            if let Some(node) = terrain.get(key).filter(|_| brdf != own) {
+                self.report.unneeded(&node.path, &node.shown(), "`terrBRDFType` is another one");
+                node.settle();
+            }
         }
-        let mut appended = from.clone().into_os_string();
-        appended.push(".hdr");
-        let headers = [Path::new(&appended).to_owned(), from.with_extension("hdr")];
-        let header = headers.iter().find(|header| header.is_file() && **header != from);
-        let header =
-            header.with_context(|| format!("{} has no ENVI header (.hdr)", from.display()))?;
-        let stem = text::file_name(&from.file_stem().unwrap_or_default().to_string_lossy());
-        let copy = format!("assets/{stem}.img");
+        Ok(brdf)
+    }
+
+    fn usual_optics(&self) -> Result<String> {
+        let terrain = self.terrain()?;
+        if let Some(node) = terrain.get("optical") {
+            return node.text();
+        }
+        if !self.materials.has(USUAL_SOIL) {
+            terrain.need("optical").context("the ground has no optical property")?;
+        }
+        let lack = terrain.lack_of("optical");
+        self.report.assumed("scene.terrain.optical", lack, format!("{USUAL_SOIL}, as LESS has it"));
+        Ok(USUAL_SOIL.to_owned())
+    }
+
+    /// A map of albedos has no counterpart: the optical property of the ground stands in for it.
+    fn albedo_stand_in(&self) -> Result<String> {
+        let optics = self.usual_optics()?;
+        let shown = match self.terrain()?.get("landalbedo") {
+            Some(node) => {
+                node.settle();
+                node.shown()
+            }
+            None => String::new(),
+        };
+        let what = format!(
+            "STAND-IN: sunfleck has no maps of albedo; {optics:?} covers all of the ground"
+        );
+        self.report.differs("scene.terrain.landalbedo", &shown, what);
+        Ok(optics)
+    }
+
+    /// SOILSPECT has no counterpart: a Lambertian surface that reflects as much stands in for it.
+    fn soilspect_stand_in(&mut self) -> Result<String> {
+        self.conf.ensure_object(&["scene", "terrain", "soilSpectParams"])?;
+        let sun = self.conf.need("illumination")?.need("sun")?;
+        let zenith = Rule::SUN_ZENITH.read(sun, "sun_zenith", &self.report)?;
+        let terrain = self.terrain()?;
+        let reflectance = soil::reflectance(terrain, self.bands.len(), zenith, &self.report)?;
+        for key in ["optical", "soilSpectParams"] {
+            if let Some(node) = terrain.get(key) {
+                node.settle();
+            }
+        }
+        let what = format!(
+            "STAND-IN: sunfleck has no SOILSPECT; a Lambertian soil that reflects as much of a sun at \
+             {zenith}° over all directions ({}), with no hot spot",
+            text::list(&reflectance)
+        );
+        self.report.differs("scene.terrain.terrBRDFType", "Soilspect", what);
+        Ok(self.materials.add_opaque("soilspect stand-in", reflectance))
+    }
+
+    /// `land_cover` of the ground, if the project has classes.
+    fn land_cover(&mut self, ground: Ground, temperature: Option<&str>) -> Result<Option<String>> {
+        let terrain = self.terrain()?;
+        let Some(node) = terrain.get("landcover") else { return Ok(None) };
+        let named = node.text()?;
+        if named.eq_ignore_ascii_case("false") {
+            return Ok(None);
+        }
+        if ground == Ground::Mesh {
+            self.report.left_out(&node.path, &node.shown(), "a mesh has no classes");
+            return Ok(None);
+        }
+        let place = format!("{}: {}", node.place, node.path);
+        self.report.differs(&node.path, &node.shown(), "imported; LESS 1.8.8 itself failed on it");
+        for key in ["optical", "terrBRDFType", "soilSpectParams", "landalbedo"] {
+            if let Some(node) = terrain.get(key) {
+                self.report.unneeded(&node.path, &node.shown(), "classes are given in its place");
+                node.settle();
+            }
+        }
+        let named = if named.eq_ignore_ascii_case("true") { "landcover" } else { named.as_str() };
+        let file = self.copy_raster(named).with_context(|| place.clone())?;
+        let list = self.locate("landcover.txt").context(place)?;
+        let mut classes = Vec::new();
+        let materials = &mut self.materials;
+        text::lines(&list, |line| {
+            let Some((class, optics)) = line.split_once(char::is_whitespace) else {
+                bail!("not `class property`: {:?}", text::excerpt(line));
+            };
+            let material = materials.of_surface(optics.trim(), temperature)?;
+            classes.push(format!("{}: {}", quoted(class), quoted(&material)));
+            Ok(())
+        })?;
+        let classes = classes.join(", ");
+        Ok(Some(format!("land_cover: (file: {}, classes: {{ {classes} }}),\n", quoted(&file))))
+    }
+
+    /// Copies a raster, and of ENVI's its header without what says where on Earth it lies: LESS lays
+    /// it over the scene.
+    fn copy_raster(&mut self, name: &str) -> Result<String> {
+        let from = self.locate(name)?;
+        let stem = from.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = self.asset_name(&stem);
+        let extension = from.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let is_envi = !["tif", "tiff", "asc"].contains(&extension.as_str());
+        let copy = format!("assets/{stem}.{}", if is_envi { "img" } else { &extension });
         fs::copy(&from, self.out.join(&copy))
             .with_context(|| format!("cannot copy {}", from.display()))?;
-        let located = ["map info", "coordinate system string", "projection info"];
-        let mut is_left_out = false;
-        let mut kept = String::new();
-        for line in text::whole(header, LARGEST_HEADER)?.lines() {
-            let key = line.split('=').next().unwrap_or_default().trim().to_ascii_lowercase();
-            is_left_out |= located.contains(&key.as_str());
-            if !is_left_out {
-                kept.extend([line, "\n"]);
-            }
-            // Values in braces may go over several lines.
-            is_left_out &= line.contains('{') | !line.contains('=') && !line.contains('}');
+        if is_envi {
+            let header = without_location(&text::whole_lossy(&header_of(&from)?, LARGEST_HEADER)?);
+            self.write(&format!("assets/{stem}.hdr"), &header)?;
         }
-        self.write(&format!("assets/{stem}.hdr"), &kept)?;
         Ok(copy)
     }
+}
+
+/// Name of the mesh of the ground; objects of LESS have no spaces in their names.
+const GROUND: &str = "the ground";
+
+/// The header of an ENVI raster.
+fn header_of(raster: &Path) -> Result<std::path::PathBuf> {
+    let mut appended = raster.to_owned().into_os_string();
+    appended.push(".hdr");
+    let candidates = [Path::new(&appended).to_owned(), raster.with_extension("hdr")];
+    let header = candidates.into_iter().find(|header| header.is_file() && header != raster);
+    header.with_context(|| format!("{} has no ENVI header (.hdr)", raster.display()))
+}
+
+/// The text of a header without its georeference.
+fn without_location(text: &str) -> String {
+    let located = ["map info", "coordinate system string", "projection info"];
+    let mut is_left_out = false;
+    let mut kept = String::new();
+    for line in text.lines() {
+        let key = line.split('=').next().unwrap_or_default().trim().to_ascii_lowercase();
+        is_left_out |= located.contains(&key.as_str());
+        if !is_left_out {
+            kept.extend([line, "\n"]);
+        }
+        // Values in braces may go over several lines.
+        let ends = line.contains('}') || line.contains('=') && !line.contains('{');
+        is_left_out &= !ends;
+    }
+    kept
 }

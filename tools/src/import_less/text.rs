@@ -20,18 +20,50 @@ fn open(path: &Path) -> Result<File> {
     File::open(path).with_context(cannot)
 }
 
-/// All of a file of at most so many bytes.
-pub(super) fn whole(path: &Path, limit: u64) -> Result<String> {
+/// All of a file of at most `limit` bytes.
+fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
         bail!("{} holds more than {limit} bytes", path.display());
     }
-    String::from_utf8(bytes).ok().with_context(|| format!("{} is not UTF-8 text", path.display()))
+    Ok(bytes)
 }
 
-/// Gives each line that is not blank to `each`, with `file:line` before what goes wrong in it.
+/// The same, with letters of unknown encodings replaced.
+pub(super) fn whole_lossy(path: &Path, limit: u64) -> Result<String> {
+    Ok(String::from_utf8_lossy(&bytes(path, limit)?).into_owned())
+}
+
+/// The text of a file of at most `limit` bytes.
+pub(super) fn whole(path: &Path, limit: u64) -> Result<String> {
+    let bytes = bytes(path, limit)?;
+    String::from_utf8(bytes)
+        .ok()
+        .with_context(|| format!("{} is not UTF-8 text: {SAVE_AS}", path.display()))
+}
+
+/// Advice for files of other encodings, such as GBK.
+const SAVE_AS: &str = "open it in an editor and save it with the encoding UTF-8";
+
+/// Gives each line that is not blank to `each`. An error of `each` gets `file:line` before it.
 pub(super) fn lines(path: &Path, mut each: impl FnMut(&str) -> Result<()>) -> Result<()> {
+    raw_lines(path, |bytes, number| {
+        let line = str::from_utf8(bytes)
+            .ok()
+            .with_context(|| format!("the line is not UTF-8 text: {SAVE_AS}"))?;
+        // Editors of Windows put a mark before the first line.
+        let line = if number == 1 { line.trim_start_matches('\u{feff}') } else { line }.trim();
+        if line.is_empty() { Ok(()) } else { each(line) }
+    })
+}
+
+/// The same, with letters of unknown encodings replaced: comments and names may hold any.
+pub(super) fn lossy_lines(path: &Path, mut each: impl FnMut(&str) -> Result<()>) -> Result<()> {
+    raw_lines(path, |bytes, _| each(String::from_utf8_lossy(bytes).trim()))
+}
+
+fn raw_lines(path: &Path, mut each: impl FnMut(&[u8], u64) -> Result<()>) -> Result<()> {
     let mut reader = BufReader::new(open(path)?);
     let mut bytes = Vec::new();
     for number in 1_u64.. {
@@ -44,11 +76,7 @@ pub(super) fn lines(path: &Path, mut each: impl FnMut(&str) -> Result<()>) -> Re
         if read == 0 {
             break;
         }
-        let line = str::from_utf8(&bytes).ok();
-        let line = line.with_context(|| format!("{}: not UTF-8 text", place()))?.trim();
-        if !line.is_empty() {
-            each(line).with_context(place)?;
-        }
+        each(&bytes, number).with_context(place)?;
     }
     Ok(())
 }
