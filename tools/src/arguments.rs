@@ -1,10 +1,12 @@
 //! What may stand on the command line.
 
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use sunfleck::document::{self, System, nearest};
+use sunfleck::output::{OutputError, Results, folder_name};
 use sunfleck::run::{self, Share};
 
 use crate::verify::CHECKS;
@@ -175,9 +177,8 @@ pub(crate) struct Merge {
     #[arg(value_name = "FILE", required = true)]
     pub(crate) files: Vec<PathBuf>,
 
-    /// Folder for the results [default: out/<name of the scene file>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: Out,
 
     /// Multiply the number of samples, as the parts did
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
@@ -187,7 +188,7 @@ pub(crate) struct Merge {
 impl Merge {
     /// Folder for the results.
     pub(crate) fn folder(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| self.scene.folder(""))
+        self.out.folder(&self.scene, "")
     }
 }
 
@@ -196,9 +197,8 @@ pub(crate) struct Run {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
-    /// Folder for the results [default: out/<name of the scene file>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: Out,
 
     /// Threads to use [default: all]; the results do not depend on it
     #[arg(long, value_name = "N")]
@@ -215,9 +215,9 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Folder for the results.
-    pub(crate) fn folder(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| self.scene.folder(""))
+    /// Folder for the results of a command whose default folders end in `ending`.
+    pub(crate) fn folder(&self, ending: &str) -> PathBuf {
+        self.out.folder(&self.scene, ending)
     }
 }
 
@@ -243,15 +243,15 @@ pub(crate) struct Measured {
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Folder for tables and picture [default: out/<name of the scene file>_<name of the command>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    out: Out,
 }
 
 impl Measured {
-    /// Folder for the results of a command.
-    pub(crate) fn folder(&self, command: &str) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| self.scene.folder(&format!("_{command}")))
+    /// Place for the results of a command.
+    pub(crate) fn results(&self, command: &'static str) -> Result<Results, OutputError> {
+        let folder = self.out.folder(&self.scene, &format!("_{command}"));
+        Results::open(&folder, command, &self.scene.file, self.out.force)
     }
 
     /// How it is run.
@@ -347,11 +347,40 @@ impl Scene {
         }
     }
 
-    /// Folder named after the scene and what is done with it.
-    pub(crate) fn folder(&self, suffix: &str) -> PathBuf {
-        let mut name = self.file.file_stem().unwrap_or_default().to_owned();
-        name.push(suffix);
-        Path::new("out").join(name)
+    /// Name of the scene and of what is changed in it: `birch_winter_sza=60`.
+    fn name(&self) -> String {
+        let mut name = self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if let Some(variant) = &self.variant {
+            name += &format!("_{variant}");
+        }
+        // Only the last value of a parameter counts.
+        let settings: BTreeMap<&str, f64> =
+            self.settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        for (param, value) in &settings {
+            name += &format!("_{param}={value}");
+        }
+        folder_name(&name, &name)
+    }
+}
+
+/// Where results go.
+#[derive(Args, Debug)]
+pub(crate) struct Out {
+    /// Folder for the results; others of the same scene there are replaced, and files that are no
+    /// results are kept [default: out/<name of the scene file>, with `_<variant>`, `_<name>=<value>` of each
+    /// --set, and for other commands than run `_<command>`]
+    #[arg(long = "out", value_name = "DIR")]
+    folder: Option<PathBuf>,
+
+    /// Replace results of another scene
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+impl Out {
+    fn folder(&self, scene: &Scene, ending: &str) -> PathBuf {
+        let named = || Path::new("out").join(scene.name() + ending);
+        self.folder.clone().unwrap_or_else(named)
     }
 }
 
@@ -426,11 +455,21 @@ mod tests {
     #[test]
     fn results_go_to_a_folder_named_after_the_scene() {
         let folder = |line: &[&str]| match Command::parse_from(line) {
-            Command::Run(trace) => trace.run.folder(),
+            Command::Run(trace) => trace.run.folder(""),
+            Command::Sweep(run) => run.folder("_sweep"),
             other => panic!("{other:?}"),
         };
         assert_eq!(folder(&["sunfleck", "run", "a/birch.ron"]), Path::new("out/birch"));
         assert_eq!(folder(&["sunfleck", "run", "a.ron", "--out", "b"]), Path::new("b"));
+        let changed =
+            ["--set", "sza=60", "--variant", "winter", "--set", "a/b=-0.5", "--set", "sza=7"];
+        let line = [&["sunfleck", "run", "a/birch.ron"], &changed[..]].concat();
+        assert_eq!(folder(&line), Path::new("out/birch_winter_a_b=-0.5_sza=7"));
+        let line = ["sunfleck", "sweep", "a/birch.ron", "--set", "sza=60"];
+        assert_eq!(folder(&line), Path::new("out/birch_sza=60_sweep"));
+        let long = format!("lai=0.{}", "1".repeat(300));
+        let name = folder(&["sunfleck", "run", "a.ron", "--set", &long]);
+        assert!(name.as_os_str().len() < 120, "{}", name.display());
     }
 
     #[test]

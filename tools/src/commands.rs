@@ -5,10 +5,11 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
+use sunfleck::output::{Results, Written};
 use sunfleck::run::Share;
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Bench, Command, Fmt, Merge, OtherBench, Run, Scene, Trace, Verify};
+use crate::arguments::{Bench, Command, Fmt, Merge, OtherBench, Out, Run, Scene, Trace, Verify};
 use crate::progress::Bars;
 use crate::{bench, compare, import_less, verify};
 
@@ -69,7 +70,7 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
         return forecasts(scene, &options);
     }
     if share == Share::ALL {
-        return results(scene, &options, &arguments.run.folder());
+        return results(scene, &options, &arguments.run.out, &arguments.run.folder(""));
     }
     let bars = Bars::new();
     let report = run::run_file(&scene.file, &options, &bars);
@@ -94,7 +95,7 @@ fn merge(arguments: &Merge) -> anyhow::Result<()> {
         unite: arguments.files.clone(),
         ..run::Options::default()
     };
-    results(&arguments.scene, &options, &arguments.folder())
+    results(&arguments.scene, &options, &arguments.out, &arguments.folder())
 }
 
 /// What each sensor of a scene will take.
@@ -121,31 +122,32 @@ fn forecasts(scene: &Scene, options: &run::Options) -> anyhow::Result<()> {
 }
 
 /// Runs a scene and writes what its sensors measure.
-fn results(scene: &Scene, options: &run::Options, folder: &Path) -> anyhow::Result<()> {
+fn results(scene: &Scene, options: &run::Options, into: &Out, folder: &Path) -> anyhow::Result<()> {
     // Better now than after hours of tracing.
-    output::probe(folder)?;
+    let results = Results::open(folder, "run", &scene.file, into.force)?;
     let bars = Bars::new();
     let report = run::run_file(&scene.file, options, &bars);
     bars.clear();
     let report = report?;
     warn(&report.warnings);
-    let files = output::write(&report, folder)?;
+    let written = results.write(&report)?;
     let mut text = output::table(&report);
-    writeln!(
-        text,
-        "\n{} files in {}: {:.3} million rays in {:.1} s",
-        files.len(),
-        folder.display(),
-        report.rays as f64 / 1e6,
-        report.seconds
-    )?;
+    let rays = report.rays as f64 / 1e6;
+    writeln!(text, "\n{}: {rays:.3} million rays in {:.1} s", told(&written), report.seconds)?;
     print(&text)
 }
 
+/// What a person reads of files that were written: how many, where, and in place of what.
+pub(crate) fn told(written: &Written) -> String {
+    let replaced = written.replaced.as_ref().map_or_else(String::new, |old| format!(" ({old})"));
+    format!("{} files in {}{replaced}", written.files.len(), written.folder.display())
+}
+
 fn sweep(arguments: &Run) -> anyhow::Result<()> {
-    let folder = arguments.folder();
-    output::probe(&folder)?;
-    let mut sweep = run::Sweep::read(&arguments.scene.file, &run_options(arguments))?;
+    let folder = arguments.folder("_sweep");
+    let scene = &arguments.scene.file;
+    let results = Results::open(&folder, "sweep", scene, arguments.out.force)?;
+    let mut sweep = run::Sweep::read(scene, &run_options(arguments))?;
     let points = sweep.points().to_vec();
     let mut ran = 0;
     for index in sweep.order().to_vec() {
@@ -160,14 +162,17 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
         let report = report?;
         if ran == 0 {
             warn(&report.warnings);
+            // From now on the folder says which scene its points are of.
+            results.write_texts(&sweep.report(), &[])?;
         }
         output::write_point(&report, point, &folder)?;
         ran += 1;
     }
-    let table = output::write_sweep(&points, &folder)?;
+    let table = ("sweep.csv", output::sweep_table(&points, &folder)?);
+    let written = results.write_texts(&sweep.report(), &[table])?;
     print(&format!(
         "{}: {ran} {} run, {} kept; geometry built {}\n",
-        table.display(),
+        written.folder.join("sweep.csv").display(),
         if ran == 1 { "point" } else { "points" },
         points.len() - ran,
         match sweep.builds() {

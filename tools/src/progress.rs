@@ -63,6 +63,15 @@ impl Progress for Bars {
         }
     }
 
+    fn warn(&self, warning: &str) {
+        let text = format!("warning: {warning}");
+        if self.all.is_hidden() {
+            drop(writeln!(io::stderr().lock(), "{text}"));
+        } else {
+            self.heading(&text);
+        }
+    }
+
     fn sensor(&self, name: &str, done: f64) {
         let mut sensors = self.sensors.lock().unwrap_or_else(PoisonError::into_inner);
         let known = sensors.iter().position(|(known, _)| known == name);

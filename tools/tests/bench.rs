@@ -50,7 +50,7 @@ fn errors_fall_with_the_number_of_samples() {
     fs::write(folder.path().join("leaves.ron"), LEAVES).unwrap();
     let (code, stdout, stderr) = bench(folder.path(), &["leaves.ron", "--repeats", "1"]);
     assert_eq!((code, stderr.as_str()), (0, ""));
-    assert!(stdout.contains("3 files in out/leaves_bench"), "{stdout}");
+    assert!(stdout.contains("4 files in out/leaves_bench"), "{stdout}");
     let out = folder.path().join("out/leaves_bench");
     let rows = |file: &str| -> Vec<HashMap<String, String>> {
         let mut reader = csv::Reader::from_path(out.join(file)).unwrap();

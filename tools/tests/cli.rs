@@ -60,14 +60,16 @@ fn a_run_writes_its_files_and_prints_a_table() {
     let expected = [
         "summary.json",
         "top_brf.exr",
-        "top_brf.hdr",
         "top_brf.img",
+        "top_brf.img.hdr",
         "top_brf.png",
+        "top_brf_se.img",
+        "top_brf_se.img.hdr",
         "views_brf.csv",
     ];
     assert_eq!(names(&folder.path().join("out/soil")), expected);
     assert!(stdout.starts_with("sensor "), "{stdout}");
-    assert!(stdout.contains("views ") && stdout.contains("6 files in out/soil: "), "{stdout}");
+    assert!(stdout.contains("views ") && stdout.contains("8 files in out/soil: "), "{stdout}");
     let text = fs::read_to_string(folder.path().join("out/soil/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     for value in summary["sensors"]["views"]["brf"]["values"].as_array().unwrap() {
@@ -130,7 +132,7 @@ fn an_expanded_scene_is_a_scene() {
     assert!(text.contains("zenith_deg: 30.0),  // soil.ron:8, \"=sza\""), "{text}");
     // The same scene: what it measures has the same hash.
     let hash = |scene: &str| {
-        outcome(folder.path(), &["run", scene, "--quality", "0.01", "--out", "out"]);
+        outcome(folder.path(), &["run", scene, "--quality", "0.01", "--out", "out", "--force"]);
         let summary = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
         summary.lines().find(|line| line.contains("\"hash\"")).unwrap().to_owned()
     };
@@ -245,37 +247,42 @@ fn a_sweep_writes_one_table_and_goes_on_where_it_stopped() {
     let folder = folder_with(&swept());
     let (code, stdout, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);
     assert_eq!((code, stderr.as_str()), (0, ""));
-    assert_eq!(stdout, "out/soil/sweep.csv: 2 points run, 0 kept; geometry built once\n");
-    assert_eq!(names(&folder.path().join("out/soil")), ["points", "sweep.csv"]);
-    assert_eq!(names(&folder.path().join("out/soil/points")), ["sza=0", "sza=60"]);
-    let table = || fs::read_to_string(folder.path().join("out/soil/sweep.csv")).unwrap();
+    assert_eq!(stdout, "out/soil_sweep/sweep.csv: 2 points run, 0 kept; geometry built once\n");
+    let out = folder.path().join("out/soil_sweep");
+    assert_eq!(names(&out), ["points", "summary.json", "sweep.csv"]);
+    assert_eq!(names(&out.join("points")), ["sza=0", "sza=60"]);
+    let table = || fs::read_to_string(out.join("sweep.csv")).unwrap();
     let first = table();
     let mut lines = first.lines();
     assert_eq!(
         lines.next(),
-        Some("sza,sensor,product,unit,at,band,value,standard_error"),
+        Some(
+            "sza,sensor,product,unit,zenith_deg,azimuth_deg,signed_zenith_deg,band,value,standard_error"
+        ),
         "{first}"
     );
-    assert!(lines.next().is_some_and(|line| line.starts_with("0.0,top,brf,1,,red,")), "{first}");
-    assert!(first.contains("\n60.0,views,brf,1,zenith_deg=30.0;azimuth_deg=90.0,red,"), "{first}");
+    assert!(lines.next().is_some_and(|line| line.starts_with("0.0,top,brf,1,,,,red,")), "{first}");
+    assert!(first.contains("\n60.0,views,brf,1,30.0,90.0,30.0,red,"), "{first}");
 
     // A point of a run that was interrupted has no table yet.
-    fs::remove_file(folder.path().join("out/soil/points/sza=60/point.csv")).unwrap();
-    fs::remove_file(folder.path().join("out/soil/sweep.csv")).unwrap();
+    fs::remove_file(out.join("points/sza=60/point.csv")).unwrap();
+    fs::remove_file(out.join("sweep.csv")).unwrap();
     let (_, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron"]);
     assert!(stdout.contains("1 point run, 1 kept"), "{stdout}");
     assert_eq!(table(), first, "the same numbers");
-    // Another scene is another result.
-    let (_, stdout, _) = outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1"]);
+    // Another value is another result.
+    let sweep = |more: &[&str]| {
+        let arguments = ["sweep", "soil.ron", "--out", "out/soil_sweep", "--set", "height=1"];
+        outcome(folder.path(), &[&arguments, more].concat()).1
+    };
+    let stdout = sweep(&[]);
     assert!(stdout.contains("2 points run, 0 kept"), "{stdout}");
     let text = swept().replace("[0.0, 60.0]", "[60.0, 45.0]");
     fs::write(folder.path().join("soil.ron"), text).unwrap();
-    let (_, stdout, _) =
-        outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1", "--threads", "1"]);
+    let stdout = sweep(&["--threads", "1"]);
     assert!(stdout.contains("1 point run, 1 kept"), "{stdout}");
     // What `--set` gives is not varied.
-    let (_, stdout, _) =
-        outcome(folder.path(), &["sweep", "soil.ron", "--set", "height=1", "--set", "sza=45"]);
+    let stdout = sweep(&["--set", "sza=45"]);
     assert!(stdout.contains("0 points run, 1 kept"), "{stdout}");
 }
 

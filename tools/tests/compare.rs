@@ -101,7 +101,7 @@ fn every_system_that_can_measures_the_same_world() {
     for line in ["reference", "no other system measures it"] {
         assert!(stdout.contains(line), "{stdout}");
     }
-    assert!(stdout.contains("3 files in c: "), "{stdout}");
+    assert!(stdout.contains("4 files in c: "), "{stdout}");
     let svg = fs::read_to_string(folder.path().join("c/compare.svg")).unwrap();
     for text in ["top: brf", "zenith (°)", "eye: radiance", "difference to backward"] {
         assert!(svg.contains(text), "{text}");

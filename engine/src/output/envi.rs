@@ -9,19 +9,41 @@ use crate::products::Image;
 /// Stands for "nothing was seen". Readers disagree on NaN; no product of light is negative.
 const NO_DATA: f32 = -9999.0;
 
+/// One of the rasters of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Raster {
+    /// A band each.
+    Values,
+    /// The standard error of each band, and the coverage, which is of all bands.
+    Errors,
+}
+
 /// Writes the pixels, shape `[bands, rows, columns]`.
-pub(super) fn write_pixels(image: &Image, file: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_pixels(image: &Image, raster: Raster, file: &mut impl Write) -> io::Result<()> {
     let bands = image.bands.len();
-    let mut row_bytes = Vec::with_capacity(image.width * size_of::<f32>());
+    let values = match raster {
+        Raster::Values => &image.values,
+        Raster::Errors => &image.standard_error,
+    };
     for band in 0..bands {
-        for row in image.values.chunks_exact(image.width * bands) {
-            row_bytes.clear();
-            for pixel in row.chunks_exact(bands) {
-                let value = if pixel[band].is_finite() { pixel[band] } else { NO_DATA };
-                row_bytes.extend_from_slice(&value.to_le_bytes());
-            }
-            file.write_all(&row_bytes)?;
+        write_band(&values[band..], bands, image.width, file)?;
+    }
+    match raster {
+        Raster::Values => Ok(()),
+        Raster::Errors => write_band(&image.coverage, 1, image.width, file),
+    }
+}
+
+/// Writes every `step`-th value, row by row.
+fn write_band(values: &[f32], step: usize, width: usize, file: &mut impl Write) -> io::Result<()> {
+    let mut row_bytes = Vec::with_capacity(width * size_of::<f32>());
+    for row in values.chunks(width * step) {
+        row_bytes.clear();
+        for &value in row.iter().step_by(step) {
+            let value = if value.is_finite() { value } else { NO_DATA };
+            row_bytes.extend_from_slice(&value.to_le_bytes());
         }
+        file.write_all(&row_bytes)?;
     }
     Ok(())
 }
@@ -30,16 +52,23 @@ pub(super) fn write_pixels(image: &Image, file: &mut impl Write) -> io::Result<(
 pub(super) fn write_header(
     source: &Source<'_>,
     image: &Image,
+    raster: Raster,
     file: &mut impl Write,
 ) -> io::Result<()> {
-    let provenance = source.provenance().map(|(key, value)| format!("{key}: {}", item(&value)));
-    let description = provenance.join("; ");
-    let names: Vec<_> = image.bands.iter().map(|name| item(name)).collect();
+    let provenance =
+        source.provenance().into_iter().map(|(key, value)| format!("{key}: {}", item(&value)));
+    let mut description = provenance.collect::<Vec<_>>().join("; ");
+    let mut names: Vec<_> = image.bands.iter().map(|name| item(name)).collect();
+    if raster == Raster::Errors {
+        description.insert_str(0, "standard errors and coverage; ");
+        names.iter_mut().for_each(|name| name.push_str("_se"));
+        names.push("coverage".to_owned());
+    }
     writeln!(file, "ENVI")?;
     writeln!(file, "description = {{{description}}}")?;
     writeln!(file, "samples = {}", image.width)?;
     writeln!(file, "lines = {}", image.height)?;
-    writeln!(file, "bands = {}", image.bands.len())?;
+    writeln!(file, "bands = {}", names.len())?;
     writeln!(file, "header offset = 0")?;
     writeln!(file, "file type = ENVI Standard")?;
     writeln!(file, "data type = 4")?;
@@ -48,7 +77,8 @@ pub(super) fn write_header(
     writeln!(file, "data ignore value = {NO_DATA}")?;
     writeln!(file, "band names = {{{}}}", names.join(", "))?;
     let wavelengths = source.wavelengths(image);
-    if wavelengths.iter().all(|wavelength| wavelength.is_finite()) {
+    // The coverage has none, and a list must name as many as there are bands.
+    if raster == Raster::Values && wavelengths.iter().all(|wavelength| wavelength.is_finite()) {
         let numbers: Vec<_> = wavelengths.iter().map(f64::to_string).collect();
         writeln!(file, "wavelength units = Nanometers")?;
         writeln!(file, "wavelength = {{{}}}", numbers.join(", "))?;

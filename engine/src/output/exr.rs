@@ -3,8 +3,8 @@
 use std::io::{self, Seek, Write};
 
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples,
-    Image as ExrImage, Layer, LayerAttributes, LineOrder, Text, WritableImage as _,
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, Layer,
+    LayerAttributes, LineOrder, Text, WritableImage as _,
 };
 
 use super::Source;
@@ -19,7 +19,8 @@ const ENCODING: Encoding = Encoding {
     line_order: LineOrder::Increasing,
 };
 
-/// Writes channels `<band>`, `<band>.se` and `coverage`; attributes tell the provenance.
+/// Writes channels `<band>`, `<band>.se` and `coverage`; the attribute `comments` holds the provenance as
+/// JSON.
 pub(super) fn write(
     source: &Source<'_>,
     image: &Image,
@@ -40,15 +41,17 @@ pub(super) fn write(
     }
     channels.push(channel(&coverage, image.coverage.clone()));
 
-    let mut attributes = LayerAttributes {
+    // One text: the crate writes several attributes of its user in an order that differs from run to run.
+    let provenance: serde_json::Map<_, _> = source
+        .provenance()
+        .into_iter()
+        .map(|(key, value)| (key.to_owned(), value.into()))
+        .collect();
+    let attributes = LayerAttributes {
+        comments: Some(text(&serde_json::Value::Object(provenance).to_string())),
         software_name: Some(text(&format!("sunfleck {}", source.report.version))),
         ..LayerAttributes::default()
     };
-    for (key, value) in source.provenance() {
-        // `version` alone is EXR's own, for deep data.
-        let key = if key == "version" { "sunfleck_version" } else { key };
-        attributes.other.insert(text(key), AttributeValue::Text(text(&value)));
-    }
     let layer = Layer::new(
         (image.width, image.height),
         attributes,

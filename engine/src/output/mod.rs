@@ -1,30 +1,42 @@
 //! Files of a run, with provenance; the only module that writes.
 //!
-//! A folder gets `summary.json`, for each image an EXR, an ENVI pair and a PNG quicklook, for
-//! values of triangles a PLY, and for each other product a CSV. Nothing appears under its final name before all of it is complete.
+//! A folder gets `summary.json`, for each image an EXR, two ENVI rasters and a PNG quicklook, for
+//! values of triangles a PLY, and for each other product a CSV. They take the place of older results
+//! all at once (`staging`, `swap`).
 
+mod axes;
 mod colour;
 mod envi;
 mod exr;
+mod manifest;
 mod names;
+mod partial;
 mod picture;
 mod ply;
+mod results;
 mod rows;
 mod size;
 mod staging;
 mod summary;
+mod swap;
 mod sweep;
 mod table;
 
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use envi::Raster;
 
 use crate::products::{Image, Product, Report};
 
+pub use axes::{Axes, Place};
+pub use partial::clean_up;
+pub(crate) use partial::{replace_file, try_file};
 pub use picture::Picture;
-pub use rows::number;
+pub use results::{Results, Written};
+pub use rows::{harmless, number};
 pub use size::file_size;
-pub use sweep::{is_complete, place, write_point, write_sweep};
+pub use sweep::{folder_name, is_complete, sweep_table, write_point};
 pub use table::table;
 
 /// Why a report is not on disk. Nothing of it is, then.
@@ -38,6 +50,10 @@ pub enum OutputError {
     Folder { path: PathBuf, source: io::Error },
     #[error("{} is a folder, and a file of that name is to be written: move it, or name another folder for the output", path.display())]
     Taken { path: PathBuf },
+    #[error("{} is in the way: a result of that name is to be written, and it is none; move it, or name another folder for the output", path.display())]
+    Foreign { path: PathBuf },
+    #[error("{} holds results of {found}: name another folder for the output (`--out`), or replace them (`--force`)", path.display())]
+    OfAnother { path: PathBuf, found: String },
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: io::Error },
     #[error("cannot read {} again", path.display())]
@@ -46,46 +62,66 @@ pub enum OutputError {
     Shape { sensor: String, product: String, what: &'static str, expected: usize, found: usize },
 }
 
-/// Writes all files of `report` into `folder`, which is made if it does not exist; returns their
-/// paths, `summary.json` last. Files of the same names are replaced.
+impl OutputError {
+    /// Whether something else is where results are to be.
+    fn is_in_the_way(&self) -> bool {
+        matches!(self, Self::Taken { .. } | Self::Foreign { .. } | Self::OfAnother { .. })
+    }
+}
+
+/// Writes all files of `report` into `folder`, which is made if it does not exist, in place of any
+/// results that are there; returns their paths, `summary.json` last.
 ///
 /// # Errors
-/// If the folder or a file cannot be written, or a product's shape contradicts its axes; then no
-/// file of this report is left.
+/// If the folder or a file cannot be written, or a product's shape contradicts its axes; then the
+/// folder is as it was.
 pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
-    for sensor in &report.sensors {
-        for product in &sensor.products {
-            check_shape(&sensor.name, product)?;
-        }
-    }
-    let plan = names::plan(report);
-    let mut staging = staging::Staging::open(folder)?;
+    Ok(Results::of_any(folder).write(report)?.files)
+}
+
+/// Writes the files of all products; returns the bytes that those of each sensor take.
+fn put_products(
+    report: &Report,
+    plan: &[names::SensorNames],
+    staging: &mut staging::Staging,
+) -> Result<Vec<u64>, OutputError> {
     let mut sizes = Vec::with_capacity(plan.len());
-    for (sensor, planned) in report.sensors.iter().zip(&plan) {
+    for (sensor, planned) in report.sensors.iter().zip(plan) {
         let mut size = 0;
         for (product, names) in sensor.products.iter().zip(&planned.products) {
+            check_shape(&sensor.name, product)?;
             let source = Source { report, sensor: &sensor.name, product };
             size += match (&product.faces, &product.image) {
                 (Some(faces), _) => {
                     staging.file(&names.ply(), |file| ply::write(&source, faces, file))?
                 }
                 (None, None) => staging.file(&names.csv(), |file| rows::write(&source, file))?,
-                (None, Some(image)) => {
-                    let [exr, img, hdr, png] = names.image();
-                    staging.file(&exr, |file| exr::write(&source, image, file))?
-                        + staging.file(&img, |file| envi::write_pixels(image, file))?
-                        + staging.file(&hdr, |file| envi::write_header(&source, image, file))?
-                        + staging.file(&png, |file| {
-                            let picture = Picture::of(image, &source.wavelengths(image));
-                            picture.encode(&source.provenance(), file)
-                        })?
-                }
+                (None, Some(image)) => put_image(&source, image, names, staging)?,
             };
         }
         sizes.push(size);
     }
-    staging.file("summary.json", |file| summary::write(report, (&plan, &sizes), file))?;
-    staging.commit()
+    Ok(sizes)
+}
+
+/// Writes the files of an image; returns their size in bytes.
+fn put_image(
+    source: &Source<'_>,
+    image: &Image,
+    names: &names::ProductNames,
+    staging: &mut staging::Staging,
+) -> Result<u64, OutputError> {
+    let mut size = staging.file(&names.exr(), |file| exr::write(source, image, file))?;
+    for (name, raster) in [(names.img(), Raster::Values), (names.errors(), Raster::Errors)] {
+        size += staging.file(&name, |file| envi::write_pixels(image, raster, file))?;
+        let header = names::header(&name);
+        size += staging.file(&header, |file| envi::write_header(source, image, raster, file))?;
+    }
+    size += staging.file(&names.png(), |file| {
+        let picture = Picture::of(image, &source.wavelengths(image));
+        picture.encode(&source.provenance(), file)
+    })?;
+    Ok(size)
 }
 
 /// Gives a file another text; it has the old one or the new one, never a part.
@@ -93,12 +129,18 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
 /// # Errors
 /// If it cannot be written.
 pub fn replace(file: &Path, text: &str) -> Result<(), OutputError> {
-    // What a link leads to, not the link.
-    let file = &file.canonicalize().unwrap_or_else(|_not_there| file.to_owned());
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let mut staging = staging::Staging::open(file.parent().unwrap_or(Path::new("")))?;
-    staging.file(&name, |file| io::Write::write_all(file, text.as_bytes()))?;
-    staging.commit().map(drop)
+    put_file(file, |file| io::Write::write_all(file, text.as_bytes()))
+}
+
+/// Writes a file that appears when it is complete; makes its folder if it does not exist.
+fn put_file(
+    path: &Path,
+    fill: impl FnOnce(&mut fs::File) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder)
+        .map_err(|source| OutputError::Folder { path: folder.to_owned(), source })?;
+    replace_file(path, fill).map_err(|source| OutputError::Write { path: path.to_owned(), source })
 }
 
 /// Tries whether [`write()`] could write into `folder`, and leaves everything as it was.
@@ -106,7 +148,7 @@ pub fn replace(file: &Path, text: &str) -> Result<(), OutputError> {
 /// # Errors
 /// If the folder cannot be made, or no file in it.
 pub fn probe(folder: &Path) -> Result<(), OutputError> {
-    staging::Staging::open(folder)?.file("summary.json", |_| Ok(())).map(drop)
+    staging::Staging::open(folder).map(drop)
 }
 
 /// A product and what tells where it comes from.
@@ -118,18 +160,23 @@ struct Source<'a> {
 
 impl Source<'_> {
     /// Keys and values that stand in every file.
-    fn provenance(&self) -> [(&'static str, String); 7] {
+    fn provenance(&self) -> Vec<(&'static str, String)> {
         // A line break in a title must not end a comment line.
         let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-        [
+        let params = self.report.params.iter().map(|(name, value)| format!("{name}={value}"));
+        let params = params.collect::<Vec<_>>().join(" ");
+        let mut all = vec![
             ("scene", line(&self.report.scene)),
+            ("params", line(&params)),
             ("hash", line(&self.report.hash)),
             ("version", line(&self.report.version)),
             ("seed", self.report.seed.to_string()),
             ("sensor", line(self.sensor)),
             ("product", line(&self.product.name)),
             ("unit", line(&self.product.unit)),
-        ]
+        ];
+        all.retain(|(key, value)| *key != "params" || !value.is_empty());
+        all
     }
 
     /// Centre wavelengths of an image's bands, nm; NaN for a band that the report does not list.

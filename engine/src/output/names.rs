@@ -20,6 +20,8 @@ pub(super) struct ProductNames {
     pub(super) key: String,
     /// Its files' name, without extension.
     pub(super) stem: String,
+    /// The same of the file of an image's standard errors.
+    errors: String,
 }
 
 impl ProductNames {
@@ -31,10 +33,37 @@ impl ProductNames {
         format!("{}.ply", self.stem)
     }
 
-    /// EXR, ENVI pixels, ENVI header, PNG.
-    pub(super) fn image(&self) -> [String; 4] {
-        ["exr", "img", "hdr", "png"].map(|extension| format!("{}.{extension}", self.stem))
+    pub(super) fn exr(&self) -> String {
+        format!("{}.exr", self.stem)
     }
+
+    pub(super) fn png(&self) -> String {
+        format!("{}.png", self.stem)
+    }
+
+    /// ENVI pixels.
+    pub(super) fn img(&self) -> String {
+        format!("{}.img", self.stem)
+    }
+
+    /// ENVI pixels of standard errors and coverage.
+    pub(super) fn errors(&self) -> String {
+        format!("{}.img", self.errors)
+    }
+
+    /// All files of an image.
+    pub(super) fn image(&self) -> Vec<String> {
+        let [img, errors] = [self.img(), self.errors()];
+        let headers = [header(&img), header(&errors)];
+        let [values_header, errors_header] = headers;
+        vec![self.exr(), img, values_header, errors, errors_header, self.png()]
+    }
+}
+
+/// Header of ENVI pixels. It is called `x.img.hdr` and not `x.hdr`, which readers would take for the
+/// header of `x.exr` and `x.png` too.
+pub(super) fn header(pixels: &str) -> String {
+    format!("{pixels}.hdr")
 }
 
 /// Names for all that `report` holds, in its order.
@@ -43,14 +72,15 @@ pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
     let mut sensors = Distinct::default();
     let names = report.sensors.iter().map(|sensor| {
         let mut keys = Distinct::default();
-        let products = sensor.products.iter().map(|product| ProductNames {
-            key: keys.take(&product.name),
+        let products = sensor.products.iter().map(|product| {
             // Some file systems take `Nadir` and `nadir` for one name.
-            stem: stems.take_ignoring_case(&format!(
-                "{}_{}",
-                sanitise(&sensor.name),
-                sanitise(&product.name)
-            )),
+            let stem = format!("{}_{}", sanitise(&sensor.name), sanitise(&product.name));
+            let stem = stems.take_ignoring_case(&stem);
+            let errors = match &product.image {
+                Some(_) => stems.take_ignoring_case(&format!("{stem}_se")),
+                None => String::new(),
+            };
+            ProductNames { key: keys.take(&product.name), stem, errors }
         });
         SensorNames { key: sensors.take(&sensor.name), products: products.collect() }
     });

@@ -3,8 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::staging::Staging;
-use super::{OutputError, colour};
+use super::{OutputError, colour, put_file};
 use crate::products::{Channels, Image, Rendering};
 
 /// Shares of the pixels that end up at black and at full brightness.
@@ -102,15 +101,11 @@ impl Picture {
     /// # Errors
     /// If the file cannot be written; then no part of it is left.
     pub fn save(&self, path: &Path) -> Result<(), OutputError> {
-        let unnamed = || OutputError::Write {
-            path: path.to_owned(),
-            source: io::Error::new(io::ErrorKind::InvalidInput, "this path names no file"),
-        };
-        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(unnamed)?;
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let mut staging = Staging::open(folder.unwrap_or(Path::new(".")))?;
-        staging.file(name, |file| self.encode(&[], file))?;
-        staging.commit().map(drop)
+        put_file(path, |file| {
+            let mut file = io::BufWriter::new(file);
+            self.encode(&[], &mut file)?;
+            file.flush()
+        })
     }
 }
 

@@ -20,8 +20,8 @@ const PIXEL: u64 = 2;
 pub fn file_size(extent: Extent) -> u64 {
     match extent {
         Extent::Image { pixels, bands } => {
-            // EXR: values, errors and coverage; ENVI: values; PNG.
-            let pixel = 4 * (2 * bands + 1) + 4 * bands + PIXEL;
+            // EXR and ENVI: values, errors and coverage each; PNG.
+            let pixel = 2 * 4 * (2 * bands + 1) + PIXEL;
             pixels.saturating_mul(pixel).saturating_add(HEADERS)
         }
         Extent::Table { rows, axes, bands } => {

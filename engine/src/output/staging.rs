@@ -1,45 +1,159 @@
-//! Files that appear all at once: written under temporary names, then renamed.
+//! A folder of files that appears all at once.
 
+use std::env;
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::OutputError;
+use super::manifest::Manifest;
+use super::partial::{Partial, Uninterrupted, stale};
+use super::swap::{self, Exchange, Others, exchange, recover};
 
 /// Files on their way into one folder. Dropped before [`Staging::commit`] has ended, it removes
 /// them all, and the folders that it made.
 #[derive(Debug)]
 pub(super) struct Staging {
-    folder: PathBuf,
-    /// Folders that did not exist before, outermost first.
-    made: Vec<PathBuf>,
-    pending: Vec<Pending>,
-    committed: bool,
+    place: Place,
+    partial: Partial,
+    names: Vec<String>,
 }
 
+/// Where a folder of results is, and where it is made.
 #[derive(Debug)]
-struct Pending {
-    temporary: PathBuf,
+struct Place {
+    /// As its user calls it.
+    folder: PathBuf,
+    /// Absolute, links followed.
     target: PathBuf,
+    /// Folder that the unfinished one is made in, and the name that it is made for.
+    around: PathBuf,
+    name: OsString,
+    /// Whether the folder may be exchanged for another one.
+    may_rename: bool,
+    /// Folders around it that did not exist before, outermost first.
+    made: Vec<PathBuf>,
+}
+
+/// Name within a folder that cannot be replaced as a whole.
+const INSIDE: &str = "sunfleck";
+
+impl Place {
+    fn of(folder: &Path) -> Result<Self, OutputError> {
+        if folder.is_file() {
+            return Err(OutputError::NotAFolder { path: folder.to_owned() });
+        }
+        let fail = |source| OutputError::Folder { path: folder.to_owned(), source };
+        let absolute = std::path::absolute(folder).map_err(fail)?;
+        let target = match absolute.canonicalize() {
+            Ok(target) => target,
+            Err(_not_there) => absolute,
+        };
+        let mut place = Self {
+            folder: folder.to_owned(),
+            around: target.parent().unwrap_or(&target).to_owned(),
+            name: target.file_name().unwrap_or_default().to_owned(),
+            may_rename: true,
+            made: Vec::new(),
+            target,
+        };
+        place.made = place
+            .around
+            .ancestors()
+            .take_while(|path| !path.exists())
+            .map(Path::to_owned)
+            .collect();
+        place.made.reverse();
+        if let Err(source) = fs::create_dir_all(&place.around) {
+            place.unmake();
+            return Err(fail(source));
+        }
+        // Links in what was not there a moment ago are followed now.
+        if !place.target.exists()
+            && let Ok(around) = place.around.canonicalize()
+        {
+            place.target = around.join(&place.name);
+            place.around = around;
+        }
+        let is_here = env::current_dir().is_ok_and(|here| here.starts_with(&place.target));
+        if is_here || place.name.is_empty() {
+            place.stay();
+        }
+        Ok(place)
+    }
+
+    /// Makes the new files within the folder, which is not renamed.
+    fn stay(&mut self) {
+        self.may_rename = false;
+        self.around.clone_from(&self.target);
+        self.name = INSIDE.into();
+    }
+
+    fn unmake(&self) {
+        for folder in self.made.iter().rev() {
+            drop(fs::remove_dir(folder));
+        }
+    }
+
+    /// Ends what killed runs have begun here.
+    fn recover(&self) {
+        for stale in stale(&self.around, &self.name) {
+            recover(stale, &self.target);
+        }
+        for stale in stale(&self.target, INSIDE.as_ref()) {
+            recover(stale, &self.target);
+        }
+    }
+
+    fn partial(&mut self) -> io::Result<Partial> {
+        match Partial::new(&self.around, &self.name, &self.made) {
+            Err(_not_allowed) if self.may_rename && self.target.is_dir() => {
+                self.stay();
+                Partial::new(&self.around, &self.name, &self.made)
+            }
+            partial => partial,
+        }
+    }
 }
 
 impl Staging {
     pub(super) fn open(folder: &Path) -> Result<Self, OutputError> {
-        if folder.is_file() {
-            return Err(OutputError::NotAFolder { path: folder.to_owned() });
+        let mut place = Place::of(folder)?;
+        place.recover();
+        let is_new = !place.target.exists();
+        let fail = |source| {
+            let path = folder.to_owned();
+            if is_new {
+                OutputError::Folder { path, source }
+            } else {
+                OutputError::Write { path, source }
+            }
+        };
+        let partial = place.partial().inspect_err(|_| place.unmake()).map_err(fail)?;
+        // From here on, dropping it clears away what was made.
+        let staging = Self { place, partial, names: Vec::new() };
+        fs::create_dir(&staging.partial.path).map_err(fail)?;
+        if !is_new {
+            staging.try_target().map_err(fail)?;
         }
-        let mut made: Vec<_> = folder
-            .ancestors()
-            .take_while(|path| !path.as_os_str().is_empty() && !path.exists())
-            .map(Path::to_owned)
-            .collect();
-        made.reverse();
-        // From here on, dropping it clears away what exists of `made`.
-        let staging =
-            Self { folder: folder.to_owned(), made, pending: Vec::new(), committed: false };
-        fs::create_dir_all(folder)
-            .map_err(|source| OutputError::Folder { path: folder.to_owned(), source })?;
         Ok(staging)
+    }
+
+    /// Absolute path of the folder.
+    pub(super) fn target(&self) -> &Path {
+        &self.place.target
+    }
+
+    /// Tries whether files may be made in a folder: its owner may have locked it.
+    fn try_target(&self) -> io::Result<()> {
+        drop(Partial::new(&self.place.target, INSIDE.as_ref(), &[])?);
+        Ok(())
+    }
+
+    /// Names of the files so far.
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
     }
 
     /// Fills a file that will be called `name`; returns its size in bytes.
@@ -48,60 +162,103 @@ impl Staging {
         name: &str,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<u64, OutputError> {
-        let target = self.folder.join(name);
-        if target.is_dir() {
-            return Err(OutputError::Taken { path: target });
+        let shown = self.place.folder.join(name);
+        if self.place.target.join(name).is_dir() {
+            return Err(OutputError::Taken { path: shown });
         }
-        let temporary = self.folder.join(format!(".{name}.{}.partial", std::process::id()));
-        self.pending.push(Pending { temporary: temporary.clone(), target: target.clone() });
+        self.names.push(name.to_owned());
         let write = || {
-            let mut writer = BufWriter::new(File::create(&temporary)?);
+            let mut writer = BufWriter::new(File::create(self.partial.path.join(name))?);
             fill(&mut writer)?;
             writer.flush()?;
             // Some file systems report a full disk only here.
             writer.get_ref().sync_all()?;
             Ok(writer.get_ref().metadata()?.len())
         };
-        write().map_err(|source: io::Error| OutputError::Write { path: target, source })
+        write().map_err(|source: io::Error| OutputError::Write { path: shown, source })
     }
 
-    /// Gives all files their names; returns the paths in the order of writing.
-    pub(super) fn commit(mut self) -> Result<Vec<PathBuf>, OutputError> {
-        let mut written: Vec<PathBuf> = Vec::with_capacity(self.pending.len());
-        for Pending { temporary, target } in &self.pending {
-            if let Err(source) = fs::rename(temporary, target) {
-                // A part of a report beside the rest of an older one would pass for one run.
-                for path in &written {
-                    drop(fs::remove_file(path));
-                }
-                return Err(OutputError::Write { path: target.clone(), source });
+    /// Puts all files in place of the results in the folder; returns their paths in the order of
+    /// writing. What in the folder is no result stays.
+    ///
+    /// - `over_others`: whether files of the same names that are no results may be replaced
+    pub(super) fn commit(self, over_others: bool) -> Result<Vec<PathBuf>, OutputError> {
+        self.commit_by(over_others, exchange)
+    }
+
+    fn commit_by(
+        mut self,
+        over_others: bool,
+        exchange: Exchange,
+    ) -> Result<Vec<PathBuf>, OutputError> {
+        let Place { folder, target, may_rename, .. } = &self.place;
+        let fail = |source| OutputError::Write { path: folder.clone(), source };
+        let uninterrupted = Uninterrupted::start();
+        for name in Others::of(target).map_err(fail)?.names {
+            let (path, found) = (folder.join(&name), target.join(&name));
+            if self.names.iter().all(|new| name != **new) {
+                continue;
             }
-            written.push(target.clone());
+            if found.is_dir() {
+                return Err(OutputError::Taken { path });
+            }
+            if !over_others {
+                return Err(OutputError::Foreign { path });
+            }
+            fs::remove_file(found).map_err(fail)?;
         }
-        self.committed = true;
+        swap::put(&mut self.partial, target, *may_rename, exchange).map_err(fail)?;
+        let written = self.names.iter().map(|name| folder.join(name)).collect();
+        self.partial.finish(uninterrupted);
         Ok(written)
     }
-}
 
-impl Drop for Staging {
-    fn drop(&mut self) {
-        if self.committed {
-            return;
-        }
-        // Whatever fails here stands in the way of nothing, and the first error is on its way up.
-        for Pending { temporary, .. } in &self.pending {
-            drop(fs::remove_file(temporary));
-        }
-        for folder in self.made.iter().rev() {
-            drop(fs::remove_dir(folder));
-        }
+    /// The results that are in the folder.
+    pub(super) fn manifest(&self) -> Option<Manifest> {
+        Manifest::read(&self.place.target)
     }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 mod tests {
+    use super::super::manifest::SUMMARY;
     use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn cannot(_: &Path, _: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// A complete set of files that say which they are.
+    fn staged(folder: &Path, files: &[&str], text: &str) -> Staging {
+        let mut staging = Staging::open(folder).unwrap();
+        for name in files {
+            staging.file(name, |file| file.write_all(text.as_bytes())).unwrap();
+        }
+        let summary = serde_json::json!({ "scene": text, "files": files });
+        staging
+            .file(SUMMARY, |file| serde_json::to_writer(file, &summary).map_err(Into::into))
+            .unwrap();
+        staging
+    }
+
+    fn assert_holds(folder: &Path, files: &[&str], text: &str) {
+        let mut expected = [files, &[SUMMARY]].concat();
+        expected.sort_unstable();
+        assert_eq!(names(folder), expected, "{text}");
+        for name in files.iter().filter(|name| !name.starts_with("notes")) {
+            assert_eq!(fs::read_to_string(folder.join(name)).unwrap(), text, "{name}");
+        }
+    }
 
     #[test]
     fn a_file_whose_writing_fails_half_way_leaves_nothing() {
@@ -120,32 +277,166 @@ mod tests {
             error.to_string(),
             format!("cannot write {}", folder.join("half.csv").display())
         );
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "both still under temporary names");
+        assert!(!folder.exists(), "nothing has its name yet");
         drop(staging);
-        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0, "files and new folders are gone");
+        assert_eq!(names(root.path()), [""; 0], "files and new folders are gone");
     }
 
     #[test]
-    fn a_name_that_cannot_be_given_takes_back_the_others() {
-        let root = tempfile::tempdir().unwrap();
-        let mut staging = Staging::open(root.path()).unwrap();
-        staging.file("first.csv", |file| file.write_all(b"1")).unwrap();
-        staging.file("second.csv", |file| file.write_all(b"2")).unwrap();
-        fs::create_dir(root.path().join("second.csv")).unwrap();
-        assert!(matches!(staging.commit(), Err(OutputError::Write { .. })));
-        let left: Vec<_> =
-            fs::read_dir(root.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-        assert_eq!(left, ["second.csv"], "only the folder in the way");
+    fn new_results_take_the_place_of_old_ones_by_every_way() {
+        for (exchange, may_rename) in
+            [(exchange as Exchange, true), (cannot, true), (exchange, false), (cannot, false)]
+        {
+            let root = tempfile::tempdir().unwrap();
+            let folder = root.path().join("plot");
+            staged(&folder, &["a.csv", "gone.csv"], "old").commit(false).unwrap();
+            assert_holds(&folder, &["a.csv", "gone.csv"], "old");
+            fs::write(folder.join("notes.txt"), "mine").unwrap();
+            fs::create_dir(folder.join("notes")).unwrap();
+            fs::write(folder.join("notes/deep.txt"), "mine too").unwrap();
+            let mut staging = staged(&folder, &["a.csv", "b.csv"], "new");
+            if !may_rename {
+                staging.place.may_rename = false;
+            }
+            let written = staging.commit_by(false, exchange).unwrap();
+            assert_eq!(written, ["a.csv", "b.csv", SUMMARY].map(|name| folder.join(name)));
+            assert_holds(&folder, &["a.csv", "b.csv", "notes", "notes.txt"], "new");
+            assert_eq!(fs::read_to_string(folder.join("notes.txt")).unwrap(), "mine");
+            assert_eq!(fs::read_to_string(folder.join("notes/deep.txt")).unwrap(), "mine too");
+            assert_eq!(names(root.path()), ["plot"], "nothing is left beside it");
+        }
     }
 
     #[test]
-    fn nothing_has_its_name_before_everything_is_complete() {
+    fn a_file_that_is_no_result_is_not_replaced_without_leave() {
         let root = tempfile::tempdir().unwrap();
-        let mut staging = Staging::open(root.path()).unwrap();
-        staging.file("a.csv", |file| file.write_all(b"a")).unwrap();
-        assert!(!root.path().join("a.csv").exists());
-        assert_eq!(staging.commit().unwrap(), [root.path().join("a.csv")]);
-        assert_eq!(fs::read(root.path().join("a.csv")).unwrap(), b"a");
-        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+        fs::write(root.path().join("a.csv"), "mine").unwrap();
+        let error = staged(root.path(), &["a.csv"], "new").commit(false).unwrap_err();
+        assert!(
+            matches!(error, OutputError::Foreign { path } if path == root.path().join("a.csv"))
+        );
+        assert_eq!(names(root.path()), ["a.csv"]);
+        assert_eq!(fs::read_to_string(root.path().join("a.csv")).unwrap(), "mine");
+        staged(root.path(), &["a.csv"], "new").commit(true).unwrap();
+        assert_holds(root.path(), &["a.csv"], "new");
+        fs::create_dir(root.path().join("d.csv")).unwrap();
+        let error = Staging::open(root.path()).unwrap().file("d.csv", |_| Ok(())).unwrap_err();
+        assert!(matches!(error, OutputError::Taken { .. }));
+    }
+
+    /// What a kill leaves: a lock file that nobody locks, its note, and folders.
+    fn killed(root: &Path, note: &str, ending: &str, from: &Path) {
+        fs::write(root.join(".plot.4000000-7.lock"), note).unwrap();
+        fs::rename(from, root.join(format!(".plot.4000000-7.{ending}"))).unwrap();
+    }
+
+    #[test]
+    fn the_next_run_ends_what_a_killed_one_began() {
+        let start = || {
+            let root = tempfile::tempdir().unwrap();
+            let folder = root.path().join("plot");
+            staged(&folder, &["a.csv", "gone.csv"], "old").commit(false).unwrap();
+            let new = root.path().join("new");
+            staged(&new, &["a.csv", "b.csv"], "new").commit(false).unwrap();
+            (root, folder, new)
+        };
+        // While files were written.
+        let (root, folder, new) = start();
+        fs::remove_file(new.join(SUMMARY)).unwrap();
+        killed(root.path(), "", "partial", &new);
+        drop(Staging::open(&folder).unwrap());
+        assert_holds(&folder, &["a.csv", "gone.csv"], "old");
+        assert_eq!(names(root.path()), ["plot"]);
+        // Just after the exchange; a note was made in the old folder in its last moment.
+        let (root, folder, new) = start();
+        fs::write(folder.join("notes.txt"), "mine").unwrap();
+        killed(root.path(), "exchanging", "partial", &folder);
+        fs::rename(&new, &folder).unwrap();
+        drop(Staging::open(&folder).unwrap());
+        assert_holds(&folder, &["a.csv", "b.csv", "notes.txt"], "new");
+        assert_eq!(names(root.path()), ["plot"]);
+        // Between two renamings, where there is no exchange.
+        let (root, folder, new) = start();
+        killed(root.path(), "exchanging", "old", &folder);
+        fs::rename(&new, root.path().join(".plot.4000000-7.partial")).unwrap();
+        drop(Staging::open(&folder).unwrap());
+        assert_holds(&folder, &["a.csv", "gone.csv"], "old");
+        assert_eq!(names(root.path()), ["plot"]);
+        // After the second.
+        let (root, folder, new) = start();
+        killed(root.path(), "exchanging", "old", &folder);
+        fs::rename(&new, &folder).unwrap();
+        drop(Staging::open(&folder).unwrap());
+        assert_holds(&folder, &["a.csv", "b.csv"], "new");
+        assert_eq!(names(root.path()), ["plot"]);
+    }
+
+    #[test]
+    fn files_that_were_put_in_place_one_by_one_are_put_there_by_the_next_run() {
+        // After each of the steps: the summary is set aside, an old file goes, a new one comes.
+        for steps in 0..4 {
+            let root = tempfile::tempdir().unwrap();
+            let folder = root.path().join("plot");
+            staged(&folder, &["a.csv", "gone.csv"], "old").commit(false).unwrap();
+            let new = root.path().join("new");
+            staged(&new, &["a.csv", "b.csv"], "new").commit(false).unwrap();
+            killed(root.path(), "merging", "partial", &new);
+            let partial = root.path().join(".plot.4000000-7.partial");
+            if steps > 0 {
+                fs::rename(folder.join(SUMMARY), partial.join(".old.summary.json")).unwrap();
+            }
+            if steps > 1 {
+                fs::remove_file(folder.join("gone.csv")).unwrap();
+            }
+            if steps > 2 {
+                fs::rename(partial.join("a.csv"), folder.join("a.csv")).unwrap();
+            }
+            drop(Staging::open(&folder).unwrap());
+            assert_holds(&folder, &["a.csv", "b.csv"], "new");
+            assert_eq!(names(root.path()), ["plot"]);
+        }
+    }
+
+    #[test]
+    fn what_a_living_run_writes_is_let_be() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("plot");
+        let mut living = Staging::open(&folder).unwrap();
+        living.file("a.csv", |file| file.write_all(b"a")).unwrap();
+        staged(&folder, &["b.csv"], "b").commit(false).unwrap();
+        assert!(living.partial.path.join("a.csv").is_file());
+        drop(living);
+        assert_holds(&folder, &["b.csv"], "b");
+    }
+
+    #[test]
+    fn a_link_to_a_folder_stays_one() {
+        #[cfg(unix)]
+        {
+            let root = tempfile::tempdir().unwrap();
+            fs::create_dir(root.path().join("far")).unwrap();
+            let link = root.path().join("plot");
+            std::os::unix::fs::symlink("far", &link).unwrap();
+            for text in ["old", "new"] {
+                staged(&link, &["a.csv"], text).commit(false).unwrap();
+                assert_holds(&root.path().join("far"), &["a.csv"], text);
+            }
+            assert!(link.is_symlink());
+            assert_eq!(names(root.path()), ["far", "plot"]);
+        }
+    }
+
+    #[test]
+    fn exchange_is_what_this_system_can() {
+        let root = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| root.path().join(name));
+        fs::create_dir(&a).unwrap();
+        fs::create_dir(&b).unwrap();
+        fs::write(a.join("x"), "").unwrap();
+        let exchanged = exchange(&a, &b);
+        if cfg!(target_os = "linux") {
+            exchanged.unwrap();
+            assert!(b.join("x").is_file());
+        }
     }
 }

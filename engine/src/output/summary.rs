@@ -6,23 +6,96 @@ use serde::{Serialize, Serializer};
 use serde_json::ser::Formatter;
 
 use super::length;
+use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
+use super::rows::columns;
 use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport};
 
-/// Writes numbers so that they read back as the same f64; NaN becomes `null`.
-///
-/// - `sizes`: of the files of each sensor, bytes
+/// Names and sizes of a report's files.
+pub(super) struct Sizes<'a> {
+    pub(super) plan: &'a [SensorNames],
+    /// Of the files of each sensor.
+    pub(super) bytes: &'a [u64],
+}
+
+/// Where results come from, and which files they are.
+#[derive(Serialize)]
+pub(super) struct Head<'a> {
+    scene: &'a str,
+    command: &'a str,
+    /// Path of the scene, relative to the folder of the results.
+    scene_file: Option<String>,
+    params: Ordered<'a, f64>,
+    variant: Option<&'a str>,
+    set: Ordered<'a, f64>,
+    quality: f64,
+    hash: &'a str,
+    version: &'a str,
+    seed: u64,
+    files: Vec<String>,
+}
+
+impl<'a> Head<'a> {
+    pub(super) fn of(report: &'a Report, command: &'a str, scene_file: Option<String>) -> Self {
+        let origin = report.origin.as_ref();
+        let numbers = |list: &'a [(String, f64)]| {
+            Ordered(list.iter().map(|(name, value)| (name.as_str(), *value)).collect())
+        };
+        Self {
+            scene: &report.scene,
+            command,
+            scene_file,
+            params: numbers(&report.params),
+            variant: origin.and_then(|origin| origin.variant.as_deref()),
+            set: numbers(origin.map_or(&[], |origin| &origin.set)),
+            quality: origin.map_or(1.0, |origin| origin.quality),
+            hash: &report.hash,
+            version: &report.version,
+            seed: report.seed,
+            files: Vec::new(),
+        }
+    }
+
+    /// With the names of all files but the summary.
+    pub(super) fn with_files(mut self, names: &[String]) -> Self {
+        self.files = names.iter().cloned().chain([SUMMARY.to_owned()]).collect();
+        self
+    }
+
+    /// What was changed in the scene, for a person.
+    pub(super) fn changes(&self) -> String {
+        let set =
+            self.set.0.iter().map(|(name, value)| (*name, serde_json::json!(value).to_string()));
+        changes(self.variant, set, self.quality)
+    }
+}
+
+/// What was changed in a scene, for a person.
+pub(super) fn changes<'a>(
+    variant: Option<&str>,
+    set: impl Iterator<Item = (&'a str, String)>,
+    quality: f64,
+) -> String {
+    let mut set: Vec<String> = set.map(|(name, value)| format!("{name} = {value}")).collect();
+    set.sort();
+    let variant = variant.map(|name| format!("of the variant `{name}`"));
+    let set = (!set.is_empty()).then(|| format!("with {}", set.join(", ")));
+    #[expect(clippy::float_cmp, reason = "the default is this very number")]
+    let quality = (quality != 1.0).then(|| format!("of the quality {quality}"));
+    let all: Vec<String> = variant.into_iter().chain(set).chain(quality).collect();
+    if all.is_empty() { "of the scene as it is".to_owned() } else { all.join(" ") }
+}
+
+/// Writes all results as JSON; numbers read back as the same f64, and NaN becomes `null`.
 pub(super) fn write(
+    head: &Head<'_>,
     report: &Report,
-    (plan, sizes): (&[SensorNames], &[u64]),
+    sizes: &Sizes<'_>,
     file: &mut impl Write,
 ) -> io::Result<()> {
-    let sensors = || report.sensors.iter().zip(plan);
+    let sensors = || report.sensors.iter().zip(sizes.plan);
     let summary = Summary {
-        scene: &report.scene,
-        hash: &report.hash,
-        version: &report.version,
-        seed: report.seed,
+        head,
         seconds: report.seconds,
         rays: report.rays,
         bands: &report.bands,
@@ -30,25 +103,34 @@ pub(super) fn write(
         stages: Ordered(report.stages.iter().map(|(name, s)| (name.as_str(), *s)).collect()),
         skipped: &report.skipped,
         warnings: &report.warnings,
-        sensors: Ordered(sensors().map(|(s, n)| (n.key.as_str(), products(s, n))).collect()),
+        sensors: Ordered(
+            sensors().map(|(s, n)| (n.key.as_str(), products(report, s, n))).collect(),
+        ),
         runs: Ordered(
             sensors()
-                .zip(sizes)
+                .zip(sizes.bytes)
                 .map(|((s, n), size)| (n.key.as_str(), Run::of(s, *size)))
                 .collect(),
         ),
     };
+    write_json(&summary, file)
+}
+
+/// Writes where files come from, and no results.
+pub(super) fn write_head(head: &Head<'_>, file: &mut impl Write) -> io::Result<()> {
+    write_json(head, file)
+}
+
+fn write_json(value: &impl Serialize, file: &mut impl Write) -> io::Result<()> {
     let mut serializer = serde_json::Serializer::with_formatter(&mut *file, OneKeyALine::default());
-    summary.serialize(&mut serializer)?;
+    value.serialize(&mut serializer)?;
     writeln!(file)
 }
 
 #[derive(Serialize)]
 struct Summary<'a> {
-    scene: &'a str,
-    hash: &'a str,
-    version: &'a str,
-    seed: u64,
+    #[serde(flatten)]
+    head: &'a Head<'a>,
     seconds: f64,
     rays: u64,
     bands: &'a [String],
@@ -63,7 +145,11 @@ struct Summary<'a> {
 #[derive(Serialize)]
 struct Entry<'a> {
     unit: &'a str,
-    axes: Ordered<'a, Points<'a>>,
+    /// One axis a dimension, slowest first.
+    axes: Ordered<'a, Points>,
+    /// What else is known of the points of an axis, as many as it has.
+    #[serde(skip_serializing_if = "Ordered::is_empty")]
+    coordinates: Ordered<'a, Coordinates>,
     shape: Vec<usize>,
     values: &'a [f64],
     standard_error: &'a [f64],
@@ -72,9 +158,27 @@ struct Entry<'a> {
 
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Points<'a> {
-    Numbers(&'a [f64]),
-    Labels(&'a [String]),
+enum Points {
+    Numbers(Vec<f64>),
+    Labels(Vec<String>),
+}
+
+/// Points of further axes along one, each with its name.
+struct Coordinates(Vec<(String, Points)>);
+
+impl Serialize for Coordinates {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, points)| (name, points)))
+    }
+}
+
+impl From<AxisPoints> for Points {
+    fn from(points: AxisPoints) -> Self {
+        match points {
+            AxisPoints::Numbers(numbers) => Self::Numbers(numbers),
+            AxisPoints::Labels(labels) => Self::Labels(labels),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -112,28 +216,37 @@ struct Expected {
     files: u64,
 }
 
-fn products<'a>(sensor: &'a SensorReport, names: &'a SensorNames) -> Ordered<'a, Entry<'a>> {
+fn products<'a>(
+    report: &Report,
+    sensor: &'a SensorReport,
+    names: &'a SensorNames,
+) -> Ordered<'a, Entry<'a>> {
     let pairs = sensor.products.iter().zip(&names.products);
-    Ordered(pairs.map(|(product, names)| (names.key.as_str(), entry(product, names))).collect())
+    let entries = pairs.map(|(product, names)| (names.key.as_str(), entry(report, product, names)));
+    Ordered(entries.collect())
 }
 
-fn entry<'a>(product: &'a Product, names: &ProductNames) -> Entry<'a> {
-    let axes = product.dimensions.iter().flatten().map(|axis| {
-        let points = match &axis.points {
-            AxisPoints::Numbers(numbers) => Points::Numbers(numbers),
-            AxisPoints::Labels(labels) => Points::Labels(labels),
-        };
-        (axis.name.as_str(), points)
-    });
+fn entry<'a>(report: &Report, product: &'a Product, names: &ProductNames) -> Entry<'a> {
+    let (mut axes, mut coordinates) = (Vec::new(), Vec::new());
+    for dimension in &product.dimensions {
+        let Some(first) = dimension.first() else { continue };
+        axes.push((first.name.as_str(), first.points.clone().into()));
+        let others = columns(dimension, report).split_off(1);
+        if !others.is_empty() {
+            let others = others.into_iter().map(|axis| (axis.name, axis.points.into()));
+            coordinates.push((first.name.as_str(), Coordinates(others.collect())));
+        }
+    }
     Entry {
         unit: &product.unit,
-        axes: Ordered(axes.collect()),
+        axes: Ordered(axes),
+        coordinates: Ordered(coordinates),
         shape: product.dimensions.iter().map(|dimension| length(dimension)).collect(),
         values: &product.values,
         standard_error: &product.standard_error,
         files: match (&product.image, &product.faces) {
             (_, Some(_)) => vec![names.ply()],
-            (Some(_), _) => names.image().into(),
+            (Some(_), _) => names.image(),
             (None, None) => vec![names.csv()],
         },
     }
@@ -141,6 +254,12 @@ fn entry<'a>(product: &'a Product, names: &ProductNames) -> Entry<'a> {
 
 /// A JSON object whose keys keep their order.
 struct Ordered<'a, V>(Vec<(&'a str, V)>);
+
+impl<V> Ordered<'_, V> {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
 
 impl<V: Serialize> Serialize for Ordered<'_, V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

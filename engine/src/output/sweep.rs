@@ -1,16 +1,17 @@
 //! Files of a sweep: a folder for each point, and one table of all.
 //!
-//! `points/sza=30,lai=2/` holds what [`write()`] writes, and `point.csv`, which gets its name after
-//! all the others: where it bears the point's key, the point is complete.
+//! `points/sza=30,lai=2/` holds what [`write()`](super::write()) writes, and `point.csv`: where it bears the
+//! point's key, the point is complete.
 
 use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Write};
 use std::path::{Path, PathBuf};
 
-use super::rows::{indices, number, point as point_of_axis};
+use super::axes::Axes;
+use super::rows::{harmless, number};
 use super::staging::Staging;
-use super::{OutputError, write};
-use crate::products::{Point, Product, Report};
+use super::{OutputError, Results};
+use crate::products::{Point, Report};
 
 /// Longest name of a point's folder.
 const LENGTH: usize = 100;
@@ -25,59 +26,91 @@ pub fn is_complete(point: &Point, folder: &Path) -> bool {
     first.is_some_and(|line| line.is_ok_and(|line| line == heading(point)))
 }
 
-/// Writes the results of a point.
+/// Writes the results of a point, `point.csv` with them.
 ///
 /// # Errors
-/// As [`write()`].
+/// As [`write()`](super::write()).
 pub fn write_point(
     report: &Report,
     point: &Point,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, OutputError> {
-    let folder = folder_of(point, folder);
-    let mut written = write(report, &folder)?;
-    let mut staging = Staging::open(&folder)?;
-    staging.file(TABLE, |file| write_rows(report, point, file))?;
-    written.extend(staging.commit()?);
-    Ok(written)
+    let results = Results::of_any(&folder_of(point, folder));
+    let table = |staging: &mut Staging| {
+        staging.file(TABLE, |file| write_rows(report, point, file)).map(drop)
+    };
+    Ok(results.write_with(report, table)?.files)
 }
 
-/// Writes `sweep.csv`, the rows of all points: a column a parameter, then sensor, product, unit,
-/// place within the product, band, value and standard error.
+/// Rows of all points as one table: a column a parameter, then sensor, product, unit, a column an axis,
+/// band, value and standard error.
 ///
 /// # Errors
-/// If a point is not complete, or the file cannot be written.
-pub fn write_sweep(points: &[Point], folder: &Path) -> Result<PathBuf, OutputError> {
-    let mut staging = Staging::open(folder)?;
-    let mut unreadable = None;
-    let written = staging.file("sweep.csv", |file| {
-        for (index, point) in points.iter().enumerate() {
-            let path = folder_of(point, folder).join(TABLE);
-            let rows = File::open(&path).inspect_err(|_| unreadable = Some(path))?;
-            // The key; and the header, which is the same for all.
-            for line in BufReader::new(rows).lines().skip(if index == 0 { 1 } else { 2 }) {
-                writeln!(file, "{}", line?)?;
+/// If a point is not complete.
+pub fn sweep_table(points: &[Point], folder: &Path) -> Result<String, OutputError> {
+    let paths: Vec<PathBuf> =
+        points.iter().map(|point| folder_of(point, folder).join(TABLE)).collect();
+    // A point may lack what others have: another axis, say.
+    let mut columns: Vec<String> = Vec::new();
+    for path in &paths {
+        let header = table(path)?.headers().cloned().map_err(|error| unreadable(path, error))?;
+        let mut place = columns.len();
+        for name in header.iter().rev() {
+            match columns.iter().position(|column| column == name) {
+                Some(known) => place = known,
+                None => columns.insert(place, name.to_owned()),
             }
         }
-        Ok(())
-    });
-    match (written, unreadable) {
-        (Err(OutputError::Write { source, .. }), Some(path)) => {
-            return Err(OutputError::Read { path, source });
-        }
-        (written, _) => drop(written?),
     }
-    Ok(staging.commit()?.remove(0))
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let written = |error: csv::Error| OutputError::Write {
+        path: folder.join("sweep.csv"),
+        source: error.into(),
+    };
+    writer.write_record(&columns).map_err(written)?;
+    for path in &paths {
+        let mut rows = table(path)?;
+        let header = rows.headers().cloned().map_err(|error| unreadable(path, error))?;
+        let places: Vec<Option<usize>> =
+            columns.iter().map(|column| header.iter().position(|name| name == column)).collect();
+        for row in rows.records() {
+            let row = row.map_err(|error| unreadable(path, error))?;
+            let cell = |place: &Option<usize>| place.and_then(|place| row.get(place)).unwrap_or("");
+            writer.write_record(places.iter().map(cell)).map_err(written)?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|error| written(error.into_error().into()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Reader of a point's table.
+fn table(path: &Path) -> Result<csv::Reader<File>, OutputError> {
+    let file =
+        File::open(path).map_err(|source| OutputError::Read { path: path.to_owned(), source })?;
+    Ok(csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(file))
+}
+
+fn unreadable(path: &Path, error: csv::Error) -> OutputError {
+    OutputError::Read { path: path.to_owned(), source: error.into() }
 }
 
 fn folder_of(point: &Point, folder: &Path) -> PathBuf {
-    let mut name = point.name();
+    folder.join("points").join(folder_name(&point.name(), &point.key))
+}
+
+/// A name for a folder that is safe on every file system; `identity` tells apart what is too long.
+#[must_use]
+pub fn folder_name(name: &str, identity: &str) -> String {
+    let safe = |letter: char| {
+        if letter.is_alphanumeric() || "-_.=,+".contains(letter) { letter } else { '_' }
+    };
+    let mut name: String = name.chars().map(safe).collect();
     if name.len() > LENGTH {
-        let end = name.floor_char_boundary(LENGTH - 17);
-        name.truncate(end);
-        name = format!("{name},{}", point.key.get(..16).unwrap_or(&point.key));
+        let hash = blake3::hash(identity.as_bytes()).to_hex();
+        name.truncate(name.floor_char_boundary(LENGTH - 17));
+        name = format!("{name},{}", &hash[..16]);
     }
-    folder.join("points").join(name)
+    name
 }
 
 fn heading(point: &Point) -> String {
@@ -86,39 +119,28 @@ fn heading(point: &Point) -> String {
 
 fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{}", heading(point))?;
-    let mut writer = csv::WriterBuilder::new().from_writer(file);
-    let names = point.params.iter().map(|(name, _)| name.as_str());
-    let columns = ["sensor", "product", "unit", "at", "band", "value", "standard_error"];
-    writer.write_record(names.chain(columns))?;
+    let products = || {
+        report
+            .sensors
+            .iter()
+            .flat_map(|sensor| sensor.products.iter().map(move |one| (sensor, one)))
+    };
+    let axes = Axes::of(products().map(|(_, product)| product), report);
+    let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(file);
+    let names = point.params.iter().map(|(name, _)| harmless(name));
+    let before = ["sensor", "product", "unit"].map(str::to_owned);
+    let after = ["band", "value", "standard_error"].map(str::to_owned);
+    writer.write_record(names.chain(before).chain(axes.names().map(harmless)).chain(after))?;
     let params: Vec<_> = point.params.iter().map(|&(_, value)| number(value)).collect();
-    for sensor in &report.sensors {
-        for product in &sensor.products {
-            for (row, (value, error)) in
-                product.values.iter().zip(&product.standard_error).enumerate()
-            {
-                let (at, band) = place(product, row);
-                let own = [&sensor.name, &product.name, &product.unit, &at, &band];
-                let values = [number(*value), number(*error)];
-                writer.write_record(params.iter().chain(own).chain(&values))?;
-            }
+    for (sensor, product) in products() {
+        for (row, (value, error)) in product.values.iter().zip(&product.standard_error).enumerate()
+        {
+            let place = axes.place(product, row);
+            let own = [&sensor.name, &product.name, &product.unit].map(|name| harmless(name));
+            let after = [harmless(&place.band), number(*value), number(*error)];
+            let cells = place.cells.iter().map(|cell| harmless(cell));
+            writer.write_record(params.iter().cloned().chain(own).chain(cells).chain(after))?;
         }
     }
     writer.flush()
-}
-
-/// Where a value stands in its product: `zenith_deg=30;azimuth_deg=90`, and the band.
-#[must_use]
-pub fn place(product: &Product, row: usize) -> (String, String) {
-    let (mut at, mut band) = (Vec::new(), String::new());
-    for (dimension, index) in product.dimensions.iter().zip(indices(&product.dimensions, row)) {
-        for axis in dimension {
-            let value = point_of_axis(axis, index);
-            if axis.name == "band" {
-                band = value;
-            } else {
-                at.push(format!("{}={value}", axis.name));
-            }
-        }
-    }
-    (at.join(";"), band)
 }

@@ -88,6 +88,9 @@ fn report(sensors: Vec<SensorReport>) -> Report {
         skipped: vec!["mesh \"bush\"".to_owned()],
         warnings: Vec::new(),
         sensors,
+        params: vec![("sza".to_owned(), 30.0)],
+        sun_azimuth_deg: Some(250.0),
+        origin: None,
     }
 }
 
@@ -113,15 +116,19 @@ fn exactly_the_promised_files_are_written() {
     let found = names(&folder.path().join("deep/er"));
     let expected = [
         "nadir_brf.exr",
-        "nadir_brf.hdr",
         "nadir_brf.img",
+        "nadir_brf.img.hdr",
         "nadir_brf.png",
+        "nadir_brf_se.img",
+        "nadir_brf_se.img.hdr",
         "plane_brf.csv",
         "summary.json",
     ];
     assert_eq!(found, expected);
-    assert_eq!(paths.len(), 6);
-    assert_eq!(paths[5], folder.path().join("deep/er/summary.json"));
+    assert_eq!(paths.len(), 8);
+    assert_eq!(paths[7], folder.path().join("deep/er/summary.json"));
+    assert_eq!(names(folder.path()), ["deep"]);
+    assert_eq!(names(&folder.path().join("deep")), ["er"]);
 }
 
 #[test]
@@ -146,7 +153,7 @@ fn summary_tells_what_was_foretold_of_a_long_measurement() {
 #[test]
 fn summary_reads_back_bit_for_bit_with_keys_in_order() {
     let (_folder, paths) = written();
-    let text = fs::read_to_string(&paths[5]).unwrap();
+    let text = fs::read_to_string(&paths[7]).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     let plane = &json["sensors"]["plane"];
     assert_eq!(plane.as_object().unwrap().len(), 1, "a sensor holds its products alone");
@@ -156,15 +163,30 @@ fn summary_reads_back_bit_for_bit_with_keys_in_order() {
         assert!(same || value.is_nan() && read.is_null(), "{read} for {value}");
     }
     assert_eq!(brf["shape"], serde_json::json!([3, 2]));
-    assert_eq!(brf["axes"]["azimuth_deg"], serde_json::json!([90.0, 0.0, 270.0]));
+    assert_eq!(brf["axes"]["zenith_deg"], serde_json::json!([-5.0, 0.0, 5.0]));
+    assert_eq!(
+        brf["coordinates"]["zenith_deg"]["azimuth_deg"],
+        serde_json::json!([90.0, 0.0, 270.0])
+    );
     assert_eq!(brf["axes"]["band"], serde_json::json!(["red", "nir, wide"]));
     assert_eq!(json["seed"].as_u64(), Some(u64::MAX));
     assert_eq!(json["seconds"].as_f64().map(f64::to_bits), Some((1.0_f64 / 7.0).to_bits()));
     assert_eq!(json["scene"], "Birch\n# stand \u{df}");
     assert_eq!(json["runs"]["plane"]["rays"], 1_u64 << 40);
     assert!(json["runs"]["plane"]["forecast"].is_null(), "it was short");
-    let files = ["nadir_brf.exr", "nadir_brf.img", "nadir_brf.hdr", "nadir_brf.png"];
-    assert_eq!(json["sensors"]["nadir"]["brf"]["files"], serde_json::json!(files));
+    let files = [
+        "nadir_brf.exr",
+        "nadir_brf.img",
+        "nadir_brf.img.hdr",
+        "nadir_brf_se.img",
+        "nadir_brf_se.img.hdr",
+        "nadir_brf.png",
+        "plane_brf.csv",
+        "summary.json",
+    ];
+    assert_eq!(json["sensors"]["nadir"]["brf"]["files"], serde_json::json!(files[..6]));
+    assert_eq!(json["files"], serde_json::json!(files), "those of all products and itself");
+    assert_eq!(json["params"], serde_json::json!({ "sza": 30.0 }));
     let keys = [
         "scene",
         "hash",
@@ -214,15 +236,76 @@ fn exr_holds_every_channel_bit_for_bit() {
         ("red.se", of(&image.standard_error, 0)),
     ];
     assert_eq!(channels, expected.map(|(name, values)| (name.to_owned(), values)));
-    let text = |key: &str| match layer.attributes.other.get(key.as_bytes()) {
-        Some(::exr::prelude::AttributeValue::Text(text)) => text.bytes().to_vec(),
-        other => panic!("{key}: {other:?}"),
+    let comments = layer.attributes.comments.clone().unwrap();
+    let text: serde_json::Value = serde_json::from_slice(comments.bytes()).unwrap();
+    let seed = u64::MAX.to_string();
+    let expected = [
+        ("unit", "1"),
+        ("hash", "c0ffee"),
+        ("seed", &seed),
+        ("version", "0.1.0"),
+        ("scene", "Birch # stand \u{df}"),
+        ("params", "sza=30"),
+    ];
+    for (key, value) in expected {
+        assert_eq!(text[key], value, "{key}");
+    }
+    // More than one attribute of our own would be written in an order that differs from run to run.
+    assert!(layer.attributes.other.is_empty() && read.attributes.other.is_empty());
+}
+
+/// Value of a key in an ENVI header.
+fn field<'a>(header: &'a str, key: &str) -> &'a str {
+    let line = header.lines().find(|line| line.split(" = ").next() == Some(key));
+    line.and_then(|line| line.split_once(" = ")).unwrap_or_else(|| panic!("no {key}")).1
+}
+
+#[test]
+fn a_second_envi_raster_holds_errors_and_coverage() {
+    let (_folder, paths) = written();
+    let header = fs::read_to_string(&paths[4]).unwrap();
+    assert_eq!(field(&header, "band names"), "{red_se, nir_ wide_se, coverage}");
+    assert_eq!(field(&header, "bands"), "3");
+    assert!(field(&header, "map info").contains("679000.5, 5150000.25, 0.5, 0.25"));
+    assert!(!header.contains("wavelength"), "the coverage has none");
+    let bytes = fs::read(&paths[3]).unwrap();
+    let found: Vec<f32> = bytes
+        .chunks_exact(4)
+        .map(|number| f32::from_le_bytes(number.try_into().unwrap()))
+        .collect();
+    let image = image().image.unwrap();
+    let band = |band: usize| image.standard_error.iter().skip(band).step_by(2).copied();
+    let expected: Vec<f32> = band(0)
+        .chain(band(1))
+        .map(|error| if error.is_nan() { -9999.0 } else { error })
+        .chain(image.coverage.iter().copied())
+        .collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn no_header_stands_beside_another_file_of_its_stem() {
+    let (folder, _) = written();
+    let found = names(&folder.path().join("deep/er"));
+    for header in found.iter().filter_map(|name| name.strip_suffix(".hdr")) {
+        let stems = found.iter().filter_map(|name| name.rsplit_once('.').map(|(stem, _)| stem));
+        assert!(
+            !stems.into_iter().any(|stem| stem == header && !found.contains(&header.to_owned()))
+        );
+        assert!(found.contains(&header.to_owned()), "{header}.hdr is that of {header}");
+    }
+}
+
+#[test]
+fn files_of_the_same_run_are_the_same_bytes() {
+    let read = || {
+        let (_folder, paths) = written();
+        paths.iter().map(|path| fs::read(path).unwrap()).collect::<Vec<_>>()
     };
-    assert_eq!(text("unit"), b"1");
-    assert_eq!(text("hash"), b"c0ffee");
-    assert_eq!(text("seed"), u64::MAX.to_string().into_bytes());
-    assert_eq!(text("sunfleck_version"), b"0.1.0");
-    assert_eq!(text("scene"), "Birch # stand \u{df}".as_bytes());
+    let first = read();
+    for _ in 0..8 {
+        assert!(read() == first);
+    }
 }
 
 #[test]
@@ -230,10 +313,7 @@ fn envi_header_describes_the_pixels() {
     let (_folder, paths) = written();
     let header = fs::read_to_string(&paths[2]).unwrap();
     assert!(header.starts_with("ENVI\n"));
-    let field = |key: &str| {
-        let line = header.lines().find(|line| line.split(" = ").next() == Some(key));
-        line.and_then(|line| line.split_once(" = ")).unwrap_or_else(|| panic!("no {key}")).1
-    };
+    let field = |key: &str| field(&header, key);
     let count = |key: &str| field(key).parse::<usize>().unwrap();
     let (samples, lines, bands) = (count("samples"), count("lines"), count("bands"));
     let bytes = fs::read(&paths[1]).unwrap();
@@ -265,7 +345,7 @@ fn envi_header_describes_the_pixels() {
 #[test]
 fn quicklook_is_a_png_with_transparency_and_provenance() {
     let (_folder, paths) = written();
-    let file = io::BufReader::new(fs::File::open(&paths[3]).unwrap());
+    let file = io::BufReader::new(fs::File::open(&paths[5]).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
@@ -282,13 +362,23 @@ fn quicklook_is_a_png_with_transparency_and_provenance() {
 #[test]
 fn csv_reads_back_bit_for_bit() {
     let (_folder, paths) = written();
-    let text = fs::read_to_string(&paths[4]).unwrap();
-    for line in ["# scene: Birch # stand \u{df}\n", "# hash: c0ffee\n", "# unit: 1\n"] {
+    let text = fs::read_to_string(&paths[6]).unwrap();
+    for line in
+        ["# scene: Birch # stand \u{df}\n", "# params: sza=30\n", "# hash: c0ffee\n", "# unit: 1\n"]
+    {
         assert!(text.contains(line), "{line:?} in\n{text}");
     }
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&paths[4]).unwrap();
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&paths[6]).unwrap();
     let header: Vec<_> = reader.headers().unwrap().iter().map(str::to_owned).collect();
-    let expected = ["zenith_deg", "azimuth_deg", "red", "red_se", "nir, wide", "nir, wide_se"];
+    let expected = [
+        "zenith_deg",
+        "azimuth_deg",
+        "signed_zenith_deg",
+        "red",
+        "red_se",
+        "nir, wide",
+        "nir, wide_se",
+    ];
     assert_eq!(header, expected);
     let rows: Vec<Vec<f64>> = reader
         .records()
@@ -302,7 +392,9 @@ fn csv_reads_back_bit_for_bit() {
         [(-5.0, 90.0), (0.0, 0.0), (5.0, 270.0)].into_iter().enumerate()
     {
         let at = 2 * index;
-        let row = [zenith, azimuth, values[at], errors[at], values[at + 1], errors[at + 1]];
+        // The sun's azimuth is 250°: -5 at 90° is 5 on the sun's side.
+        let signed = [5.0, 0.0, 5.0][index];
+        let row = [zenith, azimuth, signed, values[at], errors[at], values[at + 1], errors[at + 1]];
         assert_eq!(bits(&rows[index]), bits(&row));
     }
 }
@@ -457,4 +549,58 @@ plane   brf      zenith -75°       red        0.1000  ± 0.0010
                  (26 more)
 ";
     assert_eq!(text, expected, "got\n{text}");
+}
+
+/// What spreadsheets take for formulas, in every place where a scene's author has the word.
+#[test]
+fn no_cell_is_a_formula() {
+    let folder = tempfile::tempdir().unwrap();
+    let evil = ["=1+1", "+cmd", "-2+3", "@sum", "\ttab", "-5.5", "#1"];
+    let product = Product {
+        name: "fapar".to_owned(),
+        unit: "1".to_owned(),
+        dimensions: vec![vec![labels("material", &evil)], vec![labels("band", &["=red", "a"])]],
+        values: vec![0.0; 14],
+        standard_error: vec![-0.5; 14],
+        image: None,
+        faces: None,
+    };
+    let mut report = report(vec![sensor("=flux", product)]);
+    report.scene = "=1, =2; +3\t@4, e-5".to_owned();
+    let paths = write(&report, folder.path()).unwrap();
+    let text = fs::read_to_string(&paths[0]).unwrap();
+    assert!(text.contains("# scene: '=1, '=2; '+3 @4, e-5\n# params"), "{text}");
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&paths[0]).unwrap();
+    let header = reader.headers().unwrap().clone();
+    assert_eq!(Vec::from_iter(&header), ["material", "'=red", "'=red_se", "a", "a_se"]);
+    let first: Vec<String> = reader.records().map(|row| row.unwrap()[0].to_owned()).collect();
+    assert_eq!(first, ["'=1+1", "'+cmd", "'-2+3", "'@sum", "'\ttab", "-5.5", "#1"]);
+    assert!(text.contains("-0.5"), "numbers stay as they are");
+}
+
+/// As many values as the lengths of the axes say, in the file as in the report.
+#[test]
+fn the_summary_has_one_axis_a_dimension() {
+    let (_folder, paths) = written();
+    let json: serde_json::Value =
+        serde_json::from_slice(&fs::read(paths.last().unwrap()).unwrap()).unwrap();
+    let mut count = 0;
+    for product in
+        json["sensors"].as_object().unwrap().values().flat_map(|s| s.as_object().unwrap().values())
+    {
+        let axes = product["axes"].as_object().unwrap();
+        let lengths: Vec<usize> =
+            axes.values().map(|axis| axis.as_array().unwrap().len()).collect();
+        assert_eq!(product["shape"], serde_json::json!(lengths));
+        let values = product["values"].as_array().unwrap().len();
+        assert_eq!(lengths.iter().product::<usize>(), values);
+        for (axis, others) in product["coordinates"].as_object().into_iter().flatten() {
+            for (name, points) in others.as_object().unwrap() {
+                let points = points.as_array().unwrap().len();
+                assert_eq!(points, axes[axis].as_array().unwrap().len(), "{name}");
+            }
+        }
+        count += 1;
+    }
+    assert_eq!(count, 2);
 }

@@ -25,7 +25,7 @@ pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller, lai_of_rings
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    Axis, AxisPoints, Forecast, Georeference, Image, Point, Product, Rendering, Report,
+    Axis, AxisPoints, Forecast, Georeference, Image, Origin, Point, Product, Rendering, Report,
     SensorReport, data_size,
 };
 pub use sources::{brightness_of, of_sources};

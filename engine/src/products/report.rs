@@ -1,4 +1,5 @@
 use std::fmt;
+use std::path::PathBuf;
 
 use super::Faces;
 use crate::components::{Channels, Projection};
@@ -258,6 +259,25 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// What each sensor measured, in document order.
     pub sensors: Vec<SensorReport>,
+    /// Values of the scene's parameters.
+    pub params: Vec<(String, f64)>,
+    /// Azimuth of the sun, degrees clockwise from north, if there is one.
+    pub sun_azimuth_deg: Option<f64>,
+    /// Where the scene was read; none of a scene that was built.
+    pub origin: Option<Origin>,
+}
+
+/// File that a scene was read from, and what was changed in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origin {
+    /// The file.
+    pub file: PathBuf,
+    /// Variant that was applied.
+    pub variant: Option<String>,
+    /// Parameters that were given other values.
+    pub set: Vec<(String, f64)>,
+    /// Factor on the numbers of samples.
+    pub quality: f64,
 }
 
 /// A point of a sweep.

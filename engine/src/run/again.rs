@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::sweep::Kept;
-use super::{Failure, Options, Progress, folder_of, in_pool, read, run_kept};
+use super::{Failure, Options, Progress, folder_of, in_pool, origin, read, run_kept};
 use crate::document::{Reading, Scene};
 use crate::products::Report;
 
@@ -12,7 +12,7 @@ use crate::products::Report;
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
 pub struct Runs {
     reading: Reading,
-    folder: PathBuf,
+    file: PathBuf,
     options: Options,
     kept: Option<Kept>,
 }
@@ -24,12 +24,7 @@ impl Runs {
     /// All that is wrong with it, rendered for a person.
     pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
         let reading = read(file, options)?;
-        Ok(Self {
-            reading,
-            folder: folder_of(file).to_owned(),
-            options: options.clone(),
-            kept: None,
-        })
+        Ok(Self { reading, file: file.to_owned(), options: options.clone(), kept: None })
     }
 
     /// The scene as its author wrote it.
@@ -50,12 +45,12 @@ impl Runs {
     ) -> Result<Report, Failure> {
         let mut options = self.options.clone();
         options.quality *= quality;
-        let (folder, source, mut kept) = (&self.folder, &self.reading.source, self.kept.take());
+        let (file, source, mut kept) = (&self.file, &self.reading.source, self.kept.take());
         let report = in_pool(&options, || {
-            run_kept(scene, folder, &options, progress, &mut kept)
+            run_kept(scene, folder_of(file), &options, progress, &mut kept)
                 .map_err(|failure| failure.with_source(source))
         });
         self.kept = kept;
-        report
+        report.map(|report| Report { origin: Some(origin(file, &options)), ..report })
     }
 }

@@ -16,7 +16,7 @@
 //! | 8, n | length of what its films hold, and that (`transport::Film::save`) |
 //! | 32 | BLAKE3 of all bytes before |
 //!
-//! It is written under another name and renamed, so that a run that is killed leaves the last one.
+//! It is written under a name of its own and renamed, so that a run that is killed leaves the last one.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -25,6 +25,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::Failure;
+use crate::output;
+use crate::products::data_size;
 use crate::transport::Share;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
@@ -60,6 +62,26 @@ pub(super) struct Keeper {
     /// What the file is to hold.
     sections: Vec<Section>,
     written: Instant,
+    /// Why the last writing failed.
+    failed: Option<String>,
+}
+
+impl Checkpoint {
+    /// Tries whether the file can be written, before anything is traced; leaves everything as it was.
+    ///
+    /// # Errors
+    /// If it cannot.
+    pub(super) fn try_file(&self) -> Result<(), Failure> {
+        let unwritable = |source: io::Error| {
+            let what = format!("cannot be written: {source}");
+            wrong(&self.file, &what, "name a file in a folder that exists and may be written to")
+        };
+        match std::fs::metadata(&self.file) {
+            Ok(metadata) if !metadata.is_file() => Err(no_file(&self.file)),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unwritable(error)),
+            _ => output::try_file(&self.file).map_err(unwritable),
+        }
+    }
 }
 
 impl Keeper {
@@ -71,6 +93,7 @@ impl Keeper {
             to: None,
             sections: Vec::new(),
             written: Instant::now(),
+            failed: None,
         }
     }
 
@@ -169,19 +192,34 @@ impl Keeper {
         }
     }
 
-    /// Writes all that is kept.
+    /// Writes all that is kept, in the middle of a run. If that fails, the run goes on: what it traces
+    /// is not lost, and the next time may be better. Returns what to warn of.
+    pub(super) fn save(&mut self) -> Option<String> {
+        let to = self.to.as_ref()?;
+        let stored = store(to, self.hash, &self.sections);
+        self.written = Instant::now();
+        self.failed = stored.err().map(|source| {
+            let file = to.file.display();
+            let old = if to.file.exists() { ", which holds what it held before" } else { "" };
+            format!("cannot write the checkpoint {file}{old}: {source}; the run goes on")
+        });
+        self.failed.clone()
+    }
+
+    /// Writes all that is kept, at the end of a run; returns what to warn of.
     ///
     /// # Errors
-    /// If the file cannot be written; the one before it is still there.
-    pub(super) fn write(&mut self) -> Result<(), Failure> {
-        let Some(to) = &self.to else { return Ok(()) };
-        store(to, self.hash, &self.sections).map_err(|source| Failure::Checkpoint {
-            file: to.file.clone(),
-            what: format!("could not be written: {source}"),
-            help: "the results are not lost: free some space, or write it elsewhere".to_owned(),
-        })?;
-        self.written = Instant::now();
-        Ok(())
+    /// If the file cannot be written and is all that this run leaves.
+    pub(super) fn finish(&mut self) -> Result<Option<String>, Failure> {
+        let Some(warning) = self.save() else { return Ok(None) };
+        match &self.to {
+            Some(to) if to.share != Share::ALL => Err(Failure::Checkpoint {
+                file: to.file.clone(),
+                what: "could not be written, and what was traced of this part is lost".to_owned(),
+                help: warning,
+            }),
+            _ => Ok(Some(warning)),
+        }
     }
 
     /// Seconds that a round may take.
@@ -225,38 +263,26 @@ impl<W: Write> Write for Hashed<W> {
 }
 
 fn store(to: &Checkpoint, hash: [u8; 32], sections: &[Section]) -> io::Result<()> {
-    let mut partial = to.file.clone().into_os_string();
-    partial.push(".partial");
-    let file = File::create(&partial)?;
-    let mut out = Hashed { inner: io::BufWriter::new(file), hasher: blake3::Hasher::new() };
-    out.write_all(&MAGIC)?;
-    out.write_all(&VERSION.to_le_bytes())?;
-    text(&mut out, env!("CARGO_PKG_VERSION"))?;
-    out.write_all(&hash)?;
-    out.write_all(&to.share.index.to_le_bytes())?;
-    out.write_all(&to.share.of.to_le_bytes())?;
-    out.write_all(&(sections.len() as u32).to_le_bytes())?;
-    for section in sections {
-        text(&mut out, &section.name)?;
-        out.write_all(&section.done.to_le_bytes())?;
-        out.write_all(&section.seconds.to_le_bytes())?;
-        out.write_all(&(section.state.len() as u64).to_le_bytes())?;
-        out.write_all(&section.state)?;
-    }
-    let sum = out.hasher.finalize();
-    out.write_all(sum.as_bytes())?;
-    out.inner.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
-    std::fs::rename(&partial, &to.file)?;
-    // The new name is on the disk when the folder is; where folders cannot be opened, it is the
-    // system that sees to that.
-    let folder = to.file.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Ok(folder) = File::open(folder.unwrap_or(Path::new("."))) {
-        folder.sync_all().or_else(|error| match error.kind() {
-            io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported => Ok(()),
-            _ => Err(error),
-        })?;
-    }
-    Ok(())
+    output::replace_file(&to.file, |file| {
+        let mut out = Hashed { inner: io::BufWriter::new(file), hasher: blake3::Hasher::new() };
+        out.write_all(&MAGIC)?;
+        out.write_all(&VERSION.to_le_bytes())?;
+        text(&mut out, env!("CARGO_PKG_VERSION"))?;
+        out.write_all(&hash)?;
+        out.write_all(&to.share.index.to_le_bytes())?;
+        out.write_all(&to.share.of.to_le_bytes())?;
+        out.write_all(&(sections.len() as u32).to_le_bytes())?;
+        for section in sections {
+            text(&mut out, &section.name)?;
+            out.write_all(&section.done.to_le_bytes())?;
+            out.write_all(&section.seconds.to_le_bytes())?;
+            out.write_all(&(section.state.len() as u64).to_le_bytes())?;
+            out.write_all(&section.state)?;
+        }
+        let sum = out.hasher.finalize();
+        out.write_all(sum.as_bytes())?;
+        out.flush()
+    })
 }
 
 fn text(out: &mut impl Write, text: &str) -> io::Result<()> {
@@ -264,17 +290,43 @@ fn text(out: &mut impl Write, text: &str) -> io::Result<()> {
     out.write_all(text.as_bytes())
 }
 
-/// Reads a checkpoint of a scene.
-fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
-    let bytes = std::fs::read(file).map_err(|source| unreadable(file, source))?;
-    let start_again = "take the file away to trace from the start";
-    let damaged =
-        || wrong(file, "is damaged: its checksum is not that of what it holds", start_again);
-    if bytes.len() < MAGIC.len() || bytes[..MAGIC.len()] != MAGIC {
+/// Largest checkpoint that is read, bytes: films of more take more memory than machines have.
+const LARGEST: u64 = 1 << 40;
+
+/// What a checkpoint holds; of another file no more is read than its start.
+fn bytes_of(file: &Path) -> Result<Vec<u8>, Failure> {
+    let fail = |source| unreadable(file, source);
+    let metadata = std::fs::metadata(file).map_err(fail)?;
+    // Opening a pipe would wait for its writer, and a device may have no end.
+    if !metadata.is_file() {
+        return Err(no_file(file));
+    }
+    if metadata.len() > LARGEST {
+        let found = format!("holds {}", data_size(metadata.len()));
+        return Err(wrong(file, &found, &format!("a checkpoint has {} at most", data_size(LARGEST))));
+    }
+    let mut input = File::open(file).map_err(fail)?;
+    let mut bytes = Vec::new();
+    input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut bytes).map_err(fail)?;
+    if bytes != MAGIC {
         // What starts otherwise was never one, unless it was cut off.
         let found = "is no checkpoint of sunfleck";
         return Err(wrong(file, found, "name another file; this one is left as it is"));
     }
+    input.take(metadata.len()).read_to_end(&mut bytes).map_err(fail)?;
+    Ok(bytes)
+}
+
+fn no_file(file: &Path) -> Failure {
+    wrong(file, "is no regular file but a folder, a pipe or a device", "name a file")
+}
+
+/// Reads a checkpoint of a scene.
+fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
+    let bytes = bytes_of(file)?;
+    let start_again = "take the file away to trace from the start";
+    let damaged =
+        || wrong(file, "is damaged: its checksum is not that of what it holds", start_again);
     let (all, sum) = bytes.split_last_chunk::<32>().ok_or_else(damaged)?;
     if blake3::hash(all) != *sum {
         return Err(damaged());

@@ -187,7 +187,9 @@ pub(super) fn grow(
             let is_last = ended.is_some() || plan.schedule.last(limit) == done;
             if is_last || keeper.is_due() {
                 keeper.hold(section(name, measurement, done, seconds));
-                keeper.write()?;
+                if let Some(warning) = keeper.save() {
+                    progress.warn(&warning);
+                }
             }
         }
         if let Some(stop) = ended {

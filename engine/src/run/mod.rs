@@ -22,9 +22,9 @@ use hecs::World;
 
 use crate::accel::Boundary;
 use crate::components::{Projection, TerrainPatch};
-use crate::document::{self, Diagnostic, Reading, Scene};
+use crate::document::{self, Diagnostic, Reading, Scene, Sun};
 use crate::extract::{Rules, Setting, Stage, extract};
-use crate::products::{BandSources, Context, Report, SensorReport};
+use crate::products::{BandSources, Context, Origin, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
 
@@ -82,6 +82,8 @@ pub trait Progress: Sync {
     fn sensor(&self, name: &str, done: f64);
     /// A sensor will run for long: so long.
     fn forecast(&self, name: &str, forecast: &Forecast);
+    /// Something is not as it should be, and the run goes on.
+    fn warn(&self, _warning: &str) {}
 }
 
 /// Watches nothing.
@@ -115,8 +117,19 @@ pub fn run_file(
         // Reading found no error, or there would be no scene: what is left are warnings.
         report.warnings.splice(0..0, reading.diagnostics.iter().map(failure::one_line));
         report.seconds = start.elapsed().as_secs_f64();
+        report.origin = Some(origin(path, options));
         Ok(report)
     })
+}
+
+/// Where a scene is read, and what `options` change in it.
+fn origin(file: &Path, options: &Options) -> Origin {
+    Origin {
+        file: file.to_owned(),
+        variant: options.document.variant.clone(),
+        set: options.document.set.clone(),
+        quality: options.quality,
+    }
 }
 
 /// Reads and spawns a scene file without tracing it; returns what its author should know. The ray
@@ -200,6 +213,7 @@ fn run_kept(
 ) -> Result<Report, Failure> {
     let start = Instant::now();
     let mut clock = Clock::start();
+    options.checkpoint.as_ref().map_or(Ok(()), Checkpoint::try_file)?;
     let mut problems = document::check(scene);
     if let Some(name) = scene.include.keys().next() {
         let what = "files are included by reading a scene, and this one was built";
@@ -229,7 +243,7 @@ fn run_kept(
     clock.lap("build");
     let context = context(scene, &stage);
     progress.stage("tracing");
-    let reports = measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
+    let (reports, unsaved) = measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
     clock.lap("trace");
     let report = Report {
         projection: projection(&spawned.world),
@@ -249,11 +263,20 @@ fn run_kept(
             .map(failure::one_line)
             .chain(footprint::warnings(&sensors::in_order(&spawned.world), &stage))
             .chain(unbalanced(&reports))
+            .chain(unsaved)
             .collect(),
         sensors: reports,
+        params: params(scene),
+        sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::angles_deg).map(|(_, azimuth)| azimuth),
+        origin: None,
     };
     *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
     Ok(report)
+}
+
+/// Values of a scene's parameters.
+fn params(scene: &Scene) -> Vec<(String, f64)> {
+    scene.params.iter().map(|(name, value)| (name.clone(), *value)).collect()
 }
 
 /// Projection of the coordinates of the ground.
@@ -292,14 +315,15 @@ fn sources(band: &document::Band) -> BandSources {
     BandSources { window, emits: band.emits(), reflects: band.reflects() }
 }
 
-/// Measures every sensor of the world in document order.
+/// Measures every sensor of the world in document order; returns a warning too if the checkpoint
+/// could not be written.
 fn measure(
     world: &World,
     (stage, context): (&Stage, &Context),
     options: &Options,
     keeper: &mut Keeper,
     progress: &dyn Progress,
-) -> Result<Vec<SensorReport>, Failure> {
+) -> Result<(Vec<SensorReport>, Option<String>), Failure> {
     let scene = (stage, context);
     let sensors = sensors::in_order(world);
     check::check(&sensors, scene, options, keeper)?;
@@ -307,8 +331,7 @@ fn measure(
         .iter()
         .map(|(name, sensor)| sensors::measure(name, sensor, scene, options, keeper, progress));
     let reports = reports.collect::<Result<_, _>>()?;
-    keeper.write()?;
-    Ok(reports)
+    Ok((reports, keeper.finish()?))
 }
 
 fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
@@ -331,6 +354,12 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
+/// Largest number of threads that a run may be given.
+fn most_threads() -> usize {
+    const MOST: usize = 1024;
+    std::thread::available_parallelism().map_or(MOST, |here| here.get().max(MOST))
+}
+
 /// Runs in a pool of as many threads as asked for; no result depends on their number.
 fn in_pool<T: Send>(
     options: &Options,
@@ -338,6 +367,13 @@ fn in_pool<T: Send>(
 ) -> Result<T, Failure> {
     match options.threads {
         None => work(),
+        Some(threads) if threads == 0 || threads > most_threads() => {
+            let reason = format!(
+                "give 1 to {}; results do not depend on it, and more than the machine has gain nothing",
+                most_threads()
+            );
+            Err(Failure::Threads { threads, reason })
+        }
         Some(threads) => rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()

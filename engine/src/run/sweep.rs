@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::provenance::content;
-use super::{Failure, Options, Progress, folder_of, in_pool, read, run_kept};
+use super::{Failure, Options, Progress, folder_of, in_pool, origin, params, read, run_kept};
 use crate::accel;
 use crate::document::{Map, Material, Scene, Sensor, Sky, Spectrum, ThermalSky};
 use crate::products::{Point, Report};
@@ -19,6 +19,7 @@ use crate::spawn::{Spawned, named_files};
 pub struct Sweep {
     file: PathBuf,
     options: Options,
+    scene: Scene,
     points: Vec<Point>,
     order: Vec<usize>,
     kept: Option<Kept>,
@@ -55,7 +56,7 @@ impl Sweep {
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(|&index| alike[index]);
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, points, order, kept: None, builds: 0 })
+        Ok(Self { file, options, scene, points, order, kept: None, builds: 0 })
     }
 
     /// All points, the last parameter fastest.
@@ -93,7 +94,36 @@ impl Sweep {
                 .map_err(|failure| failure.with_source(&reading.source))
         });
         self.kept = kept;
-        report.map_err(|source| wrong_at(point, source))
+        report
+            .map(|report| Report { origin: Some(origin(file, &self.options)), ..report })
+            .map_err(|source| wrong_at(point, source))
+    }
+
+    /// What is common to all points: a report without sensors, whose hash is that of all points.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let mut hasher = blake3::Hasher::new();
+        for point in &self.points {
+            hasher.update(point.key.as_bytes());
+        }
+        Report {
+            projection: None,
+            scene: self.scene.title.clone(),
+            hash: hasher.finalize().to_hex().to_string(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            seed: self.scene.transport.seed,
+            seconds: 0.0,
+            rays: 0,
+            bands: Vec::new(),
+            wavelengths: Vec::new(),
+            stages: Vec::new(),
+            skipped: Vec::new(),
+            warnings: Vec::new(),
+            sensors: Vec::new(),
+            params: params(&self.scene),
+            sun_azimuth_deg: None,
+            origin: Some(origin(&self.file, &self.options)),
+        }
     }
 }
 

@@ -1,14 +1,15 @@
 use std::fmt::Write as _;
 
 use anyhow::Context as _;
+use sunfleck::output::harmless;
 use sunfleck::products::Report;
-use sunfleck::{output, run};
+use sunfleck::run;
 
 use super::curve::{Curve, Level, Repeat};
 use super::picture;
 use crate::arguments::ErrorBench;
 use crate::columns::lay_out;
-use crate::commands::warn;
+use crate::commands::{self, warn};
 use crate::compare::findings::{Estimate, Finding, Values};
 use crate::compare::plan::{Member, Plan};
 use crate::compare::tables::{known, significant, text};
@@ -18,11 +19,10 @@ use crate::progress::Bars;
 const TRUTH: f64 = 4.0;
 
 /// Runs the scene with doubled numbers of samples, again and again; writes `bench.csv`,
-/// `bench_fits.csv` and `bench.svg`; returns a table for a person.
+/// `bench_fits.csv`, `bench.svg` and `summary.json`; returns a table for a person.
 pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
     let measured = &arguments.measured;
-    let folder = measured.folder("bench");
-    output::probe(&folder)?;
+    let results = measured.results("bench")?;
     let mut runs = run::Runs::read(&measured.scene.file, &measured.options())?;
     let plan = Plan::of(runs.scene(), &measured.sensors, &measured.systems())?;
     warn(&plan.warnings);
@@ -57,12 +57,9 @@ pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
         ("bench_fits.csv", fits(&curves)?),
         ("bench.svg", picture::draw(&curves, &truth.scene)?),
     ];
-    for (name, text) in &files {
-        output::replace(&folder.join(name), text)?;
-    }
+    let written = results.write_texts(&truth, &files)?;
     let mut text = summary(&curves);
-    writeln!(text, "\n{} files in {}", files.len(), folder.display())
-        .context("cannot lay out the summary")?;
+    writeln!(text, "\n{}", commands::told(&written)).context("cannot lay out the summary")?;
     Ok(text)
 }
 
@@ -184,8 +181,8 @@ fn levels(curves: &[Curve], quality: f64) -> anyhow::Result<String> {
     for curve in curves {
         for level in &curve.levels {
             writer.write_record([
-                &curve.sensor,
-                &curve.product,
+                &harmless(&curve.sensor),
+                &harmless(&curve.product),
                 curve.system.name(),
                 &known(quality * level.quality),
                 &known(level.seconds()),

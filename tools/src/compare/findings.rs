@@ -1,5 +1,5 @@
 use sunfleck::document::System;
-use sunfleck::output::place;
+use sunfleck::output::{Axes, Place};
 use sunfleck::products::{Product, Report, SensorReport};
 
 use super::plan::Plan;
@@ -146,19 +146,20 @@ impl<'a> Estimate<'a> {
         })
     }
 
-    /// Place and band of a value, or of a pixel's.
-    pub(crate) fn place(&self, index: usize, pixels: bool) -> (String, String) {
+    /// Cells of the axes of a value and of its row and column, if it is that of a pixel; and its band.
+    pub(crate) fn place(&self, index: usize, pixels: bool, axes: &Axes<'_>) -> Place {
         match &self.product.image {
             Some(image) if pixels => {
                 let (pixel, band) = (index / image.bands.len(), index % image.bands.len());
-                let (row, column) = (pixel / image.width, pixel % image.width);
-                (format!("row={row};column={column}"), image.bands[band].clone())
+                let mut cells = vec![String::new(); axes.names().count()];
+                cells.extend([pixel / image.width, pixel % image.width].map(|at| at.to_string()));
+                Place { cells, band: image.bands[band].clone() }
             }
-            Some(_) => {
-                let (_, band) = place(self.product, index);
-                ("mean".to_owned(), band)
+            _ => {
+                let mut place = axes.place(self.product, index);
+                place.cells.extend([String::new(), String::new()]);
+                place
             }
-            None => place(self.product, index),
         }
     }
 }

@@ -10,20 +10,19 @@ pub(crate) mod tables;
 use std::fmt::Write as _;
 
 use anyhow::{Context as _, bail};
-use sunfleck::{output, run};
+use sunfleck::run;
 
 use self::findings::Finding;
 use self::plan::Plan;
 use crate::arguments::Compare;
-use crate::commands::warn;
+use crate::commands::{self, warn};
 use crate::progress::Bars;
 
-/// Runs the scene, writes `compare.csv`, `compare_summary.csv` and `compare.svg`; returns the summary
-/// for a person.
+/// Runs the scene, writes `compare.csv`, `compare_summary.csv`, `compare.svg` and `summary.json`; returns
+/// the summary for a person.
 pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
     let measured = &arguments.measured;
-    let folder = measured.folder("compare");
-    output::probe(&folder)?;
+    let results = measured.results("compare")?;
     let (systems, reference) = (measured.systems(), arguments.reference());
     if !systems.contains(&reference) {
         bail!("the reference `{}` is not among the systems: add it to --systems", reference.name());
@@ -38,19 +37,16 @@ pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
     warn(&report.warnings);
     let findings = Finding::all(&plan, &report, reference);
     let files = [
-        ("compare.csv", tables::values(&findings, arguments.pixels)?),
+        ("compare.csv", tables::values(&findings, &report, arguments.pixels)?),
         ("compare_summary.csv", tables::summary_csv(&findings)?),
         ("compare.svg", picture::draw(&findings, &report.scene)?),
     ];
-    for (name, text) in &files {
-        output::replace(&folder.join(name), text)?;
-    }
+    let written = results.write_texts(&report, &files)?;
     let mut text = tables::summary(&findings);
     writeln!(
         text,
-        "\n{} files in {}: {:.3} million rays in {:.1} s",
-        files.len(),
-        folder.display(),
+        "\n{}: {:.3} million rays in {:.1} s",
+        commands::told(&written),
         report.rays as f64 / 1e6,
         report.seconds
     )

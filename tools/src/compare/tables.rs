@@ -1,28 +1,27 @@
 use std::fmt::Write as _;
 
 use anyhow::Context as _;
-use sunfleck::output::number;
+use sunfleck::output::{Axes, harmless, number};
+use sunfleck::products::Report;
 
 use super::findings::{Finding, Statistics};
 use crate::columns::lay_out;
 
-/// Every value of every system: one row each.
-pub(super) fn values(findings: &[Finding<'_>], pixels: bool) -> anyhow::Result<String> {
+/// Every value of every system: one row each, with a column an axis. Values of pixels have a row and a
+/// column of their image, its mean has none.
+pub(super) fn values(
+    findings: &[Finding<'_>],
+    report: &Report,
+    pixels: bool,
+) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record([
-        "sensor",
-        "product",
-        "unit",
-        "at",
-        "band",
-        "system",
-        "value",
-        "standard_error",
-        "z",
-        "seconds",
-        "rays",
-        "efficiency_per_s",
-    ])?;
+    let products = findings.iter().flat_map(|finding| &finding.estimates).map(|one| one.product);
+    let axes = Axes::of(products, report);
+    let before = ["sensor", "product", "unit"].into_iter();
+    let after =
+        ["row", "column", "band", "system", "value", "standard_error", "z", "seconds", "rays"];
+    let header = before.chain(axes.names()).chain(after).chain(["efficiency_per_s"]);
+    writer.write_record(header.map(harmless))?;
     let sets: &[bool] = if pixels { &[false, true] } else { &[false] };
     for finding in findings {
         for (index, estimate) in finding.estimates.iter().enumerate() {
@@ -30,23 +29,22 @@ pub(super) fn values(findings: &[Finding<'_>], pixels: bool) -> anyhow::Result<S
                 let Some(all) = estimate.values(pixels) else { continue };
                 let scores = finding.scores(index, pixels);
                 for (row, (value, error)) in all.values.iter().zip(&all.errors).enumerate() {
-                    let (at, band) = estimate.place(row, pixels);
+                    let place = estimate.place(row, pixels, &axes);
                     let z = scores.as_ref().map(|scores| scores[row]);
                     let efficiency = (value / error).powi(2) / estimate.seconds;
-                    writer.write_record([
-                        finding.sensor,
-                        finding.product,
-                        finding.unit,
-                        &at,
-                        &band,
-                        estimate.system.name(),
-                        &number(*value),
-                        &number(*error),
-                        &z.map_or_else(String::new, known),
-                        &number(estimate.seconds),
-                        &estimate.rays.to_string(),
-                        &known(efficiency),
-                    ])?;
+                    let named = [finding.sensor, finding.product, finding.unit].map(harmless);
+                    let cells = place.cells.iter().map(|cell| harmless(cell));
+                    let measured = [
+                        harmless(&place.band),
+                        estimate.system.name().to_owned(),
+                        number(*value),
+                        number(*error),
+                        z.map_or_else(String::new, known),
+                        number(estimate.seconds),
+                        estimate.rays.to_string(),
+                        known(efficiency),
+                    ];
+                    writer.write_record(named.into_iter().chain(cells).chain(measured))?;
                 }
             }
         }
@@ -121,7 +119,7 @@ enum Kind {
 pub(super) fn summary_csv(findings: &[Finding<'_>]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows(findings, |_, value| known(value)) {
-        writer.write_record(row)?;
+        writer.write_record(row.iter().map(|cell| harmless(cell)))?;
     }
     text(writer)
 }

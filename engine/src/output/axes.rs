@@ -1,0 +1,64 @@
+//! Columns of tables that hold several products: one an axis.
+
+use super::rows::{columns, indices, point};
+use crate::products::{Axis, Product, Report};
+
+/// Axes of several products, each once, but for the bands.
+#[derive(Clone, Debug)]
+pub struct Axes<'a> {
+    names: Vec<String>,
+    report: &'a Report,
+}
+
+/// Where a value stands in its product.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// A cell for each of the axes; empty for those that the product has not.
+    pub cells: Vec<String>,
+    /// Name of the band; empty without bands.
+    pub band: String,
+}
+
+const BAND: &str = "band";
+
+impl<'a> Axes<'a> {
+    /// Those of products of a report, in the order in which they occur.
+    #[must_use]
+    pub fn of<'p>(products: impl IntoIterator<Item = &'p Product>, report: &'a Report) -> Self {
+        let mut names: Vec<String> = Vec::new();
+        for axis in products.into_iter().flat_map(|product| Self::along(product, report)).flatten()
+        {
+            if axis.name != BAND && !names.contains(&axis.name) {
+                names.push(axis.name);
+            }
+        }
+        Self { names, report }
+    }
+
+    /// Their names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
+    /// Where the value `row` of a product stands.
+    #[must_use]
+    pub fn place(&self, product: &Product, row: usize) -> Place {
+        let mut place = Place { cells: vec![String::new(); self.names.len()], band: String::new() };
+        let places = indices(&product.dimensions, row);
+        for (dimension, index) in Self::along(product, self.report).iter().zip(places) {
+            for axis in dimension {
+                let text = point(axis, index);
+                if axis.name == BAND {
+                    place.band = text;
+                } else if let Some(at) = self.names.iter().position(|name| *name == axis.name) {
+                    place.cells[at] = text;
+                }
+            }
+        }
+        place
+    }
+
+    fn along(product: &Product, report: &Report) -> Vec<Vec<Axis>> {
+        product.dimensions.iter().map(|dimension| columns(dimension, report)).collect()
+    }
+}

@@ -1,0 +1,187 @@
+//! A folder of results of one command for one scene: what may be replaced, and how results get there.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::manifest::{Manifest, relative};
+use super::staging::Staging;
+use super::summary::{Head, Sizes};
+use super::{OutputError, names, put_products, summary};
+use crate::products::{Origin, Report};
+
+/// A folder that results of a command for a scene are written to, as one set of files.
+///
+/// A new set takes the place of an old one in one step: at any moment the folder holds all of one run
+/// and nothing of another. Files in it that are no results stay.
+#[derive(Clone, Debug)]
+pub struct Results {
+    folder: PathBuf,
+    command: &'static str,
+    /// Absolute path of the scene; none of a scene that was built.
+    scene: Option<PathBuf>,
+    force: bool,
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// The folder; another one than was asked for if files that are no results were in the way.
+    pub folder: PathBuf,
+    /// Paths of the files, `summary.json` last.
+    pub files: Vec<PathBuf>,
+    /// Which results they take the place of, if those are not of the same scene with the same
+    /// parameters.
+    pub replaced: Option<String>,
+}
+
+/// Numbers that are appended to a folder's name before writing fails.
+const ATTEMPTS: u32 = 1000;
+
+impl Results {
+    /// Tries whether results can be written to a folder before anything is traced; leaves everything
+    /// as it was, but ends what a killed run began there.
+    ///
+    /// - `command`: what makes the results: `run`
+    /// - `scene`: file of the scene
+    /// - `force`: whether results of another scene or command may be replaced
+    ///
+    /// # Errors
+    /// If the folder cannot be made or written to, or holds results of another scene or command.
+    pub fn open(
+        folder: &Path,
+        command: &'static str,
+        scene: &Path,
+        force: bool,
+    ) -> Result<Self, OutputError> {
+        let scene = Some(scene.canonicalize().unwrap_or_else(|_not_there| scene.to_owned()));
+        let results = Self { folder: folder.to_owned(), command, scene, force };
+        results.stage(folder)?;
+        Ok(results)
+    }
+
+    /// The folder, whatever results it holds; for a program that decides itself what to replace.
+    pub(super) fn of_any(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), command: "run", scene: None, force: true }
+    }
+
+    /// Writes all files of a report.
+    ///
+    /// # Errors
+    /// If a file cannot be written, or a product's shape contradicts its axes; then the folder is as
+    /// it was.
+    pub fn write(&self, report: &Report) -> Result<Written, OutputError> {
+        self.write_with(report, |_| Ok(()))
+    }
+
+    /// The same with more files.
+    pub(super) fn write_with(
+        &self,
+        report: &Report,
+        more: impl Fn(&mut Staging) -> Result<(), OutputError>,
+    ) -> Result<Written, OutputError> {
+        let plan = names::plan(report);
+        self.put(|folder, staging| {
+            let sizes = put_products(report, &plan, staging)?;
+            more(staging)?;
+            let way = self.way_to_scene(staging, report.origin.as_ref());
+            let head = Head::of(report, self.command, way);
+            let head = head.with_files(staging.names());
+            let sizes = Sizes { plan: &plan, bytes: &sizes };
+            staging.file("summary.json", |file| summary::write(&head, report, &sizes, file))?;
+            Ok(replaced(staging, folder, self.command, report))
+        })
+    }
+
+    /// Writes texts, each with its name, and a `summary.json` that says what they are of; `report` is
+    /// of one of the runs that they are made of.
+    ///
+    /// # Errors
+    /// If a file cannot be written; then the folder is as it was.
+    pub fn write_texts(
+        &self,
+        report: &Report,
+        texts: &[(&str, String)],
+    ) -> Result<Written, OutputError> {
+        self.put(|folder, staging| {
+            for (name, text) in texts {
+                staging.file(name, |file| file.write_all(text.as_bytes()))?;
+            }
+            let way = self.way_to_scene(staging, report.origin.as_ref());
+            let head = Head::of(report, self.command, way);
+            let head = head.with_files(staging.names());
+            staging.file("summary.json", |file| summary::write_head(&head, file))?;
+            Ok(replaced(staging, folder, self.command, report))
+        })
+    }
+
+    /// Fills the folder, or one beside it if something is in the way that is none of ours: what was
+    /// traced for hours is not lost for that.
+    fn put(
+        &self,
+        fill: impl Fn(&Path, &mut Staging) -> Result<Option<String>, OutputError>,
+    ) -> Result<Written, OutputError> {
+        let put = |folder: &Path| -> Result<Written, OutputError> {
+            let mut staging = self.stage(folder)?;
+            let replaced = fill(folder, &mut staging)?;
+            let files = staging.commit(self.force)?;
+            Ok(Written { folder: folder.to_owned(), files, replaced })
+        };
+        let first = match put(&self.folder) {
+            Err(error) if self.scene.is_some() && error.is_in_the_way() => error,
+            written => return written,
+        };
+        let mut name = self.folder.file_name().unwrap_or_default().to_owned();
+        name.push("_");
+        for number in 2..ATTEMPTS {
+            let mut numbered = name.clone();
+            numbered.push(number.to_string());
+            let folder = self.folder.with_file_name(numbered);
+            if !folder.exists() {
+                return put(&folder);
+            }
+        }
+        Err(first)
+    }
+
+    /// Opens a folder, if the results in it may be replaced.
+    fn stage(&self, folder: &Path) -> Result<Staging, OutputError> {
+        let staging = Staging::open(folder)?;
+        let Some(scene) = self.scene.as_ref().filter(|_| !self.force) else { return Ok(staging) };
+        match staging.manifest() {
+            Some(found) if !found.is_of(staging.target(), self.command, scene) => {
+                let path = folder.to_owned();
+                let found = found.described(staging.target());
+                Err(OutputError::OfAnother { path, found })
+            }
+            _ => Ok(staging),
+        }
+    }
+
+    fn way_to_scene(&self, staging: &Staging, origin: Option<&Origin>) -> Option<String> {
+        let file = self.scene.as_ref().or(origin.map(|origin| &origin.file))?;
+        let file = file.canonicalize().unwrap_or_else(|_not_there| file.clone());
+        Some(relative(staging.target(), &file))
+    }
+}
+
+/// What to say of the results that are about to be replaced.
+fn replaced(staging: &Staging, folder: &Path, command: &str, report: &Report) -> Option<String> {
+    let old = staging.manifest()?;
+    let origin = report.origin.as_ref()?;
+    let file = origin.file.canonicalize().unwrap_or_else(|_not_there| origin.file.clone());
+    if !old.is_of(staging.target(), command, &file) {
+        return Some(format!(
+            "{} held results of {}",
+            folder.display(),
+            old.described(staging.target())
+        ));
+    }
+    let new = Head::of(report, command, None);
+    let [before, now] = [changes_of(&old), new.changes()];
+    (before != now).then(|| format!("{} held results {before}", folder.display()))
+}
+
+fn changes_of(manifest: &Manifest) -> String {
+    let set = manifest.set.iter().map(|(name, value)| (name.as_str(), value.to_string()));
+    summary::changes(manifest.variant.as_deref(), set, manifest.quality.unwrap_or(1.0))
+}
