@@ -240,3 +240,82 @@ fn what_does_not_fit_together_is_an_error() {
     );
     assert!(!Path::new("out").exists(), "no result was written");
 }
+
+/// *Expected*: what cannot be a checkpoint is an error before anything is traced, and nothing of it is
+/// read to an end that it may not have.
+#[test]
+fn a_checkpoint_that_cannot_be_is_an_error_at_once() {
+    let place = Place::new("nowhere", SCENE);
+    let go =
+        |file: &str| place.error(&["run", "scene.ron", "--quality", "1000", "--checkpoint", file]);
+    let text = go("nodir/c.traced");
+    assert!(text.starts_with("error: nodir/c.traced: cannot be written: "), "{text}");
+    assert!(text.contains("nodir") && text.contains("folder that exists"), "{text}");
+    fs::create_dir(place.path("folder")).expect("a folder");
+    fs::write(place.path("file"), "mine").expect("a file");
+    let mut odd = vec![("folder", "is no regular file"), ("file", "is no checkpoint of sunfleck")];
+    odd.push(("file/c", "cannot be written"));
+    if cfg!(unix) {
+        odd.extend([("/dev/full", "is no regular file"), ("/dev/zero", "is no regular file")]);
+        let made = Command::new("mkfifo").arg(place.path("pipe")).status();
+        if made.is_ok_and(|status| status.success()) {
+            odd.push(("pipe", "is no regular file"));
+            let text = place.error(&["merge", "scene.ron", "pipe"]);
+            assert!(text.contains("pipe: is no regular file"), "{text}");
+        }
+    }
+    for (file, what) in odd {
+        let text = go(file);
+        assert!(text.starts_with(&format!("error: {file}: ")) && text.contains(what), "{text}");
+    }
+    assert_eq!(fs::read_to_string(place.path("file")).expect("a text"), "mine");
+    assert!(!place.path("out").exists());
+}
+
+/// *Expected*: results are written although the checkpoint cannot be any more; a part, of which the
+/// checkpoint is all, fails.
+#[test]
+fn a_checkpoint_that_fails_later_does_not_cost_the_run() {
+    let place = Place::new("later", SCENE);
+    let whole = place.summary(&["run", "scene.ron"]);
+    for (more, code) in [(&[][..], 0), (&["--part", "1/2"][..], 1)] {
+        fs::create_dir(place.path("c")).expect("a folder");
+        let file = ["--checkpoint", "c/c.traced", "--every", "0.01", "--out", "out"];
+        let run = place.command(&[&["run", "scene.ron"], &file[..], more].concat()).spawn();
+        let run = run.expect("sunfleck starts");
+        while !place.path("c/c.traced").exists() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        while fs::remove_dir_all(place.path("c")).is_err() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        let out = run.wait_with_output().expect("it ends");
+        let text = String::from_utf8_lossy(&out.stderr);
+        assert_eq!(out.status.code(), Some(code), "{text}");
+        let warning = "warning: cannot write the checkpoint c/c.traced: ";
+        assert!(text.contains(warning) && text.contains("the run goes on"), "{text}");
+        assert!(!text.contains("not lost"), "{text}");
+        if code == 0 {
+            let text = fs::read_to_string(place.path("out/summary.json")).expect("a summary");
+            assert!(text.contains("cannot write the checkpoint"), "it is in the summary too");
+            let values = |text: &str| -> Vec<String> {
+                text.lines().filter(|line| line.contains("\"values\"")).map(str::to_owned).collect()
+            };
+            assert_eq!(values(&text), values(&whole), "all results");
+        } else {
+            assert!(
+                text.contains("error: c/c.traced: could not be written, and what was traced"),
+                "{text}"
+            );
+        }
+    }
+}
+
+/// *Expected*: a number of threads that no machine has is an error with the largest one.
+#[test]
+fn threads_are_limited() {
+    let place = Place::new("threads", SCENE);
+    let text = place.error(&["run", "scene.ron", "--threads", "1000000"]);
+    assert!(text.starts_with("error: could not start 1000000 threads: give 1 to "), "{text}");
+    assert!(!place.path("out").exists());
+}

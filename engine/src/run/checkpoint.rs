@@ -303,11 +303,15 @@ fn bytes_of(file: &Path) -> Result<Vec<u8>, Failure> {
     }
     if metadata.len() > LARGEST {
         let found = format!("holds {}", data_size(metadata.len()));
-        return Err(wrong(file, &found, &format!("a checkpoint has {} at most", data_size(LARGEST))));
+        return Err(wrong(
+            file,
+            &found,
+            &format!("a checkpoint has {} at most", data_size(LARGEST)),
+        ));
     }
     let mut input = File::open(file).map_err(fail)?;
     let mut bytes = Vec::new();
-    input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut bytes).map_err(fail)?;
+    Read::by_ref(&mut input).take(MAGIC.len() as u64).read_to_end(&mut bytes).map_err(fail)?;
     if bytes != MAGIC {
         // What starts otherwise was never one, unless it was cut off.
         let found = "is no checkpoint of sunfleck";

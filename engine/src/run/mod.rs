@@ -243,7 +243,8 @@ fn run_kept(
     clock.lap("build");
     let context = context(scene, &stage);
     progress.stage("tracing");
-    let (reports, unsaved) = measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
+    let (reports, unsaved) =
+        measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
     clock.lap("trace");
     let report = Report {
         projection: projection(&spawned.world),
