@@ -349,16 +349,13 @@ impl Scene {
 
     /// Name of the scene and of what is changed in it: `birch_winter_sza=60`.
     fn name(&self) -> String {
-        let mut name = self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if let Some(variant) = &self.variant {
-            name += &format!("_{variant}");
-        }
+        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         // Only the last value of a parameter counts.
         let settings: BTreeMap<&str, f64> =
             self.settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        for (param, value) in &settings {
-            name += &format!("_{param}={value}");
-        }
+        let settings = settings.iter().map(|(param, value)| format!("{param}={value}"));
+        let parts = [stem].into_iter().chain(self.variant.clone()).chain(settings);
+        let name = parts.collect::<Vec<_>>().join("_");
         folder_name(&name, &name)
     }
 }

@@ -61,7 +61,9 @@ pub(super) fn write_header(
     let mut names: Vec<_> = image.bands.iter().map(|name| item(name)).collect();
     if raster == Raster::Errors {
         description.insert_str(0, "standard errors and coverage; ");
-        names.iter_mut().for_each(|name| name.push_str("_se"));
+        for name in &mut names {
+            name.push_str("_se");
+        }
         names.push("coverage".to_owned());
     }
     writeln!(file, "ENVI")?;

@@ -159,7 +159,7 @@ fn merge(new: &Path, target: &Path) -> io::Result<()> {
 
 /// Name of the lock file of something unfinished.
 fn is_lock(name: &str) -> bool {
-    name.starts_with('.') && name.ends_with(".lock")
+    name.starts_with('.') && name.strip_suffix(".lock").is_some()
 }
 
 /// Name of a file that a version before 0.2 was writing when it was killed.
