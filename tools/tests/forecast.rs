@@ -78,7 +78,7 @@ fn a_sweep_stops_at_the_point_that_does_not_fit() {
     assert_eq!(code, 1);
     let message = "error: at pixel=0.02: error: films and results take";
     assert!(stderr.starts_with(message), "{stderr}");
-    assert!(folder.path().join("out/soil/points/pixel=2.5/point.csv").is_file());
+    assert!(folder.path().join("out/soil_sweep/points/pixel=2.5/point.csv").is_file());
 }
 
 /// A part holds only what it traces; a checkpoint holds it twice.
