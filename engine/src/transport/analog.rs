@@ -6,6 +6,10 @@ use crate::accel::Ray;
 use crate::sampling::Sampler;
 use crate::scattering::Spectrum;
 
+/// Orders after which a photon ends where nothing is absorbed and nothing gets out; what is left of it counts
+/// as removed by the limit of orders.
+const MOST_ORDERS: u32 = 10_000_000;
+
 impl<'a> Packet<'a> {
     /// Puts the power of all bands into one, chosen in proportion to the power of each: all photons carry
     /// the same, and each band's power is kept in the mean.
@@ -70,7 +74,7 @@ impl<'a> Packet<'a> {
                 (hit.normal.dot(wo) >= 0.0) == (hit.normal.dot(next.direction) >= 0.0)
             });
             let share = |is_whole: bool| if is_whole { whole } else { nothing };
-            let is_last = order >= most;
+            let is_last = order >= most.min(MOST_ORDERS);
             let event = Event::Arrival {
                 hit: &hit,
                 wo,

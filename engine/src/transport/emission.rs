@@ -88,7 +88,9 @@ impl Emission {
         // Packets go where the power is, summed over the bands.
         let power = |share: &[f32], gain| f64::from(share.iter().sum::<f32>()) * gain;
         let (from_sun, from_sky) = (power(&sun_share, sun_gain), power(&sky_share, sky_gain));
-        let sun_chance = from_sun / (from_sun + from_sky);
+        // Where neither shines, packets of weight 0 come from the sun.
+        let all = from_sun + from_sky;
+        let sun_chance = if all > 0.0 { from_sun / all } else { 1.0 };
         Self {
             faces,
             sun_gain,

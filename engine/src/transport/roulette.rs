@@ -38,6 +38,9 @@ pub(super) struct Game<'r> {
 /// nothing is absorbed and nothing gets out.
 const MOST_ORDERS: u32 = 10_000;
 
+/// Minimum probability to end a path at each order from then on, whatever the scene says.
+const FINAL_KILL: f32 = 0.05;
+
 impl Game<'_> {
     /// Of a path that was scattered `order` times and goes on, what its throughput is to be multiplied with, 1
     /// over its chance to do so. The outline of the throughput already is.
@@ -51,9 +54,9 @@ impl Game<'_> {
         let share = largest(throughput) / full;
         let constant = 1.0 - rules.roulette_kill as f32;
         let survival = match order {
+            MOST_ORDERS.. => constant.min(1.0 - FINAL_KILL),
             _ if order <= rules.roulette_after => 1.0,
-            ..MOST_ORDERS => constant.max(share),
-            MOST_ORDERS.. => constant,
+            _ => constant.max(share),
         };
         let survival = survival.min(share / roulette.weak());
         if survival >= 1.0 {
@@ -87,7 +90,7 @@ pub(super) fn scatter<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Game, MOST_ORDERS, Roulette};
+    use super::{FINAL_KILL, Game, MOST_ORDERS, Roulette};
     use crate::extract::Rules;
 
     const RULES: Rules =
@@ -131,5 +134,23 @@ mod tests {
         }
         assert!(game.gain(MOST_ORDERS - 1, &mut throughput(2.0), 0.999_999).is_some());
         assert!(game.gain(MOST_ORDERS, &mut throughput(2.0), 0.96).is_none());
+    }
+
+    /// Without roulette, or with one that starts later than any path ends, paths end all the same, and their
+    /// mean weight is kept.
+    #[test]
+    fn paths_without_roulette_end_beyond_all_orders() {
+        for rules in [
+            Rules { roulette_kill: 0.0, ..RULES },
+            Rules { roulette_after: u32::MAX, roulette_kill: 0.5, ..RULES },
+        ] {
+            let game = Game { rules: &rules, roulette: Roulette::Gentle, full: 2.0 };
+            let survival = 1.0 - f64::from(FINAL_KILL).max(rules.roulette_kill);
+            assert!(game.gain(MOST_ORDERS - 1, &mut throughput(2.0), 0.999_999).is_some());
+            let mut weights = throughput(2.0);
+            assert!(game.gain(MOST_ORDERS, &mut weights, survival + 1e-6).is_none());
+            game.gain(MOST_ORDERS, &mut weights, survival - 1e-6).expect("it goes on");
+            assert!((f64::from(weights[0]) * survival - 2.0).abs() < 1e-6, "{}", weights[0]);
+        }
     }
 }

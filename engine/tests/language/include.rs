@@ -300,3 +300,22 @@ fn patterns_of_an_included_file_are_of_its_own_names() {
     assert_eq!(scene.hide, ["plot.oak", "plot.row*/plot.o*"]);
     assert!(matches!(&scene.terrain, Terrain::Mesh { mesh, .. } if mesh == "plot.oak"));
 }
+
+/// The second `include` is refused at its place, and what is read is a scene that can be written.
+#[test]
+fn files_are_included_by_one_key() {
+    let folder = Folder::with(&[("lib.ron", BIRCH)]);
+    let twice = SITE.replace(
+        "params: {",
+        "include: { \"a\": \"lib.ron\" }, include: { \"\": (params: {}) }, params: {",
+    );
+    std::fs::write(folder.0.path().join("stand.ron"), twice).expect("a file");
+    let reading = folder.read(&Options::default());
+    let shown = reading.render();
+    assert!(shown.contains("the key `include` is given twice"), "{shown}");
+    assert!(shown.contains("stand.ron:4:"), "{shown}");
+    assert!(reading.scene.include.is_empty() && reading.scene.materials.contains_key("a.leaf"));
+    let again =
+        sunfleck::document::read_text("again.ron", &reading.scene.to_ron(), &Options::default());
+    assert_eq!(again.expect("RON").scene, reading.scene);
+}

@@ -45,7 +45,8 @@ pub(super) fn include(tree: &mut Node, source: &mut Source) -> Included {
         single: Vec::new(),
         included: Included { diagnostics: Vec::new(), lost: Vec::new() },
     };
-    let Some(includes) = take_includes(tree) else { return including.included };
+    let Some((includes, repeated)) = take_includes(tree) else { return including.included };
+    including.refuse_repeated(&repeated);
     let mut own = fields(tree).map(std::mem::take).unwrap_or_default();
     including.single = own.iter().map(|field| (field.name.clone(), String::new())).collect();
     including.entries(&includes, "", &mut own);
@@ -75,6 +76,13 @@ struct Including<'a> {
 }
 
 impl Including<'_> {
+    fn refuse_repeated(&mut self, repeated: &[Span]) {
+        for &span in repeated {
+            let help = "name all files in one `include: {..}`".to_owned();
+            self.error(span, "include", "the key `include` is given twice".to_owned(), help);
+        }
+    }
+
     /// The files that an `include` names, into the scene's keys.
     fn entries(&mut self, includes: &Node, namespace: &str, scene: &mut Vec<Field>) {
         let mut plain = includes.clone();
@@ -184,7 +192,10 @@ impl Including<'_> {
             self.error(tree.opening(), &at, message, help.to_owned());
             return None;
         }
-        let inner = take_includes(&mut tree);
+        let inner = take_includes(&mut tree).map(|(inner, repeated)| {
+            self.refuse_repeated(&repeated);
+            inner
+        });
         let folder = relative_folder(&self.chain[0].shown, &path);
         names::qualify(&mut tree, namespace, &folder);
         self.pass(&mut tree, include, passed, entry, namespace)?;
@@ -333,10 +344,12 @@ fn fields(tree: &mut Node) -> Option<&mut Vec<Field>> {
     }
 }
 
-fn take_includes(tree: &mut Node) -> Option<Node> {
+/// Takes the value of the key `include` out of a tree, and the places of the same key where it is repeated.
+fn take_includes(tree: &mut Node) -> Option<(Node, Vec<Span>)> {
     let fields = fields(tree)?;
-    let index = fields.iter().position(|field| field.name == "include")?;
-    Some(fields.remove(index).value)
+    let mut taken = fields.extract_if(.., |field| field.name == "include");
+    let includes = taken.next()?.value;
+    Some((includes, taken.map(|field| field.name_span).collect()))
 }
 
 /// Each file by its name, where it stands, and the parameters that are passed to it. Leaves what the
