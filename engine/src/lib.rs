@@ -10,6 +10,7 @@ pub mod document;
 pub mod extract;
 pub mod film;
 pub mod geometry;
+mod memory;
 pub mod output;
 pub mod placement;
 pub mod products;

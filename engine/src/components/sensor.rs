@@ -23,12 +23,6 @@ impl Sensor {
             Self::Photons(sensor) => &sensor.until,
         }
     }
-
-    /// Whether products are named in that.
-    #[must_use]
-    pub fn names_products(&self) -> bool {
-        self.until().iter().any(|stop| matches!(stop, Stop::RelErrors(_)))
-    }
 }
 
 /// A transport system: how a product is estimated.

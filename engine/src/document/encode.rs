@@ -4,12 +4,17 @@ use std::fmt::Write as _;
 
 use indexmap::IndexMap;
 
+use super::numbers::{Step, Walk};
+
 /// A line holds so many characters, where it can.
 const WIDTH: usize = 100;
 
 /// A type that can be written.
 pub(super) trait Encode {
     fn encode(&self) -> Text;
+
+    /// Visits the real numbers in it.
+    fn numbers<'a>(&'a self, _: &mut Walk<'_, 'a>) {}
 }
 
 /// Text before it is broken into lines.
@@ -283,6 +288,10 @@ impl Encode for f64 {
         // The shortest decimal that is read back as the same number.
         Text::Leaf(format!("{self:?}"))
     }
+
+    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        walk.number(*self);
+    }
 }
 
 impl Encode for u32 {
@@ -313,12 +322,24 @@ impl<T: Encode> Encode for Option<T> {
     fn encode(&self) -> Text {
         self.as_ref().map_or_else(|| Text::Leaf("None".to_owned()), T::encode)
     }
+
+    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        if let Some(value) = self {
+            value.numbers(walk);
+        }
+    }
 }
 
 impl<T: Encode> Encode for Vec<T> {
     fn encode(&self) -> Text {
         let items = self.iter().map(|item| Item::new(None, String::new(), item.encode())).collect();
         Text::group("[".to_owned(), items, "]")
+    }
+
+    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        for (index, item) in self.iter().enumerate() {
+            walk.below(Step::Index(index), item);
+        }
     }
 }
 
@@ -329,6 +350,12 @@ impl<T: Encode> Encode for IndexMap<String, T> {
         };
         Text::group("{".to_owned(), self.iter().map(entry).collect(), "}")
     }
+
+    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        for (name, value) in self {
+            walk.below(Step::Name(name), value);
+        }
+    }
 }
 
 macro_rules! encode_tuple {
@@ -336,6 +363,10 @@ macro_rules! encode_tuple {
         impl<$($type: Encode),*> Encode for ($($type,)*) {
             fn encode(&self) -> Text {
                 Text::record("", vec![$(Item::new(None, String::new(), self.$index.encode())),*])
+            }
+
+            fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+                $(walk.below(Step::Index($index), &self.$index);)*
             }
         }
     };

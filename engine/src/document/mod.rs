@@ -11,6 +11,7 @@ mod expand;
 mod format;
 mod formula;
 mod include;
+mod numbers;
 mod params;
 mod read;
 mod scene;
@@ -19,7 +20,7 @@ mod sun;
 mod syntax;
 
 pub use check::check;
-pub(crate) use check::check_maps;
+pub(crate) use check::{HEIGHT, IRRADIANCE, LENGTH, Range, SCALE, check_maps};
 pub use describe::json_schema;
 pub(crate) use diagnostic::suggestion;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};

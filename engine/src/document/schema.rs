@@ -65,6 +65,12 @@ macro_rules! record {
                 $(encode_key!(items, $field: $type $(= $default)?);)*
                 Text::record("", items)
             }
+
+            fn numbers<'a>(&'a self, walk: &mut crate::document::numbers::Walk<'_, 'a>) {
+                use crate::document::numbers::Step;
+                let Self { $($field),* } = self;
+                $(walk.below(Step::Key(stringify!($field)), $field);)*
+            }
         }
     };
 }
@@ -142,6 +148,18 @@ macro_rules! choice {
                         @pattern value $variant $(($tuple))? $({ $($field),* })?
                     ) => encode_variant!(
                         @text value $variant $(($tuple))? $({ $($field: $type $(= $default)?),* })?
+                    ),)*
+                }
+            }
+
+            fn numbers<'a>(&'a self, walk: &mut crate::document::numbers::Walk<'_, 'a>) {
+                // A choice between names alone has no numbers.
+                let _: &mut _ = walk;
+                match self {
+                    $(encode_variant!(
+                        @pattern value $variant $(($tuple))? $({ $($field),* })?
+                    ) => encode_variant!(
+                        @numbers walk value $variant $(($tuple))? $({ $($field),* })?
                     ),)*
                 }
             }
@@ -299,6 +317,15 @@ macro_rules! encode_variant {
     (@pattern $value:ident $variant:ident { $($field:ident),* }) => {
         Self::$variant { $($field),* }
     };
+    (@numbers $walk:ident $value:ident $variant:ident) => {
+        ()
+    };
+    (@numbers $walk:ident $value:ident $variant:ident ($tuple:ty)) => {
+        $value.numbers($walk)
+    };
+    (@numbers $walk:ident $value:ident $variant:ident { $($field:ident),* }) => {{
+        $($walk.below(crate::document::numbers::Step::Key(stringify!($field)), $field);)*
+    }};
     (@text $value:ident $variant:ident) => {
         Text::Leaf(stringify!($variant).to_owned())
     };

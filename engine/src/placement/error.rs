@@ -1,5 +1,7 @@
 use glam::DVec2;
 
+use crate::memory::Lack;
+
 /// Why a rule places nothing.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -22,6 +24,8 @@ pub enum PlacementError {
         "{stems:.3e} stems are more than {most} for one `Scatter`; use several, or fewer stems"
     )]
     TooManyStems { stems: f64, most: usize },
+    #[error("{stems:.3e} stems take {lack}; use fewer")]
+    NoMemory { stems: f64, lack: Lack },
     #[error(
         "only {placed} of {wanted} stems stand {distance} m apart, then no place is left: at random \
          about {at_random:.0} find a place here, and in the tightest order (rows of equilateral \

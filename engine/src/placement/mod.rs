@@ -30,6 +30,7 @@ use glam::DVec2;
 
 use crate::document::Rule;
 use crate::geometry::Rectangle;
+use crate::memory;
 use crate::sampling::Key;
 use crate::terrain::Cells;
 
@@ -44,6 +45,9 @@ pub use stand::{Habit, Species, stand};
 
 /// Most stems of one scatter.
 const MOST_STEMS: usize = 20_000_000;
+
+/// Memory of a stem while the ray engine builds its tree, bytes.
+const STEM_BYTES: u64 = 410;
 
 /// How many stems are asked for.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +89,9 @@ pub fn places(
     };
     if let Some(stems) = wanted.filter(|&wanted| wanted > MOST_STEMS as f64) {
         return Err(PlacementError::TooManyStems { stems, most: MOST_STEMS });
+    }
+    if let Some(lack) = wanted.and_then(|stems| memory::lacking(stems, STEM_BYTES)) {
+        return Err(PlacementError::NoMemory { stems: wanted.unwrap_or_default(), lack });
     }
     let wanted = wanted.map(|wanted| wanted as usize);
     match *rule {

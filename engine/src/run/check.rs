@@ -3,13 +3,14 @@
 use super::checkpoint::Keeper;
 use super::forecast::{self, Size};
 use super::growth::is_ledger;
-use super::sensors::begin;
+use super::sensors::{MOST_SAMPLES, begin};
 use super::{Failure, Options};
-use crate::components::{Sensor, Stop};
+use crate::components::{ImageSamples, Sensor, Stop};
 use crate::document::{Diagnostic, suggestion, unknown_name};
 use crate::extract::Stage;
+use crate::memory;
 use crate::products::{Context, Product};
-use crate::transport::{RANDOMISATIONS, Share};
+use crate::transport::{Camera, RANDOMISATIONS, Share};
 
 /// Refuses what cannot be measured, before anything is traced.
 ///
@@ -40,6 +41,7 @@ fn problems_of(
     let (mut measurement, plan) = begin(name, sensor, scene, quality);
     let path = format!("sensors.{name}.until");
     let mut problems = Vec::new();
+    problems.extend(too_many_samples(name, sensor, scene.0, quality));
     let films = measurement.films();
     let fixed = films.iter().find_map(|paced| paced.film.can_grow().err());
     if let Some(bytes) = fixed.filter(|_| !plan.is_fixed()) {
@@ -88,6 +90,25 @@ fn problems_of(
     problems
 }
 
+/// A problem if a density makes more samples in a pixel than it may have.
+fn too_many_samples(
+    name: &str,
+    sensor: &Sensor,
+    stage: &Stage,
+    quality: f64,
+) -> Option<Diagnostic> {
+    let Sensor::Image(image) = sensor else { return None };
+    let ImageSamples::PerArea(density) = image.samples else { return None };
+    let samples = Camera::of(image, stage).samples(image.samples) * quality;
+    // The density that makes as many as there may be, with three digits.
+    let most = 0.995 * density * MOST_SAMPLES / samples;
+    (image.until.is_empty() && samples > MOST_SAMPLES).then(|| {
+        let message = format!("{density:e} samples per m² make {samples:.2e} samples in a pixel");
+        let help = format!("a pixel may have {MOST_SAMPLES}: write at most {most:.2e}");
+        Diagnostic::error(format!("sensors.{name}.samples_per_m2"), message).help(help)
+    })
+}
+
 /// What each sensor will take.
 ///
 /// # Errors
@@ -103,7 +124,7 @@ fn check_memory(
         Size::of(measurement.as_mut(), keeper)
     };
     let sizes = sensors.iter().map(|(name, sensor)| size(name, sensor)).collect();
-    let free = options.memory.or_else(forecast::free_memory).unwrap_or(u64::MAX);
+    let free = options.memory.or_else(memory::free).unwrap_or(u64::MAX);
     match forecast::check(sensors, sizes, free, size) {
         Some(problem) => Err(Failure::Problems(vec![problem])),
         None => Ok(()),

@@ -1,6 +1,5 @@
 use std::path::PathBuf;
 
-use crate::accel::BuildError;
 use crate::document::{Diagnostic, Source};
 
 /// Why a scene was not run.
@@ -20,8 +19,6 @@ pub enum Failure {
     /// At one point of a sweep, something is wrong.
     #[error("at {point}: {source}")]
     Point { point: String, source: Box<Self> },
-    #[error(transparent)]
-    Build(#[from] BuildError),
     #[error("{}: could not be read again: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {what}; {help}", file.display())]

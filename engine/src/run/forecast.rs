@@ -4,8 +4,6 @@ use std::cmp::Reverse;
 use std::iter::successors;
 use std::sync::OnceLock;
 
-use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, System};
-
 use super::advice::{Smaller, smaller};
 use super::checkpoint::Keeper;
 use super::growth::Measurement;
@@ -181,18 +179,3 @@ const SHOWN: usize = 5;
 
 /// Sizes that are tried for one that fits.
 const TRIES: usize = 40;
-
-/// Memory that this process can still take, bytes: what the system has left, and what the control
-/// groups of this process allow it. `None` if nothing tells.
-pub(super) fn free_memory() -> Option<u64> {
-    let mut system = System::new().ok()?;
-    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    let free = Some(system.available_memory()).filter(|free| *free > 0);
-    let id = sysinfo::get_current_pid().ok()?;
-    let own = ProcessesToUpdate::Some(&[id]);
-    system.refresh_processes_specifics(own, false, ProcessRefreshKind::nothing());
-    let limits = system.process(id).and_then(sysinfo::Process::cgroup_limits);
-    // Files that the group has read count as used, but give way.
-    let allowed = limits.map(|limits| limits.total_memory.saturating_sub(limits.rss));
-    free.into_iter().chain(allowed).min()
-}

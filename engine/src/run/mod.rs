@@ -11,6 +11,7 @@ mod growth;
 mod photons;
 mod provenance;
 mod sensors;
+mod staging;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,7 @@ use hecs::World;
 use crate::accel::Boundary;
 use crate::components::{Projection, TerrainPatch};
 use crate::document::{self, Diagnostic, Reading, Scene, Sun};
-use crate::extract::{Rules, Setting, Stage, extract};
+use crate::extract::{Rules, Setting, Stage};
 use crate::products::{BandSources, Context, Origin, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
@@ -37,6 +38,7 @@ pub use failure::Failure;
 use checkpoint::Keeper;
 pub use sweep::Sweep;
 
+use staging::staged;
 use sweep::Kept;
 
 /// What the caller decides beyond the scene.
@@ -132,21 +134,32 @@ fn origin(file: &Path, options: &Options) -> Origin {
     }
 }
 
-/// Reads and spawns a scene file without tracing it; returns what its author should know. The ray
-/// engine's trees are built only if some sensor names products, which are known no earlier.
+/// Does all that a run does before it traces the first ray; returns what the scene's author should know.
 ///
 /// # Errors
 /// All that is wrong with the scene, rendered for a person.
 pub fn check_file(path: &Path, options: &Options) -> Result<Vec<String>, Failure> {
+    check_file_with(path, options, &Unwatched)
+}
+
+/// The same, watched.
+///
+/// # Errors
+/// All that is wrong with the scene, rendered for a person.
+pub fn check_file_with(
+    path: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Vec<String>, Failure> {
+    progress.stage("reading the scene");
     let reading = read(path, options)?;
     let build = || {
+        progress.stage("loading");
         let spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
-        let sensors = sensors::in_order(&spawned.world);
-        if !sensors.iter().any(|(_, sensor)| sensor.names_products()) {
-            return Ok(spawned);
-        }
-        let stage = extract(&spawned.world, &setting(&reading.scene), None)?;
+        progress.stage("building");
+        let stage = staged(&spawned, &reading.scene, None)?;
         let context = context(&reading.scene, &stage);
+        let sensors = sensors::in_order(&spawned.world);
         check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
         Ok(spawned)
     };
@@ -182,7 +195,8 @@ pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
         let spawned = spawn(&reading.scene, folder_of(path))
             .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
         clock.lap("load");
-        let stage = extract(&spawned.world, &setting(&reading.scene), None)?;
+        let stage = staged(&spawned, &reading.scene, None)
+            .map_err(|failure| failure.with_source(&reading.source))?;
         clock.lap("build");
         let seconds = |lap: usize| clock.laps[lap].1;
         Ok(Ready { stage, load_seconds: seconds(0), build_seconds: seconds(1) })
@@ -239,7 +253,7 @@ fn run_kept(
     };
     clock.lap("spawn");
     progress.stage("building");
-    let stage = extract(&spawned.world, &setting(scene), built)?;
+    let stage = staged(&spawned, scene, built)?;
     clock.lap("build");
     let context = context(scene, &stage);
     progress.stage("tracing");

@@ -112,7 +112,7 @@ fn each_of(samples: u64) -> u64 {
 }
 
 /// Samples that a pixel may have.
-const MOST_SAMPLES: f64 = 16_777_216.0;
+pub(super) const MOST_SAMPLES: f64 = 16_777_216.0;
 
 /// Pixels of an image from which on the median of their errors is one from eight samples on.
 const MANY_PIXELS: u64 = 256;

@@ -66,6 +66,7 @@ impl Spawner<'_> {
                 break;
             }
             placements.append(&mut placed);
+            self.origins.push(index, placements.len());
         }
         for (id, placement) in placements.iter_mut().enumerate() {
             placement.id = SceneId(id as u32);

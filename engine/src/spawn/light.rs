@@ -3,7 +3,7 @@ use hecs::World;
 use super::Spawner;
 use super::spectra::Quantity;
 use crate::components::{SceneId, Sky, Sun, View};
-use crate::document;
+use crate::document::{self, Diagnostic};
 
 impl Spawner<'_> {
     /// Spawns sun and sky.
@@ -45,7 +45,32 @@ impl Spawner<'_> {
                 (sun, sky)
             }
         };
+        self.doubt_dark_bands(sun.as_ref(), sky.as_ref());
         world.spawn_batch(sun.into_iter().map(|sun| (SceneId(0), sun)));
         world.spawn_batch(sky.into_iter().map(|sky| (SceneId(0), sky)));
+    }
+
+    /// Warns of bands without light where reflectance is measured: nothing has a reflectance there.
+    fn doubt_dark_bands(&mut self, sun: Option<&Sun>, sky: Option<&Sky>) {
+        let lights = [sun.map(|sun| &sun.irradiance), sky.map(|sky| &sky.irradiance)];
+        let is_dark = |band: usize| lights.iter().flatten().all(|light| light[band] <= 0.0);
+        let bands = self.scene.bands.iter().enumerate();
+        let dark: Vec<String> = bands
+            .filter(|&(index, band)| band.reflects() && is_dark(index))
+            .map(|(_, band)| format!("`{}`", band.name))
+            .collect();
+        // Scenes without any light measure gaps and emission, or were refused.
+        if dark.is_empty() || lights.iter().all(Option::is_none) {
+            return;
+        }
+        let path = if sun.is_some() { "sun.irradiance" } else { "sky.irradiance" };
+        let message = format!(
+            "no light falls on the scene in {} {}: radiance is 0 there, and reflectance factors, albedo and \
+             absorbed fractions have no value",
+            if dark.len() == 1 { "band" } else { "bands" },
+            dark.join(", ")
+        );
+        let help = "write an irradiance above 0, or take the bands out";
+        self.problems.push(Diagnostic::warning(path, message).help(help));
     }
 }

@@ -1,6 +1,7 @@
 //! Document and assets to entities; every error of the scene in one pass, each with its place.
 
 mod canopy;
+mod crossing;
 mod doubts;
 mod files;
 mod images;
@@ -10,6 +11,7 @@ mod light;
 mod materials;
 mod meshes;
 mod raster;
+mod reach;
 mod scatter;
 mod sensors;
 mod spectra;
@@ -30,6 +32,7 @@ use lay::Georeference;
 
 pub use files::missing_files;
 pub(crate) use files::named_files;
+use reach::{Origins, Reach};
 
 /// A world, and how it came about.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
@@ -46,12 +49,26 @@ pub struct Spawned {
     of_geometry: Notes,
 }
 
+impl Spawned {
+    /// Extent of all geometry.
+    pub(crate) fn reach(&self) -> &Reach {
+        &self.of_geometry.reach
+    }
+
+    /// Places in the document that instances come from.
+    pub(crate) fn origins(&self) -> &Origins {
+        &self.of_geometry.origins
+    }
+}
+
 /// What spawning notes on the way.
 #[derive(Clone, Default)]
 struct Notes {
     files: Vec<PathBuf>,
     skipped: Vec<String>,
     problems: Vec<Diagnostic>,
+    reach: Reach,
+    origins: Origins,
 }
 
 /// What the steps of spawning share.
@@ -61,6 +78,8 @@ pub(crate) struct Spawner<'a> {
     files: Vec<PathBuf>,
     skipped: Vec<String>,
     problems: Vec<Diagnostic>,
+    reach: Reach,
+    origins: Origins,
     /// South-west corner and extent of the ground, m.
     rectangle: (DVec2, DVec2),
     /// Where rasters lie; `None` if that of the terrain does not say.
@@ -85,7 +104,6 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     if let (Some(patch), Some(ground)) = (&patch, &ground) {
         spawner.doubt_overhangs(patch, ground);
     }
-    world.spawn_batch(patch.into_iter().map(|patch| (SceneId(0), patch)));
     let meshes = spawner.meshes();
     let placements = spawner.instances(&meshes, ground.as_ref());
     spawner.check_patterns();
@@ -95,6 +113,10 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
         spawner.doubt_places(&placements, &meshes, ground);
     }
     spawner.doubt_sizes(&meshes);
+    if let Some(patch) = &patch {
+        spawner.check_reach(&placements, &meshes, patch);
+    }
+    world.spawn_batch(patch.into_iter().map(|patch| (SceneId(0), patch)));
     let of_geometry = spawner.notes();
     for (id, mesh) in meshes {
         world.spawn((SceneId(id), mesh.name, mesh.mesh, mesh.materials));
@@ -128,7 +150,7 @@ pub fn respawn(spawned: Spawned, scene: &Scene, folder: &Path) -> Result<Spawned
 
 impl<'a> Spawner<'a> {
     fn new(scene: &'a Scene, folder: &'a Path, notes: Notes) -> Self {
-        let Notes { files, skipped, problems } = notes;
+        let Notes { files, skipped, problems, reach, origins } = notes;
         let (x, y, _) = scene.frame.origin_m;
         let georeference = Some(Georeference {
             from: DVec2::new(x, y),
@@ -137,12 +159,17 @@ impl<'a> Spawner<'a> {
             is_of_degrees: false,
         });
         let rectangle = (DVec2::ZERO, DVec2::ONE);
-        Self { scene, folder, files, skipped, problems, rectangle, georeference }
+        Self { scene, folder, files, skipped, problems, reach, origins, rectangle, georeference }
     }
 
     fn notes(&self) -> Notes {
-        let (files, skipped) = (self.files.clone(), self.skipped.clone());
-        Notes { files, skipped, problems: self.problems.clone() }
+        Notes {
+            files: self.files.clone(),
+            skipped: self.skipped.clone(),
+            problems: self.problems.clone(),
+            reach: self.reach.clone(),
+            origins: self.origins.clone(),
+        }
     }
 
     /// Spawns all that is no geometry.
@@ -158,6 +185,7 @@ impl<'a> Spawner<'a> {
             self.check_flux_maps(patch.size);
             self.doubt_images();
         }
+        self.check_crossings();
         self.materials(&worn, &mut world);
         self.light(&mut world);
         self.emission(&mut world);

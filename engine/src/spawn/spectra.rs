@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use super::Spawner;
 use crate::assets;
-use crate::document::{Diagnostic, Spectrum, unknown_name};
+use crate::document::{Diagnostic, IRRADIANCE, Spectrum, unknown_name};
 use crate::spectral::band_mean;
 use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
 
@@ -22,7 +22,8 @@ impl Spawner<'_> {
         quantity: Quantity,
         path: &str,
     ) -> Option<Vec<f64>> {
-        match self.resolve(spectrum, quantity, path, &mut BTreeSet::new()) {
+        let resolved = self.resolve(spectrum, quantity, path, &mut BTreeSet::new());
+        match resolved.and_then(|values| lawful(values, quantity, path)) {
             Ok(values) => Some(values),
             Err(problem) => {
                 self.problems.push(*problem);
@@ -122,6 +123,15 @@ impl Spawner<'_> {
             })
         });
         means.collect()
+    }
+}
+
+/// The values, if they can be those of the quantity.
+fn lawful(values: Vec<f64>, quantity: Quantity, path: &str) -> Result<Vec<f64>, Box<Diagnostic>> {
+    let beyond = values.iter().find_map(|&value| IRRADIANCE.problem(value));
+    match beyond.filter(|_| quantity == Quantity::Irradiance) {
+        Some((message, help)) => Err(Box::new(Diagnostic::error(path, message).help(help))),
+        None => Ok(values),
     }
 }
 

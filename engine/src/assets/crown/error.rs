@@ -1,3 +1,5 @@
+use crate::memory::Lack;
+
 /// Why a crown cannot grow.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -14,6 +16,11 @@ pub enum CrownError {
          larger leaves, or several instances of a smaller crown"
     )]
     TooManyLeaves { count: f64, most: f64 },
+    #[error(
+        "leaf_area_m2 and the leaf's size make {count:e} leaves, which take {lack}; use fewer or larger \
+         leaves, or several instances of a smaller crown"
+    )]
+    NoMemory { count: f64, lack: Lack },
     #[error("leaf_area_m2 is {area}, less than half of one leaf of {leaf} m²; use smaller leaves")]
     LessThanALeaf { area: f64, leaf: f64 },
     #[error("the crown has neither leaves nor a trunk; give leaf_area_m2 above 0 or a trunk")]

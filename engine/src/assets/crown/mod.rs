@@ -21,9 +21,13 @@ use crate::components::{Mesh, Part};
 use crate::document::{
     self, Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk,
 };
+use crate::memory;
 
 /// Most leaves, or needles, of one crown.
 const MOST_LEAVES: f64 = 5e7;
+
+/// Memory of a leaf or needle while the ray engine builds its tree, bytes.
+const LEAF_BYTES: u64 = 160;
 
 /// Most clumps of one crown.
 const MOST_CLUMPS: u32 = 10_000_000;
@@ -165,6 +169,9 @@ fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
     let flat = count * f64::from(leaves::pieces(&crown.leaf));
     if flat > MOST_LEAVES {
         return Err(CrownError::TooManyLeaves { count: flat, most: MOST_LEAVES });
+    }
+    if let Some(lack) = memory::lacking(flat, LEAF_BYTES) {
+        return Err(CrownError::NoMemory { count: flat, lack });
     }
     if count < 1.0 {
         return Err(CrownError::LessThanALeaf { area, leaf });

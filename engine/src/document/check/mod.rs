@@ -8,6 +8,7 @@ mod light;
 mod mesh;
 mod plane;
 mod program;
+mod range;
 mod sensor;
 mod spectrum;
 mod system;
@@ -16,10 +17,14 @@ mod thermal;
 use super::diagnostic::{Diagnostic, unknown_name};
 use super::scene::{Map, Scene, Transport};
 
+pub(crate) use range::{HEIGHT, IRRADIANCE, LENGTH, Range, SCALE};
 pub(crate) use sensor::check_maps;
 
 /// No more errors than this are kept: nobody reads them.
 const ERRORS: usize = 100;
+
+/// Largest zenith angle: what lies within a millionth of a degree of the horizon is on it.
+pub(crate) const LOWEST_DEG: f64 = 90.0 - 1e-6;
 
 /// Everything wrong with a scene that needs no file to be seen.
 #[must_use]
@@ -49,6 +54,7 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
     thermal::check_temperatures(scene, &mut report);
     sensor::check_sensors(scene, &mut report);
     check_transport(&scene.transport, &mut report);
+    range::check_ranges(scene, &mut report);
     report.finish()
 }
 
@@ -134,10 +140,12 @@ impl Report<'_> {
 
     /// Angle from the vertical, below the horizon's 90°.
     fn zenith(&mut self, path: &str, degrees: f64) {
-        if !(0.0..90.0).contains(&degrees) {
+        if !(0.0..=LOWEST_DEG).contains(&degrees) {
             let message =
                 format!("expected an angle from the vertical, 0 up to below 90°, found {degrees}");
-            let help = if (-90.0..0.0).contains(&degrees) {
+            let help = if (LOWEST_DEG..90.0).contains(&degrees) {
+                format!("write at most {LOWEST_DEG}: what is lower is on the horizon")
+            } else if (-90.0..0.0).contains(&degrees) {
                 format!("write {} and turn the azimuth by 180°", -degrees)
             } else {
                 "0 is overhead, 90 would be the horizon".to_owned()

@@ -4,6 +4,7 @@ use super::super::scene::{
     Band, BandSource, ImageMeasure, PhotonMeasure, Scene, Sensor, Temperature, ThermalSky,
 };
 use super::Report;
+use super::range::TEMPERATURE;
 use super::spectrum::{Quantity, check_spectrum};
 
 pub(super) fn check_thermal_sky(scene: &Scene, report: &mut Report<'_>) {
@@ -113,7 +114,11 @@ pub(super) fn needs_light(scene: &Scene) -> bool {
 }
 
 fn kelvin(path: &str, value: f64, report: &mut Report<'_>) {
-    if !(value >= 0.0 && value.is_finite()) {
+    if value > 0.0
+        && let Some((message, help)) = TEMPERATURE.problem(value)
+    {
+        report.error(path, message, help);
+    } else if !(value >= 0.0 && value.is_finite()) {
         let message = format!("expected a temperature of at least 0 K, found {value}");
         let help = if (-273.15..0.0).contains(&value) {
             format!("{value} °C is {:.2} K", value + 273.15)

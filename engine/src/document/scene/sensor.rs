@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::describe::Book;
 use super::super::encode::{Encode, Text, differs};
+use super::super::numbers::Walk;
 use super::super::syntax::{Node, Value};
 use super::camera::{Cover, FisheyeProjection, Look, Picture};
 use super::until::{Ends, Until};
@@ -439,6 +440,13 @@ impl Encode for Layers {
         match self {
             Self::Thickness(thickness) => thickness.encode(),
             Self::Borders(borders) => borders.encode(),
+        }
+    }
+
+    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        match self {
+            Self::Thickness(thickness) => thickness.numbers(walk),
+            Self::Borders(borders) => borders.numbers(walk),
         }
     }
 }

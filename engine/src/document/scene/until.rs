@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Reader, Variant};
 use super::super::describe::Book;
 use super::super::encode::{Encode, Text};
+use super::super::numbers::Walk;
 use super::super::syntax::{Node, Value};
 use super::Map;
 
@@ -63,6 +64,13 @@ impl Encode for Ends {
         match self.0.as_slice() {
             [end] => end.encode(),
             _ => self.0.encode(),
+        }
+    }
+
+    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        match self.0.as_slice() {
+            [end] => end.numbers(walk),
+            _ => self.0.numbers(walk),
         }
     }
 }

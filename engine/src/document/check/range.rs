@@ -1,0 +1,210 @@
+//! Lawful ranges of quantities: one table for all keys.
+
+use super::super::numbers::{Step, path_of, visit_numbers};
+use super::super::scene::Scene;
+use super::Report;
+
+/// Lawful values of a quantity; the ends are lawful.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Range {
+    /// Name of the quantity with an article.
+    quantity: &'static str,
+    /// Unit behind a number; empty for none.
+    unit: &'static str,
+    least: f64,
+    most: f64,
+    /// What to write instead.
+    help: &'static str,
+}
+
+/// Coordinates and lengths. Eastings that start with the number of their zone reach 3.3e7 m.
+pub(crate) const LENGTH: Range = Range {
+    quantity: "a coordinate or a length",
+    unit: "m",
+    least: -1e8,
+    most: 1e8,
+    help: "lengths are in metres; coordinates of a map may be moved by `frame.origin_m`",
+};
+
+/// Heights, and heights of sensors: satellites among them.
+pub(crate) const HEIGHT: Range = Range {
+    quantity: "a height",
+    unit: "m",
+    least: -1e7,
+    most: 1e7,
+    help: "heights are in metres",
+};
+
+const AREA: Range = Range {
+    quantity: "an area, or a number per area",
+    unit: "",
+    least: 0.0,
+    most: 1e12,
+    help: "areas are in m², densities per m²",
+};
+
+const ANGLE: Range = Range {
+    quantity: "an angle",
+    unit: "°",
+    least: -1e6,
+    most: 1e6,
+    help: "angles are in degrees",
+};
+
+const WAVELENGTH: Range = Range {
+    quantity: "a wavelength",
+    unit: "nm",
+    least: 0.0,
+    most: 1e9,
+    help: "wavelengths are in nanometres: 10 µm is 10000.0",
+};
+
+/// Temperatures. Flames and lamps are below 4000 K.
+pub(super) const TEMPERATURE: Range = Range {
+    quantity: "a temperature",
+    unit: "K",
+    least: 0.0,
+    most: 1e4,
+    help: "temperatures are in kelvins: 20 °C is 293.15",
+};
+
+const TEMPERATURE_DIFFERENCE: Range = Range {
+    quantity: "a difference of temperatures",
+    unit: "K",
+    least: -1e4,
+    most: 1e4,
+    help: "it is the sunlit temperature less the shaded one",
+};
+
+/// Irradiance, and radiance of the thermal sky. The surface of the sun has some 1e5 W m⁻² nm⁻¹.
+pub(crate) const IRRADIANCE: Range = Range {
+    quantity: "an irradiance or a radiance",
+    unit: "W m⁻² nm⁻¹",
+    least: 0.0,
+    most: 1e12,
+    help: "the sun has some 1 to 2 W m⁻² nm⁻¹ in the visible",
+};
+
+/// Sizes of instances over that of their mesh.
+pub(crate) const SCALE: Range = Range {
+    quantity: "a scale",
+    unit: "",
+    least: 0.0,
+    most: 1e6,
+    help: "a scale of 1 leaves the mesh as it is",
+};
+
+const SECONDS: Range = Range {
+    quantity: "a time",
+    unit: "s",
+    least: 0.0,
+    most: 1e9,
+    help: "the time of a measurement is in seconds",
+};
+
+impl Range {
+    /// What is wrong with a value, and what to write instead; `None` if it is lawful.
+    pub(crate) fn problem(&self, value: f64) -> Option<(String, &'static str)> {
+        let Self { quantity, unit, least, most, help } = self;
+        if (*least..=*most).contains(&value) {
+            return None;
+        }
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let [least, most, value] = [*least, *most, value].map(shown);
+        let message = format!("expected {quantity} from {least} to {most}{unit}, found {value}");
+        Some((message, help))
+    }
+}
+
+/// A number with at most six digits before the point.
+fn shown(value: f64) -> String {
+    let is_short = value == 0.0 || (1e-3..1e6).contains(&value.abs());
+    if is_short { value.to_string() } else { format!("{value:e}") }
+}
+
+/// Reports numbers beyond the range of their quantity where nothing else is wrong with them.
+pub(super) fn check_ranges(scene: &Scene, report: &mut Report<'_>) {
+    let known: Vec<String> = report.found.iter().map(|one| one.path.clone()).collect();
+    visit_numbers(scene, &mut |steps, value| {
+        let problem = range_of(steps).map_or_else(
+            || {
+                (!value.is_finite())
+                    .then(|| (format!("expected a finite number, found {value}"), ""))
+            },
+            |range| range.problem(value),
+        );
+        let Some((message, help)) = problem else { return };
+        let path = path_of(steps);
+        if known.iter().any(|known| super::is_within(&path, known)) {
+            return;
+        }
+        if help.is_empty() {
+            report.push(super::Diagnostic::error(path, message));
+        } else {
+            report.error(&path, message, help);
+        }
+    });
+}
+
+/// The range of the quantity that a number at this path is of.
+fn range_of(steps: &[Step<'_>]) -> Option<&'static Range> {
+    // Numbers that authors have named may be anything.
+    if let Some(Step::Key("params" | "variants" | "sweep")) = steps.first() {
+        return None;
+    }
+    let is_third = matches!(steps, [.., Step::Key(_), Step::Index(2)])
+        || matches!(steps, [.., Step::Key(_), Step::Index(_), Step::Index(2)]);
+    // Those of a distribution are of what the key above it is of.
+    let key = steps.iter().rev().find_map(|step| match step {
+        Step::Key(key) if !["mean", "sd", "median", "min", "max"].contains(key) => Some(*key),
+        _ => None,
+    })?;
+    Some(match key {
+        "scale" => &SCALE,
+        "temperature" => &TEMPERATURE,
+        "spectra" | "irradiance" if is_point(steps) => match steps.last() {
+            Some(Step::Index(0)) => &WAVELENGTH,
+            _ => &IRRADIANCE,
+        },
+        "spectra" | "irradiance" => &IRRADIANCE,
+        "until" => &SECONDS,
+        "height_m" | "heights_m" | "base_m" | "lowest_m" => &HEIGHT,
+        _ if key.ends_with("_m") && is_third => &HEIGHT,
+        _ if key.ends_with("_m") => &LENGTH,
+        _ if key.ends_with("_m2") => &AREA,
+        _ if key.ends_with("_deg") => &ANGLE,
+        _ if key.ends_with("_nm") => &WAVELENGTH,
+        "delta_k" => &TEMPERATURE_DIFFERENCE,
+        _ if key.ends_with("_k") => &TEMPERATURE,
+        _ => return None,
+    })
+}
+
+/// Whether a number is one of a pair in a list.
+fn is_point(steps: &[Step<'_>]) -> bool {
+    matches!(steps, [.., Step::Index(_), Step::Index(_)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::numbers::Step::{Index, Key, Name};
+    use super::{HEIGHT, IRRADIANCE, LENGTH, SCALE, TEMPERATURE, WAVELENGTH, range_of};
+
+    #[test]
+    fn a_quantity_follows_from_the_keys_above_a_number() {
+        let at = [Key("instances"), Index(0), Key("at_m"), Index(7)];
+        assert_eq!(range_of(&[&at[..], &[Index(1)]].concat()), Some(&LENGTH));
+        assert_eq!(range_of(&[&at[..], &[Index(2)]].concat()), Some(&HEIGHT));
+        let camera = [Key("sensors"), Name("up"), Key("position_m"), Index(2)];
+        assert_eq!(range_of(&camera), Some(&HEIGHT));
+        let scale = [Key("instances"), Index(0), Key("scale"), Key("mean")];
+        assert_eq!(range_of(&scale), Some(&SCALE));
+        let kelvin = [Key("materials"), Name("soil"), Key("temperature")];
+        assert_eq!(range_of(&kelvin), Some(&TEMPERATURE));
+        let sun = [Key("sun"), Key("irradiance")];
+        assert_eq!(range_of(&sun), Some(&IRRADIANCE));
+        assert_eq!(range_of(&[&sun[..], &[Index(3), Index(0)]].concat()), Some(&WAVELENGTH));
+        assert_eq!(range_of(&[&sun[..], &[Index(3), Index(1)]].concat()), Some(&IRRADIANCE));
+        assert_eq!(range_of(&[Key("params"), Name("height_m")]), None);
+    }
+}
