@@ -194,7 +194,10 @@ fn run_options(arguments: &Run) -> run::Options {
 
 fn check(scene: &Scene) -> anyhow::Result<()> {
     let options = run::Options { document: scene.options(), ..run::Options::default() };
-    let warnings = run::check_file(&scene.file, &options)?;
+    let bars = Bars::new();
+    let warnings = run::check_file_with(&scene.file, &options, &bars);
+    bars.clear();
+    let warnings = warnings?;
     warn(&warnings);
     let found = match warnings.iter().filter(|warning| !warning.starts_with(SKIPPED)).count() {
         0 => "no errors".to_owned(),
