@@ -1,7 +1,8 @@
 //! Looks for files that make a reader panic, take long or take much memory.
 //!
 //! `fuzz READER [--seconds 600] [--seed 1] [--out FOLDER]`: files that say something new become
-//! seeds themselves. What breaks the reader is made small and saved.
+//! seeds themselves. What breaks the reader is made small and saved. `fuzz pipeline` checks and runs scenes, in
+//! processes of their own with limits of memory and time: a scene that ends its process is saved as well.
 
 #![expect(clippy::print_stdout, reason = "a program for the terminal")]
 
@@ -9,7 +10,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -62,11 +63,76 @@ fn main() -> ExitCode {
         println!("fuzz READER [--seconds 600] [--seed 1] [--out FOLDER]; READER: {names:?}");
         return ExitCode::FAILURE;
     };
+    if arguments.reader.is_pipeline() && std::env::var_os(CHILD).is_none() {
+        let found = supervise(&arguments);
+        return if found == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    }
     hush();
-    let mut hunt = Hunt::new(arguments.reader);
+    let mut hunt = Hunt::new(arguments.reader, arguments.seed);
     let found = hunt.run(&arguments);
-    fs::remove_dir_all(&hunt.folder).expect("the folder of the fuzzer can be removed");
+    if std::env::var_os(CHILD).is_none() {
+        fs::remove_dir_all(&hunt.folder).expect("the folder of the fuzzer can be removed");
+    }
     if found == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Set in the environment of a process that runs scenes for another.
+const CHILD: &str = "SUNFLECK_FUZZ_CHILD";
+
+/// Seconds after which a process that runs scenes is followed by the next.
+const BATCH: u64 = 600;
+
+/// Address space of such a process, KiB.
+const ADDRESS_SPACE: u64 = 4 << 20;
+
+/// Runs scenes in processes of their own until the time is over; returns how many of those failed.
+fn supervise(arguments: &Arguments) -> usize {
+    let start = Instant::now();
+    let (mut tried, mut failed) = (0_u64, 0);
+    let program = std::env::current_exe().expect("this program has a path");
+    for seed in arguments.seed.. {
+        let left = arguments.seconds.saturating_sub(start.elapsed().as_secs());
+        if left == 0 {
+            break;
+        }
+        let seconds = left.min(BATCH);
+        let limits = format!("ulimit -v {ADDRESS_SPACE}; ulimit -t {}", 2 * seconds + 2 * HANG);
+        let status = Command::new("sh")
+            .args(["-c", &format!("{limits}; exec \"$0\" \"$@\"")])
+            .arg(&program)
+            .args([arguments.reader.name, "--seconds", &seconds.to_string()])
+            .args(["--seed", &seed.to_string(), "--out"])
+            .arg(&arguments.out)
+            .env(CHILD, "1")
+            .status()
+            .expect("a shell");
+        let folder = folder_of(arguments.reader, seed);
+        let count = fs::read_to_string(folder.join(COUNT)).ok();
+        tried += count.and_then(|count| count.parse().ok()).unwrap_or(0);
+        if !status.success() {
+            failed += 1;
+            // A panic was saved by the process itself; what ended it is still there.
+            let file = folder.join("file").with_extension(arguments.reader.extensions[0]);
+            if status.code() != Some(1) && file.is_file() {
+                let name = format!("ended_{seed}.{}", arguments.reader.extensions[0]);
+                fs::create_dir_all(&arguments.out).expect("a folder for what is found");
+                fs::copy(&file, arguments.out.join(&name)).expect("what is found can be saved");
+                println!("{name}: {status}");
+            }
+        }
+        // A process that was ended left its folder.
+        drop(fs::remove_dir_all(&folder));
+        println!("{} s: {tried} scenes, {failed} processes failed", start.elapsed().as_secs());
+    }
+    failed
+}
+
+/// File that holds the number of scenes tried.
+const COUNT: &str = "count";
+
+/// Folder that files are written to.
+fn folder_of(reader: &Reader, seed: u64) -> PathBuf {
+    std::env::temp_dir().join(format!("fuzz-{}-{seed}", reader.name))
 }
 
 /// A reader, and the folder where its files are written.
@@ -80,8 +146,8 @@ struct Hunt {
 }
 
 impl Hunt {
-    fn new(reader: &'static Reader) -> Self {
-        let folder = std::env::temp_dir().join(format!("fuzz-{}", reader.name));
+    fn new(reader: &'static Reader, seed: u64) -> Self {
+        let folder = folder_of(reader, seed);
         fs::create_dir_all(&folder).expect("a folder to write files to");
         let file = folder.join("file").with_extension(reader.extensions[0]);
         let (start, since) = (Instant::now(), Arc::new(AtomicU64::new(0)));
@@ -116,9 +182,17 @@ impl Hunt {
         while self.start.elapsed().as_secs() < arguments.seconds {
             let (bytes, is_seed) = match waiting.pop() {
                 Some(seed) => (seed, true),
+                // Most scenes that are changed byte by byte are refused for their syntax.
+                None if self.reader.is_pipeline() && mutator.below(8) > 0 => {
+                    (mutator.variant(&pool), false)
+                }
                 None => (mutator.mutant(&pool), false),
             };
             tried += 1;
+            if self.reader.is_pipeline() {
+                // Readable should this process be ended.
+                fs::write(self.folder.join(COUNT), tried.to_string()).expect("a count");
+            }
             match self.try_bytes(&bytes) {
                 Ok(kinds) => {
                     let mut is_new = false;

@@ -6,6 +6,7 @@
 //! `corpus` reads all of that again.
 
 mod mutation;
+mod pipeline;
 mod readers;
 
 use std::fs;
@@ -15,17 +16,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use cpu_time::ThreadTime;
+use cpu_time::ProcessTime;
 use peak_alloc::PeakAlloc;
 
 pub use mutation::Mutator;
 pub use readers::{READERS, Reader, reader};
-
-/// What a reader may take for one file of the fuzzer's size.
-const MOST_TIME: Duration = Duration::from_secs(2);
-
-/// What a reader may ask for, whatever the file, bytes.
-const FREE_BYTES: usize = 64 << 20;
 
 /// What it may ask for beyond that for each byte of the file.
 const BYTES_PER_BYTE: usize = 100;
@@ -94,8 +89,8 @@ pub fn judge(reader: &Reader, folder: &Path, file: &Path) -> Result<Answer, Faul
     let length = fs::metadata(file).expect("the file can be read").len() as usize;
     PeakAlloc.reset_peak_usage();
     let before = PeakAlloc.current_usage();
-    // Other programs may have the processor: only the reader's own time counts.
-    let start = ThreadTime::now();
+    // Other programs may have the processor: only the time of this one counts.
+    let start = ProcessTime::now();
     IS_READING.store(true, Ordering::Relaxed);
     let answer = catch_unwind(AssertUnwindSafe(|| (reader.read)(file)));
     IS_READING.store(false, Ordering::Relaxed);
@@ -105,10 +100,10 @@ pub fn judge(reader: &Reader, folder: &Path, file: &Path) -> Result<Answer, Faul
         let message = LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone();
         return Err(Fault::Panic(message));
     };
-    if peak > FREE_BYTES + BYTES_PER_BYTE * length {
+    if peak > reader.free_bytes + BYTES_PER_BYTE * length {
         return Err(Fault::Fat(peak));
     }
-    if seconds > MOST_TIME {
+    if seconds.as_secs_f64() > reader.most_seconds {
         return Err(Fault::Slow(seconds));
     }
     let text = text.replace(&format!("{}/", folder.display()), "");

@@ -105,6 +105,66 @@ impl Mutator {
         bytes
     }
 
+    /// A text that most likely still parses, made of some of the pool: some of its numbers are other numbers,
+    /// and values of some keys are those of the same keys elsewhere.
+    ///
+    /// # Panics
+    /// If the pool is empty.
+    pub fn variant(&mut self, pool: &[Vec<u8>]) -> Vec<u8> {
+        let mut bytes = self.pick(pool).to_vec();
+        for _ in 0..=self.below(4) {
+            match self.below(8) {
+                0..3 => self.replace_number(&mut bytes),
+                3 => self
+                    .replace_word(&mut bytes, |word| word[0].is_ascii_digit() || word[0] == b'-'),
+                4..7 => {
+                    let other = self.pick(pool).to_vec();
+                    self.exchange_value(&mut bytes, &other);
+                }
+                _ => self.replace_word(&mut bytes, |word| word[0].is_ascii_uppercase()),
+            }
+            bytes.truncate(LARGEST);
+        }
+        bytes
+    }
+
+    /// A number becomes a multiple of itself, or one near it.
+    fn replace_number(&mut self, bytes: &mut Vec<u8>) {
+        let mut places = word_places(bytes);
+        places.retain(|place| bytes[place.start].is_ascii_digit() || bytes[place.start] == b'-');
+        if places.is_empty() {
+            return;
+        }
+        let place = places.swap_remove(self.below(places.len()));
+        let text = String::from_utf8_lossy(&bytes[place.clone()]).into_owned();
+        let Ok(number) = text.parse::<f64>() else { return };
+        let factors = [0.0, -1.0, 0.5, 0.999_999, 2.0, 10.0, 1e-3, 1e3, 1e-6, 1e6, 1e-12, 1e12];
+        let changed = match self.below(factors.len() + 2) {
+            0 => number + 1.0,
+            1 => number - 1.0,
+            factor => number * factors[factor - 2],
+        };
+        let is_whole = !text.contains(['.', 'e', 'E']);
+        let new = if is_whole { format!("{}", changed.trunc()) } else { format!("{changed:?}") };
+        bytes.splice(place, new.into_bytes());
+    }
+
+    /// The value of a key becomes that of the same key in another text.
+    fn exchange_value(&mut self, bytes: &mut Vec<u8>, other: &[u8]) {
+        let (own, theirs) = (values(bytes), values(other));
+        if own.is_empty() {
+            return;
+        }
+        let place = &own[self.below(own.len())];
+        let key = &bytes[place.key.clone()];
+        let alike: Vec<_> = theirs.iter().filter(|one| &other[one.key.clone()] == key).collect();
+        if alike.is_empty() {
+            return;
+        }
+        let value = alike[self.below(alike.len())].value.clone();
+        bytes.splice(place.value.clone(), other[value].iter().copied());
+    }
+
     fn pick<'a>(&mut self, pool: &'a [Vec<u8>]) -> &'a [u8] {
         let first = if self.below(2) == 0 { 0 } else { pool.len() / 2 };
         &pool[first + self.below(pool.len() - first)]
@@ -221,4 +281,35 @@ fn word_places(bytes: &[u8]) -> Vec<Range<usize>> {
         }
     }
     places
+}
+
+/// A key of a text and its value.
+struct Entry {
+    key: Range<usize>,
+    value: Range<usize>,
+}
+
+/// All `key: value` of a text, from the outermost to the innermost.
+fn values(bytes: &[u8]) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for key in word_places(bytes) {
+        if bytes.get(key.end) != Some(&b':') {
+            continue;
+        }
+        let start = key.end + 1;
+        let (mut depth, mut is_quoted, mut end) = (0_u32, false, start);
+        for &byte in &bytes[start..] {
+            match byte {
+                b'"' => is_quoted = !is_quoted,
+                _ if is_quoted => {}
+                b'(' | b'[' | b'{' => depth += 1,
+                b')' | b']' | b'}' | b',' if depth == 0 => break,
+                b')' | b']' | b'}' => depth -= 1,
+                _ => {}
+            }
+            end += 1;
+        }
+        entries.push(Entry { key, value: start..end });
+    }
+    entries
 }

@@ -9,8 +9,10 @@ use sunfleck::assets::{
 use sunfleck::components::Mesh;
 use sunfleck::document::{self, Axis, Options, Origin, Reading};
 
+use super::pipeline::pipeline;
+
 /// What a person reads, and the kinds of things in it.
-type Said = (String, Vec<String>);
+pub(super) type Said = (String, Vec<String>);
 
 /// A reader that anybody's file may come to.
 #[derive(Clone, Copy, Debug)]
@@ -23,26 +25,56 @@ pub struct Reader {
     pub seeds: &'static [&'static str],
     /// Reads a file and asserts what its value promises.
     pub read: fn(&Path) -> Said,
+    /// Processor time, s, that it may take for one file.
+    pub most_seconds: f64,
+    /// Memory that it may ask for whatever the file, bytes.
+    pub free_bytes: usize,
 }
 
+/// What a reader may take for one file of the fuzzer's size.
+const MOST_SECONDS: f64 = 2.0;
+
+/// What a reader may ask for, whatever the file, bytes.
+const FREE_BYTES: usize = 64 << 20;
+
+impl Reader {
+    const fn new(
+        name: &'static str,
+        extensions: &'static [&'static str],
+        seeds: &'static [&'static str],
+        read: fn(&Path) -> Said,
+    ) -> Self {
+        Self { name, extensions, seeds, read, most_seconds: MOST_SECONDS, free_bytes: FREE_BYTES }
+    }
+
+    /// Whether its files go through all of sunfleck, in processes of their own with limits.
+    #[must_use]
+    pub fn is_pipeline(&self) -> bool {
+        self.name == PIPELINE
+    }
+}
+
+/// Name of the reader that runs scenes.
+const PIPELINE: &str = "pipeline";
+
 /// All readers.
-pub const READERS: [Reader; 11] = [
+pub const READERS: [Reader; 12] = [
+    Reader::new("scene", &["ron"], &["scenes", "tests/scenes", "engine/tests/language"], scene),
+    Reader::new("obj", &["obj"], &["tools/tests/less"], obj),
+    Reader::new("discs", &["csv", "txt"], &[], discs),
+    Reader::new("envi", &["hdr"], &["tools/tests/less"], raster),
+    Reader::new("ascii", &["asc"], &[], raster),
+    Reader::new("geotiff", &["tif"], &[], raster),
+    Reader::new("gltf", &["gltf", "glb"], &[], gltf),
+    Reader::new("geojson", &["geojson"], &["scenes/assets"], geojson),
+    Reader::new("polygons", &["csv"], &[], polygons),
+    Reader::new("instances", &["csv"], &[], instances),
+    Reader::new("spectrum", &["csv"], &[], spectrum),
     Reader {
-        name: "scene",
-        extensions: &["ron"],
-        seeds: &["scenes", "tests/scenes", "engine/tests/language"],
-        read: scene,
+        most_seconds: 20.0,
+        free_bytes: 1 << 30,
+        ..Reader::new(PIPELINE, &["ron"], &["tests/field/70-hostile"], pipeline)
     },
-    Reader { name: "obj", extensions: &["obj"], seeds: &["tools/tests/less"], read: obj },
-    Reader { name: "discs", extensions: &["csv", "txt"], seeds: &[], read: discs },
-    Reader { name: "envi", extensions: &["hdr"], seeds: &["tools/tests/less"], read: raster },
-    Reader { name: "ascii", extensions: &["asc"], seeds: &[], read: raster },
-    Reader { name: "geotiff", extensions: &["tif"], seeds: &[], read: raster },
-    Reader { name: "gltf", extensions: &["gltf", "glb"], seeds: &[], read: gltf },
-    Reader { name: "geojson", extensions: &["geojson"], seeds: &["scenes/assets"], read: geojson },
-    Reader { name: "polygons", extensions: &["csv"], seeds: &[], read: polygons },
-    Reader { name: "instances", extensions: &["csv"], seeds: &[], read: instances },
-    Reader { name: "spectrum", extensions: &["csv"], seeds: &[], read: spectrum },
 ];
 
 /// The reader of this name.
