@@ -113,7 +113,7 @@ impl Progress for Bars {
 const SILENCE: Duration = Duration::from_secs(2);
 
 /// Longest silence in a pipe.
-const LONGEST_SILENCE: Duration = Duration::from_secs(600);
+const LONGEST_SILENCE: Duration = Duration::from_mins(10);
 
 /// How often is looked whether a word is due.
 const BEAT: Duration = Duration::from_millis(200);
