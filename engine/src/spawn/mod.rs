@@ -4,6 +4,7 @@ mod canopy;
 mod crossing;
 mod doubts;
 mod files;
+mod heights;
 mod images;
 mod instances;
 mod lay;
@@ -184,6 +185,7 @@ impl<'a> Spawner<'a> {
             self.rectangle = (patch.corner, patch.size);
             self.check_flux_maps(patch.size);
             self.doubt_images();
+            self.warn_buried_sensors(patch, &world);
         }
         self.check_crossings();
         self.materials(&worn, &mut world);

@@ -32,7 +32,7 @@ impl Spawner<'_> {
             .collect();
         for placement in placements {
             let Some(&bounds) = bounds.get(&placement.prototype.0) else { continue };
-            let (low, high) = heights(placement, bounds);
+            let (low, high) = vertical_extent(placement, bounds);
             let Some(below) = ground.height(placement.position.truncate()) else { continue };
             let (gap, height) = (low - below, high - low);
             let floats = gap > height;
@@ -60,7 +60,7 @@ impl Spawner<'_> {
 }
 
 /// Lowest and highest height of the box around a placed mesh, m.
-fn heights(placement: &Placement, bounds: [DVec3; 2]) -> (f64, f64) {
+pub(super) fn vertical_extent(placement: &Placement, bounds: [DVec3; 2]) -> (f64, f64) {
     // The height of a corner is linear in its coordinates, so each axis has its own extremes.
     let up = placement.world_from_object().row(2);
     let (a, b) = (bounds[0] * up, bounds[1] * up);
