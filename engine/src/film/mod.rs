@@ -6,10 +6,12 @@
 //! points within one of them have.
 
 mod ratio;
+mod replicates;
 mod spread;
 mod sums;
 
 pub use ratio::ratio;
+pub use replicates::Replicates;
 pub use spread::Spread;
 pub use sums::Sums;
 pub(crate) use sums::written;

@@ -3,7 +3,7 @@
 use super::context::labels;
 use super::directions::axes;
 use super::images::georeference;
-use super::leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller, lai_of_rings};
+use super::leaf_area::{GapSums, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
 use super::{Axis, Context, Image, Product, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
@@ -72,9 +72,8 @@ pub fn components_of_image(
                     &outcome.mean_error[column.clone()],
                 )
             };
-            let lai = lai_of_rings(outcome.zones.values()).into_iter().map(|(name, lai, error)| {
-                product(name, vec![vec![axis(&["lai"])]], &[lai], &[error])
-            });
+            let rings = GapSums { sums: &outcome.zones, stride: 2, gaps: 0, samples: 1 };
+            let lai = lai_of_rings(&rings).into_iter().map(|index| single(&index));
             std::iter::once(gaps).chain(lai).collect()
         }
         ImageMeasure::Radiance
@@ -116,20 +115,11 @@ pub fn components_of_directions(
                 by_view("gap_fraction", "gap", &gaps, &errors),
                 by_view("lai_beer", "lai", &lai, &lai_errors),
             ];
-            let rings = by_zenith(views, &gaps, &errors);
-            let single = |name: &str, (lai, error): (f64, f64)| {
-                product(name, vec![vec![axis(&["lai"])]], &[lai], &[error])
-            };
-            if rings.len() > 1 {
-                products.push(single("lai_miller", lai_miller(&rings)));
-            }
-            let ring = |degrees: f64| {
-                let found = rings.iter().find(|ring| (ring.0.to_degrees() - degrees).abs() < 1e-6);
-                found.map(|&(_, gap, error)| (gap, error))
-            };
-            if let [Some(a), Some(b), Some(c), Some(d), Some(e)] = LAI_2000_RINGS.map(ring) {
-                products.push(single("lai_2000", lai_2000(&[a, b, c, d, e])));
-            }
+            let zeniths: Vec<f64> = views.iter().map(|view| view.zenith).collect();
+            let stride = COMPONENT_COLUMNS + 1;
+            let sums = &outcome.sums;
+            let sums = GapSums { sums, stride, gaps: GAP_COLUMN, samples: COMPONENT_COLUMNS };
+            products.extend(lai_of_views(&zeniths, &sums).iter().map(single));
             products
         }
         ImageMeasure::Radiance
@@ -139,22 +129,10 @@ pub fn components_of_directions(
     }
 }
 
-/// Zenith angles, rising, each once, with the mean over its azimuths of gap fraction and error.
-fn by_zenith(views: &[View], gaps: &[f64], errors: &[f64]) -> Vec<(f64, f64, f64)> {
-    let mut all: Vec<(f64, f64, f64)> = views
-        .iter()
-        .zip(gaps.iter().zip(errors))
-        .map(|(view, (&gap, &error))| (view.zenith, gap, error))
-        .collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all.chunk_by(|a, b| (a.0 - b.0).abs() < 1e-9)
-        .map(|same| {
-            let mean = |of: fn(&(f64, f64, f64)) -> f64| {
-                same.iter().map(of).sum::<f64>() / same.len() as f64
-            };
-            (same[0].0, mean(|one| one.1), mean(|one| one.2))
-        })
-        .collect()
+/// A product of one number.
+fn single(index: &LeafAreaIndex) -> Product {
+    let dimensions = vec![vec![axis(&["lai"])]];
+    product(index.name, dimensions, &[index.value], &[index.standard_error])
 }
 
 /// Number, from 1, of the largest share; NaN if none of them was seen.

@@ -21,7 +21,9 @@ pub use context::{BandSources, Context};
 pub use directions::of_directions;
 pub use extent::{Extent, extents_of_directions, extents_of_image};
 pub use images::of_image;
-pub use leaf_area::{LAI_2000_RINGS, lai_2000, lai_beer, lai_miller, lai_of_rings};
+pub use leaf_area::{
+    GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views,
+};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{

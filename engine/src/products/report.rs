@@ -95,6 +95,13 @@ impl Product {
         estimates.peek().is_some() && estimates.all(|(value, _)| value == 0.0)
     }
 
+    /// Whether it has values, and all of them are infinite: logarithms of what was never found.
+    #[must_use]
+    pub fn is_unbounded(&self) -> bool {
+        let mut estimates = self.estimates().peekable();
+        estimates.peek().is_some() && estimates.all(|(value, _)| value.is_infinite())
+    }
+
     /// Median over all values other than 0, of an image over those of its pixels, of
     /// `standard error / |value|`; `None` if no value has an error.
     #[must_use]

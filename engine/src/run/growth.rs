@@ -310,12 +310,13 @@ pub(super) fn trace(measurement: &mut dyn Measurement, to: u64, watch: Watch<'_>
 }
 
 /// Median relative standard error of each product that was asked for, by name; infinite of one that
-/// is black for want of samples.
+/// is black, or a logarithm of nothing, for want of samples.
 pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String, f64)> {
     let samples: u64 = measurement.films().iter().map(|paced| paced.film.samples()).sum();
     let of = |product: &Product| {
         let black = if samples < BLACK { f64::INFINITY } else { 0.0 };
-        let error = if product.is_black() { Some(black) } else { product.median_relative_error() };
+        let is_unknown = product.is_black() || product.is_unbounded();
+        let error = if is_unknown { Some(black) } else { product.median_relative_error() };
         error.map(|error| (product.name.clone(), error))
     };
     measurement.products().iter().filter_map(of).collect()

@@ -71,8 +71,14 @@ impl Relief {
         if self.is_periodic {
             return self.ground.height(corner + (inside - inside.floor()) * size);
         }
-        let is_beside = inside.cmplt(DVec2::ZERO).any() || inside.cmpgt(DVec2::ONE).any();
-        if is_beside { Some(self.lowest) } else { self.ground.height(at) }
+        if self.is_beside(at) { Some(self.lowest) } else { self.ground.height(at) }
+    }
+
+    /// Whether a place lies beside the ground of an isolated scene.
+    fn is_beside(&self, at: DVec2) -> bool {
+        let inside = (at - self.ground.corner()) / self.ground.size();
+        let is_within = inside.cmpge(DVec2::ZERO).all() && inside.cmple(DVec2::ONE).all();
+        !self.is_periodic && !is_within
     }
 
     /// Depth below a height that is more than rounding.
@@ -208,9 +214,11 @@ fn warn_camera(camera: &CameraPlace, path: &str, relief: &Relief) -> Vec<Diagnos
     }
     if relief.is_below(z, ground) {
         let depth = metres(ground - z);
-        let message = format!(
-            "the camera is {depth} m below the ground, which is {high} m high at ({x}, {y})"
-        );
+        let message = if relief.is_beside(DVec2::new(x, y)) {
+            format!("the camera is {depth} m below the lowest ground, which is {high} m high")
+        } else {
+            format!("the camera is {depth} m below the ground, which is {high} m high at ({x}, {y})")
+        };
         let rule = "heights are those of the local frame";
         let help = if z >= 0.0 {
             let lifted = rounded(ground + z);

@@ -30,7 +30,7 @@ pub const GAP_RINGS: usize = 90;
 /// from below is shaded although the sun shines on its upper side. Without a sun all is shaded.
 ///
 /// Of a fisheye that looks straight up or down, `zones` hold gaps and samples by rings of 1° about the
-/// vertical, shape `[randomisations, 90, 2]`.
+/// vertical, shape `[90, 2]`.
 #[must_use]
 pub fn image_components_film<'a>(stage: &'a Stage, camera: &Camera, key: Key) -> Tiles<'a> {
     let upright = match camera {

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::components::{System, View};
 use crate::extract::Stage;
-use crate::film::{Spread, Sums, ratio};
+use crate::film::{Replicates, Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 
 /// What a measurement of directions found.
@@ -32,6 +32,8 @@ pub struct ViewsOutcome {
     pub mean: Vec<f64>,
     /// Their standard errors.
     pub error: Vec<f64>,
+    /// Sums of all columns, that of what was met the last, shape `[views, columns + 1]`.
+    pub sums: Replicates,
 }
 
 impl ViewsOutcome {
@@ -39,7 +41,9 @@ impl ViewsOutcome {
     pub(super) fn of_met(film: &Rows<'_>) -> Self {
         let columns = film.rows(0).next().map_or(0, Sums::bands);
         let values = film.rows(0).next().map_or(0, |row| row.values().len());
-        let mut means = Self { mean: Vec::new(), error: Vec::new() };
+        let rows: Vec<&[f64]> = film.rows(0).map(Sums::values).collect();
+        let sums = Replicates::from_randomisations(&rows);
+        let mut means = Self { mean: Vec::new(), error: Vec::new(), sums };
         for start in (0..values).step_by(columns.max(1)) {
             let of_view = |row: &Sums| row.values()[start..start + columns - 1].to_vec();
             let sums: Vec<f64> = film.rows(0).flat_map(of_view).collect();

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::components::System;
 use crate::extract::Stage;
-use crate::film::{Spread, Sums};
+use crate::film::{Replicates, Spread};
 use crate::sampling::{Key, Sampler};
 
 /// What an image measurement found.
@@ -30,8 +30,8 @@ pub struct ImageOutcome {
     pub mean: Vec<f64>,
     /// Its standard error.
     pub mean_error: Vec<f64>,
-    /// What a walk sums over the whole image alone, shape `[randomisations, zones]`.
-    pub zones: Sums,
+    /// What a walk sums over the whole image alone, shape `[zones]`.
+    pub zones: Replicates,
 }
 
 /// An image that photon packets make.
@@ -159,7 +159,7 @@ fn of_packets(
         coverage: coverage.fractions.clone(),
         mean,
         mean_error,
-        zones: Sums::new(0, 0),
+        zones: Replicates::default(),
     }
 }
 

@@ -11,7 +11,7 @@ use super::tile::{NETS, Pooled, Tile};
 use super::walk::{Party, Walk};
 use super::{Camera, Film, ImageOutcome, RANDOMISATIONS, Share, Watch, blocks};
 use crate::extract::Stage;
-use crate::film::{Sums, ratio};
+use crate::film::{Replicates, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 
 /// Side of the square of pixels that one block traces.
@@ -25,7 +25,8 @@ pub struct Tiles<'a> {
     columns: usize,
     trace: Box<TraceTile<'a>>,
     all: Vec<Tile>,
-    /// What a walk sums over the whole image alone: whole numbers, so in any order.
+    /// What a walk sums over the whole image alone: whole numbers, so in any order. Shape `[1 + replicates,
+    /// nets, zones]`: over all pixels, and over the pixels of which a half-sample takes a net.
     zones: Sums,
     /// Samples of each pixel.
     done: u64,
@@ -45,7 +46,7 @@ impl<'a> Tiles<'a> {
         walk: impl Fn() -> W + Sync + 'a,
     ) -> Self {
         let size = camera.size();
-        let zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
+        let zones = Sums::new(ZONE_CELLS, walk().zones());
         let trace = move |tile: &mut Tile, samples: Range<u64>| {
             trace_tile((stage, &camera), tile, samples, key, &walk)
         };
@@ -84,10 +85,6 @@ impl<'a> Tiles<'a> {
         let (all, columns) = ((size.x * size.y) as usize, self.columns);
         let n = self.done as f64;
         let rows = self.done.clamp(1, RANDOMISATIONS.into()) as usize;
-        // Of fewer samples than there are rows, the others are no randomisations.
-        let mut zones = Sums::new(rows, self.zones.bands());
-        let of_rows = &self.zones.values()[..rows * self.zones.bands()];
-        zones.values_mut().copy_from_slice(of_rows);
         let mut sums = Sums::new(RANDOMISATIONS as usize, columns);
         let mut counts = vec![0_u64; rows];
         let mut effects = vec![Pooled::default(); columns];
@@ -122,7 +119,35 @@ impl<'a> Tiles<'a> {
                 }
             },
         );
-        ImageOutcome { pixels, errors, coverage, mean, mean_error, zones }
+        ImageOutcome { pixels, errors, coverage, mean, mean_error, zones: self.zones() }
+    }
+
+    /// What is summed over the whole image alone.
+    fn zones(&self) -> Replicates {
+        if !self.has_zones() {
+            return Replicates::default();
+        }
+        let cells: Vec<&[f64]> = self.zones.values().chunks_exact(self.zones.bands()).collect();
+        let pairs: Vec<[&[f64]; NETS]> =
+            cells.chunks_exact(NETS).map(|pair| [pair[0], pair[1]]).collect();
+        // The samples of a pixel take its nets in turn.
+        let samples = [self.done.div_ceil(2) as f64, (self.done / 2) as f64];
+        Replicates::from_half_samples(pairs[0], &pairs[1..], samples)
+    }
+}
+
+/// Cells of zones, see [`Tiles`]: one replicate each bit of a random number.
+const ZONE_CELLS: usize = NETS * (1 + REPLICATES as usize);
+/// Half-samples that tell the errors of what is summed over the whole image.
+const REPLICATES: u32 = u32::BITS;
+
+/// Adds what a walk found to zones, and to those of the half-samples that take this net of the pixel.
+fn add_to_zones<'a>(walk: &impl Walk<'a>, zones: &mut Sums, (net, choices): (usize, u32)) {
+    walk.add_to_zones(zones, net);
+    for replicate in 0..REPLICATES {
+        if (choices >> replicate & 1) as usize == net {
+            walk.add_to_zones(zones, NETS * (1 + replicate as usize) + net);
+        }
     }
 }
 
@@ -270,7 +295,11 @@ fn trace_tile<'a, W: Walk<'a>>(
 ) -> (Sums, u64) {
     let scale = camera.size().as_dvec2().recip();
     let mut party = Party::new(&walk);
-    let mut zones = Sums::new(RANDOMISATIONS as usize, walk().zones());
+    let mut zones = Sums::new(ZONE_CELLS, walk().zones());
+    let has_zones = zones.bands() > 0;
+    // Of each pixel one bit a half-sample: the net that this takes.
+    let choices = key.path("half-samples");
+    let width = (tile.high.x - tile.low.x) as usize;
     let mut rays = 0;
     // Of each pixel all samples that have rows of their own: its values stay in the cache. Sums over the
     // pixels are made in one order however rounds are cut.
@@ -283,7 +312,7 @@ fn trace_tile<'a, W: Walk<'a>>(
         let starts = starts.filter_map(|(pixel, at, sample)| {
             let row = (sample % rows) as usize;
             let nets = NETS as u64;
-            let points = key.index(sample % nets).index(u64::from(at.y) << 32 | u64::from(at.x));
+            let points = key.index(sample % nets).index(number_of(at));
             let mut sampler = Sampler::new(points, sample / nets);
             let [u, v, ..] = sampler.next_event();
             let ray = camera.ray((at.as_dvec2() + DVec2::new(u, v)) * scale)?;
@@ -294,7 +323,12 @@ fn trace_tile<'a, W: Walk<'a>>(
             let (mut shown, mut samples) = (Vec::new(), Vec::new());
             for (&(sample, direction), walk) in tags.iter().zip(walks) {
                 if walk.has_met() || camera.sees_sky() && walk.see_sky(stage, direction) {
-                    walk.add_to_zones(&mut zones, sample.1);
+                    if has_zones {
+                        let (pixel, row) = sample;
+                        let at = tile.low + UVec2::new((pixel % width) as u32, (pixel / width) as u32);
+                        let bits = choices.index(number_of(at)).bits(0) as u32;
+                        add_to_zones(walk, &mut zones, (row % NETS, bits));
+                    }
                     shown.push(&*walk);
                     samples.push(sample);
                 }
@@ -307,4 +341,9 @@ fn trace_tile<'a, W: Walk<'a>>(
         from = to;
     }
     (zones, rays + party.rays())
+}
+
+/// Number of a pixel's random streams.
+fn number_of(at: UVec2) -> u64 {
+    u64::from(at.y) << 32 | u64::from(at.x)
 }

@@ -295,7 +295,8 @@ choice! {
         BrightnessTemperature,
         /// Shares of sunlit ground, sunlit canopy, shaded ground and shaded canopy in what is seen;
         /// of an image the dominant one too. Sunlit is where the sun is visible from the side that
-        /// is seen; ground is the terrain.
+        /// is seen, so a leaf that is lit from above is shaded from below; temperatures of `SunlitShaded`
+        /// count both sides of it as sunlit. Ground is the terrain.
         FourComponents,
         /// Share of the ground in what is seen, or of the sky in a camera that looks up; of directions,
         /// and of a fisheye that looks straight up or down, the leaf area index that it implies too.
@@ -350,7 +351,8 @@ choice! {
         /// Share of the incident flux that each material absorbs in each layer and in all, and what
         /// reaches the ground.
         Fapar {
-            /// Thickness of a layer, m, or the heights of all borders between layers.
+            /// Thickness of a layer from the lowest ground up, m, or the heights of all borders between layers in
+            /// the local frame, m.
             layer_m: Layers = Layers::Thickness(1.0),
         },
         /// Power of sun and sky that each instance absorbs, W nm⁻¹, the terrain as the first of them.
@@ -363,7 +365,7 @@ choice! {
         Fluxes {
             /// Side of a square pixel, m.
             pixel_m: f64 = 1.0,
-            /// Further heights, m.
+            /// Further heights in the local frame, m.
             heights_m: Vec<f64> = Vec::new(),
         },
     }

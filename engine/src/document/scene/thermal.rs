@@ -29,11 +29,13 @@ choice! {
     pub enum Temperature ("a temperature") {
         /// The same everywhere.
         Uniform(f64 => "300.0"),
-        /// One where the sun's disc is visible and one where it is not.
+        /// One where the sun's disc is visible from the point, on whichever side of the surface, and one where
+        /// it is not: both sides of a sunlit leaf have its sunlit temperature. In the penumbra each counts by
+        /// the visible fraction of the disc. `FourComponents` count by the side that is seen.
         SunlitShaded {
-            /// Where the sun is visible, K.
+            /// Where the sun is visible from either side, K.
             sunlit_k: f64 => "305.0",
-            /// Where it is not, K.
+            /// Where it is visible from neither, K.
             shaded_k: f64 => "295.0",
         },
         /// Sunlit `mean_k + delta_k / 2`, shaded `mean_k - delta_k / 2`.
