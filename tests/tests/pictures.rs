@@ -64,7 +64,7 @@ fn read(folder: &Path, stem: &str) -> (Vec<Vec<f64>>, Vec<[u8; 4]>) {
         .collect();
     assert_eq!(values.len(), WIDTH * BANDS, "one row, band after band");
     let pixels = (0..WIDTH).map(|x| (0..BANDS).map(|band| values[band * WIDTH + x]).collect());
-    let file = fs::File::open(folder.join(format!("{stem}.png"))).expect("a picture");
+    let file = fs::File::open(folder.join(format!("{stem}.pixels.png"))).expect("a picture");
     let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("PNG");
     let mut picture = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut picture).expect("pixels");

@@ -33,8 +33,8 @@ pub(crate) enum Command {
     Compare(Compare),
     /// Make results of the parts that `run --part` has traced
     Merge(Merge),
-    /// Say what is wrong with a scene, and trace nothing
-    Check(Scene),
+    /// Say what is wrong with a scene and what it consists of: extent, stems, leaf area, cover, sun, bands, sensors
+    Check(Check),
     /// Measure run time against error on a scene: of each product, by each transport system that can
     /// measure it, over doublings of the number of samples
     Bench(Bench),
@@ -49,6 +49,16 @@ pub(crate) enum Command {
     Schema,
     /// Turn a project folder of LESS 1.8.8 into a scene, and say what became of each setting
     ImportLess(ImportLess),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Check {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+
+    /// Print JSON, for machines
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]

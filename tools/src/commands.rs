@@ -9,9 +9,11 @@ use sunfleck::output::{Results, Written};
 use sunfleck::run::Share;
 use sunfleck::{document, output, run};
 
-use crate::arguments::{Bench, Command, Fmt, Merge, OtherBench, Out, Run, Scene, Trace, Verify};
+use crate::arguments::{
+    Bench, Check, Command, Fmt, Merge, OtherBench, Out, Run, Scene, Trace, Verify,
+};
 use crate::progress::Bars;
-use crate::{bench, compare, import_less, verify};
+use crate::{bench, compare, describe, import_less, verify};
 
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
@@ -23,7 +25,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Merge(arguments) => merge(arguments),
         Command::Sweep(arguments) => sweep(arguments),
         Command::Compare(arguments) => print(&compare::compare(arguments)?),
-        Command::Check(scene) => check(scene),
+        Command::Check(arguments) => check(arguments),
         Command::Expand(scene) => expand(scene),
         Command::Fmt(arguments) => fmt(arguments),
         Command::Schema => print(&document::json_schema()),
@@ -192,19 +194,24 @@ fn run_options(arguments: &Run) -> run::Options {
     }
 }
 
-fn check(scene: &Scene) -> anyhow::Result<()> {
+fn check(arguments: &Check) -> anyhow::Result<()> {
+    let scene = &arguments.scene;
     let options = run::Options { document: scene.options(), ..run::Options::default() };
     let bars = Bars::new();
-    let warnings = run::check_file_with(&scene.file, &options, &bars);
+    let checked = run::describe_file(&scene.file, &options, &bars);
     bars.clear();
-    let warnings = warnings?;
+    let run::Checked { warnings, facts } = checked?;
+    if arguments.json {
+        return print(&describe::json(facts.as_ref(), &warnings)?);
+    }
     warn(&warnings);
     let found = match warnings.iter().filter(|warning| !warning.starts_with(SKIPPED)).count() {
         0 => "no errors".to_owned(),
         1 => "no errors, 1 warning".to_owned(),
         n => format!("no errors, {n} warnings"),
     };
-    print(&format!("{}: {found}\n", scene.file.display()))
+    let facts = facts.as_ref().map(describe::text).unwrap_or_default();
+    print(&format!("{facts}{}: {found}\n", scene.file.display()))
 }
 
 fn expand(scene: &Scene) -> anyhow::Result<()> {

@@ -8,6 +8,7 @@ mod bench;
 mod columns;
 mod commands;
 mod compare;
+mod describe;
 mod import_less;
 mod interrupt;
 mod plot;

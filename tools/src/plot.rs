@@ -5,6 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontTransform, TextStyle};
 use sunfleck::document::System;
+pub(crate) use sunfleck::output::{axis_title, range_of, tick};
 
 /// A rectangle of a picture.
 pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -52,43 +53,4 @@ pub(crate) fn heading(area: &Area<'_>, title: &str, systems: &[System]) -> anyho
         x += 30 + 8 * system.name().len() as i32;
     }
     Ok(())
-}
-
-/// A number on an axis.
-pub(crate) fn tick(value: f64) -> String {
-    let size = value.abs();
-    if size < 1e-12 {
-        return "0".to_owned();
-    }
-    if !(1e-3..1e5).contains(&size) {
-        return format!("{value:.1e}");
-    }
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// `zenith_deg` as `zenith (°)`.
-pub(crate) fn axis_title(name: &str) -> String {
-    let (name, unit) = match name.rsplit_once('_') {
-        Some((name, "deg")) => (name, "°"),
-        Some((name, unit @ ("m" | "nm" | "s" | "sr"))) => (name, unit),
-        _ => return name.replace('_', " "),
-    };
-    format!("{} ({unit})", name.replace('_', " "))
-}
-
-/// Smallest range that holds all numbers, and some room about them.
-pub(crate) fn range_of(values: impl IntoIterator<Item = f64>) -> std::ops::Range<f64> {
-    let finite = values.into_iter().filter(|value| value.is_finite());
-    let (low, high) =
-        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    if low > high {
-        return 0.0..1.0;
-    }
-    let room = match 0.07 * (high - low) {
-        room if room > 1e-9 * high.abs() => room,
-        _ if high == 0.0 => 0.5,
-        _ => 0.1 * high.abs(),
-    };
-    low - room..high + room
 }

@@ -62,10 +62,12 @@ fn a_run_writes_its_files_and_prints_a_table() {
         "top_brf.exr",
         "top_brf.img",
         "top_brf.img.hdr",
+        "top_brf.pixels.png",
         "top_brf.png",
         "top_brf_se.img",
         "top_brf_se.img.hdr",
         "views_brf.csv",
+        "views_brf.svg",
     ];
     assert_eq!(names(&folder.path().join("out/soil")), expected);
     assert!(stdout.starts_with("sensor "), "{stdout}");

@@ -105,8 +105,7 @@ mod tests {
             })
             .collect();
         let halves: Vec<[&[f64]; 2]> = halves.iter().map(|[a, b]| [&a[..], &b[..]]).collect();
-        let replicates =
-            Replicates::from_half_samples([&nets[0], &nets[1]], &halves, [1.0, 1.0]);
+        let replicates = Replicates::from_half_samples([&nets[0], &nets[1]], &halves, [1.0, 1.0]);
         assert_eq!(replicates.sums, [226.0]);
         assert!((replicates.standard_error(&[(0, 1.0)]) - 20.0_f64.sqrt()).abs() < 1e-12);
     }

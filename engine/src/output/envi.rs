@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::Source;
+use super::classification::{self, classes_of};
 use crate::components::Projection;
 use crate::products::Image;
 
@@ -20,6 +21,9 @@ pub(super) enum Raster {
 
 /// Writes the pixels, shape `[bands, rows, columns]`.
 pub(super) fn write_pixels(image: &Image, raster: Raster, file: &mut impl Write) -> io::Result<()> {
+    if raster == Raster::Values && classes_of(image).is_some() {
+        return classification::write_pixels(image, file);
+    }
     let bands = image.bands.len();
     let values = match raster {
         Raster::Values => &image.values,
@@ -72,11 +76,17 @@ pub(super) fn write_header(
     writeln!(file, "lines = {}", image.height)?;
     writeln!(file, "bands = {}", names.len())?;
     writeln!(file, "header offset = 0")?;
-    writeln!(file, "file type = ENVI Standard")?;
-    writeln!(file, "data type = 4")?;
+    let classes = classes_of(image).filter(|_| raster == Raster::Values);
+    let (kind, data_type) =
+        if classes.is_some() { ("ENVI Classification", 1) } else { ("ENVI Standard", 4) };
+    writeln!(file, "file type = {kind}")?;
+    writeln!(file, "data type = {data_type}")?;
     writeln!(file, "interleave = bsq")?;
     writeln!(file, "byte order = 0")?;
-    writeln!(file, "data ignore value = {NO_DATA}")?;
+    match classes {
+        Some(classes) => file.write_all(classification::header_lines(classes).as_bytes())?,
+        None => writeln!(file, "data ignore value = {NO_DATA}")?,
+    }
     writeln!(file, "band names = {{{}}}", names.join(", "))?;
     let wavelengths = source.wavelengths(image);
     // The coverage has none, and a list must name as many as there are bands.

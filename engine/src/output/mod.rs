@@ -1,13 +1,19 @@
 //! Files of a run, with provenance; the only module that writes.
 //!
-//! A folder gets `summary.json`, for each image an EXR, two ENVI rasters and a PNG quicklook, for
-//! values of triangles a PLY, and for each other product a CSV. They take the place of older results
-//! all at once (`staging`, `swap`).
+//! A folder gets `summary.json`, for each image an EXR, two ENVI rasters and a PNG with a legend and one
+//! without, for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
+//! or height. They take the place of older results all at once (`staging`, `swap`).
 
 mod axes;
+mod chart;
+mod classification;
 mod colour;
 mod envi;
 mod exr;
+mod figure;
+mod legend;
+mod lettering;
+mod lines;
 mod manifest;
 mod names;
 mod partial;
@@ -15,6 +21,7 @@ mod picture;
 mod ply;
 mod results;
 mod rows;
+mod scale;
 mod size;
 mod staging;
 mod summary;
@@ -22,6 +29,7 @@ mod swap;
 mod sweep;
 mod table;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -35,6 +43,7 @@ pub(crate) use partial::{replace_file, try_file};
 pub use picture::Picture;
 pub use results::{Results, Written};
 pub use rows::{harmless, number};
+pub use scale::{axis_title, range_of, tick};
 pub use size::file_size;
 pub use sweep::{folder_name, is_complete, sweep_table, write_point};
 pub use table::table;
@@ -95,7 +104,10 @@ fn put_products(
                 (Some(faces), _) => {
                     staging.file(&names.ply(), |file| ply::write(&source, faces, file))?
                 }
-                (None, None) => staging.file(&names.csv(), |file| rows::write(&source, file))?,
+                (None, None) => {
+                    staging.file(&names.csv(), |file| rows::write(&source, file))?
+                        + put_chart(&source, &names.svg(), staging)?
+                }
                 (None, Some(image)) => put_image(&source, image, names, staging)?,
             };
         }
@@ -117,11 +129,41 @@ fn put_image(
         let header = names::header(&name);
         size += staging.file(&header, |file| envi::write_header(source, image, raster, file))?;
     }
-    size += staging.file(&names.png(), |file| {
-        let picture = Picture::of(image, &source.wavelengths(image));
-        picture.encode(&source.provenance(), file)
-    })?;
-    Ok(size)
+    Ok(size + put_pictures(source, image, [&names.png(), &names.bare()], staging)?)
+}
+
+/// Writes the pictures of an image, with a legend around it and without; returns the bytes they take.
+fn put_pictures(
+    source: &Source<'_>,
+    image: &Image,
+    [framed, bare]: [&str; 2],
+    staging: &mut staging::Staging,
+) -> Result<u64, OutputError> {
+    let (picture, legend) = Picture::with_legend(image, &source.wavelengths(image));
+    let caption = figure::Caption {
+        title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
+        scene: &source.report.scene,
+        unit: &source.product.unit,
+    };
+    let figure = figure::Figure::new((&picture, &legend), image, &caption);
+    let bytes = staging.file(framed, |file| figure.encode(&source.provenance(), file))?;
+    Ok(bytes + staging.file(bare, |file| picture.encode(&source.provenance(), file))?)
+}
+
+/// Writes a chart of values by direction or height; returns the bytes it takes, 0 of what makes no chart.
+fn put_chart(
+    source: &Source<'_>,
+    name: &str,
+    staging: &mut staging::Staging,
+) -> Result<u64, OutputError> {
+    let Some(lines) = lines::Lines::of(source.product) else { return Ok(0) };
+    let heading = chart::Heading {
+        title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
+        scene: &source.report.scene,
+        quantity: &source.product.name,
+        unit: &source.product.unit,
+    };
+    staging.file(name, |file| file.write_all(chart::draw(&lines, &heading)?.as_bytes()))
 }
 
 /// Gives a file another text; it has the old one or the new one, never a part.

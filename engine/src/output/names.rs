@@ -33,6 +33,16 @@ impl ProductNames {
         format!("{}.ply", self.stem)
     }
 
+    /// Chart of values by direction or height.
+    pub(super) fn svg(&self) -> String {
+        format!("{}.svg", self.stem)
+    }
+
+    /// Picture without a legend.
+    pub(super) fn bare(&self) -> String {
+        format!("{}{BARE}", self.stem)
+    }
+
     pub(super) fn exr(&self) -> String {
         format!("{}.exr", self.stem)
     }
@@ -56,7 +66,7 @@ impl ProductNames {
         let [img, errors] = [self.img(), self.errors()];
         let headers = [header(&img), header(&errors)];
         let [values_header, errors_header] = headers;
-        vec![self.exr(), img, values_header, errors, errors_header, self.png()]
+        vec![self.exr(), img, values_header, errors, errors_header, self.png(), self.bare()]
     }
 }
 
@@ -65,6 +75,9 @@ impl ProductNames {
 pub(super) fn header(pixels: &str) -> String {
     format!("{pixels}.hdr")
 }
+
+/// End of the name of a picture without a legend: its pixels are those of the image. No product ends so.
+const BARE: &str = ".pixels.png";
 
 /// Names for all that `report` holds, in its order.
 pub(super) fn plan(report: &Report) -> Vec<SensorNames> {

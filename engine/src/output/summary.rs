@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 use serde_json::ser::Formatter;
 
 use super::length;
+use super::lines::Lines;
 use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
 use super::rows::columns;
@@ -247,7 +248,10 @@ fn entry<'a>(report: &Report, product: &'a Product, names: &ProductNames) -> Ent
         files: match (&product.image, &product.faces) {
             (_, Some(_)) => vec![names.ply()],
             (Some(_), _) => names.image(),
-            (None, None) => vec![names.csv()],
+            (None, None) => {
+                let chart = Lines::of(product).map(|_| names.svg());
+                std::iter::once(names.csv()).chain(chart).collect()
+            }
         },
     }
 }

@@ -118,15 +118,17 @@ fn exactly_the_promised_files_are_written() {
         "nadir_brf.exr",
         "nadir_brf.img",
         "nadir_brf.img.hdr",
+        "nadir_brf.pixels.png",
         "nadir_brf.png",
         "nadir_brf_se.img",
         "nadir_brf_se.img.hdr",
         "plane_brf.csv",
+        "plane_brf.svg",
         "summary.json",
     ];
     assert_eq!(found, expected);
-    assert_eq!(paths.len(), 8);
-    assert_eq!(paths[7], folder.path().join("deep/er/summary.json"));
+    assert_eq!(paths.len(), 10);
+    assert_eq!(paths[9], folder.path().join("deep/er/summary.json"));
     assert_eq!(names(folder.path()), ["deep"]);
     assert_eq!(names(&folder.path().join("deep")), ["er"]);
 }
@@ -147,13 +149,14 @@ fn summary_tells_what_was_foretold_of_a_long_measurement() {
     });
     assert_eq!(plane["forecast"], foretold);
     let table = paths[0].metadata().unwrap().len();
-    assert_eq!((paths.len(), plane["file_bytes"].as_u64()), (2, Some(table)));
+    let chart = paths[1].metadata().unwrap().len();
+    assert_eq!((paths.len(), plane["file_bytes"].as_u64()), (3, Some(table + chart)));
 }
 
 #[test]
 fn summary_reads_back_bit_for_bit_with_keys_in_order() {
     let (_folder, paths) = written();
-    let text = fs::read_to_string(&paths[7]).unwrap();
+    let text = fs::read_to_string(&paths[9]).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     let plane = &json["sensors"]["plane"];
     assert_eq!(plane.as_object().unwrap().len(), 1, "a sensor holds its products alone");
@@ -181,10 +184,12 @@ fn summary_reads_back_bit_for_bit_with_keys_in_order() {
         "nadir_brf_se.img",
         "nadir_brf_se.img.hdr",
         "nadir_brf.png",
+        "nadir_brf.pixels.png",
         "plane_brf.csv",
+        "plane_brf.svg",
         "summary.json",
     ];
-    assert_eq!(json["sensors"]["nadir"]["brf"]["files"], serde_json::json!(files[..6]));
+    assert_eq!(json["sensors"]["nadir"]["brf"]["files"], serde_json::json!(files[..7]));
     assert_eq!(json["files"], serde_json::json!(files), "those of all products and itself");
     assert_eq!(json["params"], serde_json::json!({ "sza": 30.0 }));
     let keys = [
@@ -345,7 +350,7 @@ fn envi_header_describes_the_pixels() {
 #[test]
 fn quicklook_is_a_png_with_transparency_and_provenance() {
     let (_folder, paths) = written();
-    let file = io::BufReader::new(fs::File::open(&paths[5]).unwrap());
+    let file = io::BufReader::new(fs::File::open(&paths[6]).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
@@ -362,13 +367,13 @@ fn quicklook_is_a_png_with_transparency_and_provenance() {
 #[test]
 fn csv_reads_back_bit_for_bit() {
     let (_folder, paths) = written();
-    let text = fs::read_to_string(&paths[6]).unwrap();
+    let text = fs::read_to_string(&paths[7]).unwrap();
     for line in
         ["# scene: Birch # stand \u{df}\n", "# params: sza=30\n", "# hash: c0ffee\n", "# unit: 1\n"]
     {
         assert!(text.contains(line), "{line:?} in\n{text}");
     }
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&paths[6]).unwrap();
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&paths[7]).unwrap();
     let header: Vec<_> = reader.headers().unwrap().iter().map(str::to_owned).collect();
     let expected = [
         "zenith_deg",

@@ -4,13 +4,22 @@ use super::context::labels;
 use super::directions::axes;
 use super::images::georeference;
 use super::leaf_area::{GapSums, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
-use super::{Axis, Context, Image, Product, Rendering};
+use super::{Axis, Class, Context, Image, Product, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
 use crate::transport::{COMPONENT_COLUMNS, GAP_COLUMN, ImageOutcome, ViewsOutcome};
 
 /// Names of the four components in the order of their numbers, from 1.
 const COMPONENTS: [&str; 4] = ["sunlit_ground", "sunlit_canopy", "shaded_ground", "shaded_canopy"];
+
+/// Colours of the four components in pictures, sRGB.
+const COLOURS: [[u8; 3]; 4] = [[226, 192, 120], [104, 187, 67], [110, 84, 54], [22, 82, 44]];
+
+/// The four components as classes of pixels, in the order of their numbers.
+fn classes() -> Vec<Class> {
+    let class = |(name, colour): (&&str, [u8; 3])| Class { name: name.replace('_', " "), colour };
+    COMPONENTS.iter().zip(COLOURS).map(class).collect()
+}
 
 /// Components as an image: their shares, and the number (1 to 4) of that with the largest share,
 /// NaN where none is seen; or the share of gaps, and of a fisheye that looks straight up or down the
@@ -22,14 +31,14 @@ pub fn components_of_image(
     outcome: &ImageOutcome,
     (stage, context): (&Stage, &Context),
 ) -> Vec<Product> {
-    let image = |names: &[&str], values: Vec<f32>, standard_error: Vec<f32>| Image {
+    let image = |names: &[&str], values: Vec<f32>, standard_error, rendering| Image {
         width: sensor.size.x as usize,
         height: sensor.size.y as usize,
         bands: names.iter().map(|&name| name.to_owned()).collect(),
         values,
         standard_error,
         coverage: outcome.coverage.clone(),
-        rendering: Rendering::Quicklook,
+        rendering,
         georeference: georeference(sensor, stage, context),
     };
     match measure {
@@ -37,7 +46,12 @@ pub fn components_of_image(
             let columns = 0..4;
             let of = |values: &[f32]| pick(values, columns.clone());
             let shares = Product {
-                image: Some(image(&COMPONENTS, of(&outcome.pixels), of(&outcome.errors))),
+                image: Some(image(
+                    &COMPONENTS,
+                    of(&outcome.pixels),
+                    of(&outcome.errors),
+                    Rendering::Shares(classes()),
+                )),
                 ..product(
                     "four_components",
                     vec![vec![axis(&COMPONENTS)]],
@@ -45,12 +59,12 @@ pub fn components_of_image(
                     &outcome.mean_error[columns.clone()],
                 )
             };
-            let classes: Vec<f32> =
+            let numbers: Vec<f32> =
                 outcome.pixels.chunks_exact(COMPONENT_COLUMNS).map(|p| dominant(&p[..4])).collect();
-            let errors = vec![f32::NAN; classes.len()];
+            let errors = vec![f32::NAN; numbers.len()];
             let mean: Vec<f32> = outcome.mean[..4].iter().map(|&share| share as f32).collect();
             let class = Product {
-                image: Some(image(&["class"], classes, errors)),
+                image: Some(image(&["class"], numbers, errors, Rendering::Classes(classes()))),
                 ..product(
                     "dominant_component",
                     vec![vec![axis(&["class"])]],
@@ -64,7 +78,12 @@ pub fn components_of_image(
             let column = GAP_COLUMN..GAP_COLUMN + 1;
             let of = |values: &[f32]| pick(values, column.clone());
             let gaps = Product {
-                image: Some(image(&["gap"], of(&outcome.pixels), of(&outcome.errors))),
+                image: Some(image(
+                    &["gap"],
+                    of(&outcome.pixels),
+                    of(&outcome.errors),
+                    Rendering::Quicklook,
+                )),
                 ..product(
                     "gap_fraction",
                     vec![vec![axis(&["gap"])]],

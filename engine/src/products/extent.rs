@@ -76,12 +76,13 @@ impl Extent {
     }
 
     /// Memory that making its files takes beside that, bytes: of an image the channels of its EXR,
-    /// in rows of their own, or its picture and the values that this is stretched by.
+    /// in rows of their own, or its picture without and with a legend, and the values that this is stretched
+    /// by.
     #[must_use]
     pub const fn memory_of_files(self) -> u64 {
         match self {
             Self::Image { pixels, .. } => {
-                let picture = pixels.saturating_mul(8);
+                let picture = pixels.saturating_mul(12);
                 if self.memory() > picture { self.memory() } else { picture }
             }
             Self::Table { .. } | Self::Faces { .. } => 0,

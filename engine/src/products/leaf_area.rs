@@ -168,9 +168,8 @@ pub fn lai_of_views(zeniths: &[f64], views: &GapSums<'_>) -> Vec<LeafAreaIndex> 
         let weights = miller_weights(&angles).into_iter().enumerate();
         found.push(index("lai_miller", weights.map(|(group, w)| term(group, w)).collect()));
     }
-    let ring = |degrees: f64| {
-        angles.iter().position(|angle| (angle.to_degrees() - degrees).abs() < 1e-6)
-    };
+    let ring =
+        |degrees: f64| angles.iter().position(|angle| (angle.to_degrees() - degrees).abs() < 1e-6);
     let five: Option<Vec<Term>> = LAI_2000_RINGS
         .into_iter()
         .zip(RING_WEIGHTS)

@@ -21,14 +21,12 @@ pub use context::{BandSources, Context};
 pub use directions::of_directions;
 pub use extent::{Extent, extents_of_directions, extents_of_image};
 pub use images::of_image;
-pub use leaf_area::{
-    GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views,
-};
+pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    Axis, AxisPoints, Forecast, Georeference, Image, Origin, Point, Product, Rendering, Report,
-    SensorReport, data_size,
+    Axis, AxisPoints, Class, Forecast, Georeference, Image, Origin, Point, Product, Rendering,
+    Report, SensorReport, data_size,
 };
 pub use sources::{brightness_of, of_sources};
 pub use thermal::{brightness, radiance_of_sources};

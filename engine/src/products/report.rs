@@ -145,6 +145,10 @@ pub struct Image {
 pub enum Rendering {
     /// By wavelength, stretched.
     Quicklook,
+    /// The only band holds numbers of classes, from 1.
+    Classes(Vec<Class>),
+    /// Bands hold the shares of classes.
+    Shares(Vec<Class>),
     /// By colours of its own.
     Colours {
         /// What red, green and blue are.
@@ -155,6 +159,15 @@ pub enum Rendering {
         /// What the image shows of that white surface, shape `[bands]`.
         white: Vec<f64>,
     },
+}
+
+/// A class of pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Class {
+    /// Its name.
+    pub name: String,
+    /// Red, green and blue, sRGB.
+    pub colour: [u8; 3],
 }
 
 /// Place of an image on the ground, anchor included.

@@ -4,6 +4,8 @@ mod advice;
 mod again;
 mod check;
 mod checkpoint;
+mod enclosed;
+mod facts;
 mod failure;
 mod footprint;
 mod forecast;
@@ -33,6 +35,7 @@ pub use crate::products::Forecast;
 pub use crate::transport::Share;
 pub use again::Runs;
 pub use checkpoint::Checkpoint;
+pub use facts::{BandFacts, GroundFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts};
 pub use failure::Failure;
 
 use checkpoint::Keeper;
@@ -134,6 +137,15 @@ fn origin(file: &Path, options: &Options) -> Origin {
     }
 }
 
+/// A scene that was checked.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// What its author should know, rendered for a person.
+    pub warnings: Vec<String>,
+    /// What it consists of, if that was asked for.
+    pub facts: Option<SceneFacts>,
+}
+
 /// Does all that a run does before it traces the first ray; returns what the scene's author should know.
 ///
 /// # Errors
@@ -151,26 +163,49 @@ pub fn check_file_with(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Vec<String>, Failure> {
+    checked(path, options, (progress, false)).map(|checked| checked.warnings)
+}
+
+/// The same, and what the scene consists of; for its canopy cover, some rays are traced.
+///
+/// # Errors
+/// All that is wrong with the scene, rendered for a person.
+pub fn describe_file(
+    path: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Checked, Failure> {
+    checked(path, options, (progress, true))
+}
+
+fn checked(
+    path: &Path,
+    options: &Options,
+    (progress, with_facts): (&dyn Progress, bool),
+) -> Result<Checked, Failure> {
     progress.stage("reading the scene");
     let reading = read(path, options)?;
     let build = || {
         progress.stage("loading");
-        let spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
+        let mut spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
         progress.stage("building");
         let stage = staged(&spawned, &reading.scene, None)?;
         let context = context(&reading.scene, &stage);
         let sensors = sensors::in_order(&spawned.world);
         check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
-        Ok(spawned)
+        spawned.warnings.extend(enclosed::warnings(&sensors, &stage));
+        let facts = with_facts
+            .then(|| SceneFacts::new(&reading.scene, &spawned.world, (&stage, &context), options));
+        Ok((spawned, facts))
     };
-    let spawned = in_pool(options, || {
+    let (spawned, facts) = in_pool(options, || {
         build().map_err(|failure: Failure| failure.with_source(&reading.source))
     })?;
     let warnings = reading.diagnostics.iter().chain(&spawned.warnings);
-    let mut texts: Vec<String> =
+    let mut warnings: Vec<String> =
         warnings.map(|one| reading.source.render(std::slice::from_ref(one))).collect();
-    texts.extend(spawned.skipped.iter().map(|what| format!("skipped: {what}")));
-    Ok(texts)
+    warnings.extend(spawned.skipped.iter().map(|what| format!("skipped: {what}")));
+    Ok(Checked { warnings, facts })
 }
 
 /// A scene ready to be traced, and how long that took; for benchmarks.
@@ -275,6 +310,7 @@ fn run_kept(
         warnings: spawned
             .warnings
             .iter()
+            .chain(&enclosed::warnings(&sensors::in_order(&spawned.world), &stage))
             .map(failure::one_line)
             .chain(footprint::warnings(&sensors::in_order(&spawned.world), &stage))
             .chain(unbalanced(&reports))

@@ -217,7 +217,9 @@ fn warn_camera(camera: &CameraPlace, path: &str, relief: &Relief) -> Vec<Diagnos
         let message = if relief.is_beside(DVec2::new(x, y)) {
             format!("the camera is {depth} m below the lowest ground, which is {high} m high")
         } else {
-            format!("the camera is {depth} m below the ground, which is {high} m high at ({x}, {y})")
+            format!(
+                "the camera is {depth} m below the ground, which is {high} m high at ({x}, {y})"
+            )
         };
         let rule = "heights are those of the local frame";
         let help = if z >= 0.0 {

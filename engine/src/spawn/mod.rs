@@ -11,6 +11,7 @@ mod lay;
 mod light;
 mod materials;
 mod meshes;
+mod plausible;
 mod raster;
 mod reach;
 mod scatter;
@@ -104,6 +105,7 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     let ground = patch.as_ref().map(Ground::of);
     if let (Some(patch), Some(ground)) = (&patch, &ground) {
         spawner.doubt_overhangs(patch, ground);
+        spawner.warn_flat_raster(patch);
     }
     let meshes = spawner.meshes();
     let placements = spawner.instances(&meshes, ground.as_ref());
@@ -114,6 +116,9 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
         spawner.doubt_places(&placements, &meshes, ground);
     }
     spawner.doubt_sizes(&meshes);
+    if let Some(ground) = &ground {
+        spawner.warn_implausible_plants(&placements, &meshes, ground.size().element_product());
+    }
     if let Some(patch) = &patch {
         spawner.check_reach(&placements, &meshes, patch);
     }

@@ -325,7 +325,8 @@ fn trace_tile<'a, W: Walk<'a>>(
                 if walk.has_met() || camera.sees_sky() && walk.see_sky(stage, direction) {
                     if has_zones {
                         let (pixel, row) = sample;
-                        let at = tile.low + UVec2::new((pixel % width) as u32, (pixel / width) as u32);
+                        let at =
+                            tile.low + UVec2::new((pixel % width) as u32, (pixel / width) as u32);
                         let bits = choices.index(number_of(at)).bits(0) as u32;
                         add_to_zones(walk, &mut zones, (row % NETS, bits));
                     }

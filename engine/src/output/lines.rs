@@ -1,0 +1,277 @@
+//! Lines of a chart, from the axes of a product.
+
+use crate::products::{Axis, AxisPoints, Product};
+
+/// More lines than these are not told apart.
+const MOST_LINES: usize = 8;
+/// Vertical planes of views, and more of them make no chart of lines.
+const MOST_PLANES: usize = 4;
+
+/// A chart of lines.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Lines {
+    /// Title of the axis that values are drawn against.
+    pub(super) axis: String,
+    /// Whether that axis is height, and stands upright.
+    pub(super) is_profile: bool,
+    pub(super) lines: Vec<Line>,
+    /// Lines that are left out.
+    pub(super) hidden: usize,
+}
+
+/// A line of a chart.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Line {
+    /// Which values they are; empty if there is no other line.
+    pub(super) name: String,
+    pub(super) points: Vec<Point>,
+}
+
+/// A value with its standard error, 0 if it has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Point {
+    pub(super) at: f64,
+    pub(super) value: f64,
+    pub(super) error: f64,
+}
+
+/// Places along the first dimension of a product that belong to one line, in rising order.
+struct Track {
+    name: String,
+    /// Place on the axis and number along the dimension.
+    places: Vec<(f64, usize)>,
+}
+
+impl Lines {
+    /// Values by zenith angle, one line for each vertical plane and band; or by height, one for each material
+    /// and band. Nothing of other products, of views all over the hemisphere, and of single points.
+    pub(super) fn of(product: &Product) -> Option<Self> {
+        if product.image.is_some() || product.faces.is_some() {
+            return None;
+        }
+        let (first, others) = product.dimensions.split_first()?;
+        let (tracks, axis, is_profile) =
+            match (numbers(first, "zenith_deg"), numbers(first, "bottom_m")) {
+                (Some(zeniths), _) => {
+                    let azimuths = numbers(first, "azimuth_deg")?;
+                    (planes(&upright(zeniths, azimuths))?, "zenith angle (°)".to_owned(), false)
+                }
+                (_, Some(bottoms)) => {
+                    let tops = numbers(first, "top_m")?;
+                    let middles =
+                        bottoms.iter().zip(tops).map(|(bottom, top)| 0.5 * (bottom + top));
+                    let places = middles.zip(0..).collect();
+                    (vec![Track { name: String::new(), places }], "height (m)".to_owned(), true)
+                }
+                _ => return None,
+            };
+        if tracks.iter().all(|track| track.places.len() < 2) {
+            return None;
+        }
+        let each: usize =
+            others.iter().map(|axes| axes.first().map_or(1, |axis| axis.points.len())).product();
+        let mut lines = Vec::new();
+        for other in 0..each {
+            for track in &tracks {
+                let value = |&(at, number): &(f64, usize)| {
+                    let index = number * each + other;
+                    let error = product.standard_error[index];
+                    let error = if error.is_finite() { error } else { 0.0 };
+                    Point { at, value: product.values[index], error }
+                };
+                let points: Vec<Point> = track.places.iter().map(value).collect();
+                let points: Vec<Point> =
+                    points.into_iter().filter(|point| point.value.is_finite()).collect();
+                let mut names = names_of(others, other);
+                names.extend(Some(track.name.clone()).filter(|name| !name.is_empty()));
+                lines.push(Line { name: names.join(", "), points });
+            }
+        }
+        // What is 0 throughout, as a material that absorbs nothing, hides nothing else.
+        lines.retain(|line| !line.points.is_empty());
+        let is_lit = |line: &Line| line.points.iter().any(|point| point.value != 0.0);
+        if lines.len() > MOST_LINES && lines.iter().any(is_lit) {
+            lines.retain(is_lit);
+        }
+        let hidden = lines.len().saturating_sub(MOST_LINES);
+        let count = lines.len();
+        if hidden > 0 {
+            let kept = |index: usize| index * (count - 1) / (MOST_LINES - 1);
+            lines = (0..MOST_LINES).map(|index| lines[kept(index)].clone()).collect();
+        }
+        if let [line] = &mut lines[..] {
+            line.name.clear();
+        }
+        (!lines.is_empty()).then_some(Self { axis, is_profile, lines, hidden })
+    }
+}
+
+fn numbers<'a>(axes: &'a [Axis], name: &str) -> Option<&'a [f64]> {
+    let axis = axes.iter().find(|axis| axis.name == name)?;
+    match &axis.points {
+        AxisPoints::Numbers(numbers) => Some(numbers),
+        AxisPoints::Labels(_) => None,
+    }
+}
+
+/// Names of a point of some dimensions, of those that have several.
+fn names_of(dimensions: &[Vec<Axis>], mut number: usize) -> Vec<String> {
+    let mut names = Vec::new();
+    for axes in dimensions.iter().rev() {
+        let Some(axis) = axes.first() else { continue };
+        let points = axis.points.len().max(1);
+        let at = number % points;
+        number /= points;
+        if points > 1 {
+            names.insert(
+                0,
+                match &axis.points {
+                    AxisPoints::Labels(labels) => labels[at].clone(),
+                    AxisPoints::Numbers(numbers) => super::scale::tick(numbers[at]),
+                },
+            );
+        }
+    }
+    names
+}
+
+/// Zenith angles and azimuths of views, with negative zenith angles turned to the other side.
+fn upright(zeniths: &[f64], azimuths: &[f64]) -> Vec<(f64, f64)> {
+    let view = |(&zenith, &azimuth): (&f64, &f64)| {
+        if zenith < 0.0 {
+            (-zenith, (azimuth + 180.0).rem_euclid(360.0))
+        } else {
+            (zenith, azimuth)
+        }
+    };
+    zeniths.iter().zip(azimuths).map(view).collect()
+}
+
+/// Views by the vertical plane that they lie in, with signed zenith angles: positive towards the azimuth of
+/// the last view of the plane. Nadir views lie in all planes.
+fn planes(views: &[(f64, f64)]) -> Option<Vec<Track>> {
+    let (zeniths, azimuths): (Vec<f64>, Vec<f64>) = views.iter().copied().unzip();
+    let is_slanted = |view: usize| zeniths[view] > 1e-9;
+    let across = |a: f64, b: f64| {
+        let turn = (a - b).rem_euclid(180.0);
+        turn.min(180.0 - turn)
+    };
+    // The last view of each plane first.
+    let mut references: Vec<f64> = Vec::new();
+    for view in (0..zeniths.len()).rev().filter(|&view| is_slanted(view)) {
+        if references.iter().all(|&azimuth| across(azimuth, azimuths[view]) > 1e-6) {
+            references.push(azimuths[view]);
+        }
+    }
+    if references.len() > MOST_PLANES || references.is_empty() {
+        return None;
+    }
+    references.reverse();
+    let is_single = references.len() == 1;
+    let track = |reference: f64| {
+        let place = |view: usize| {
+            if !is_slanted(view) {
+                return Some((0.0, view));
+            }
+            let turn = (azimuths[view] - reference).rem_euclid(360.0);
+            let is_behind = (turn - 180.0).abs() < 90.0;
+            let sign = if is_behind { -1.0 } else { 1.0 };
+            (across(azimuths[view], reference) <= 1e-6).then_some((sign * zeniths[view], view))
+        };
+        let mut places: Vec<(f64, usize)> = (0..zeniths.len()).filter_map(place).collect();
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let has_sign = places.iter().any(|place| place.0 < 0.0);
+        let name = match (is_single, has_sign) {
+            (true, false) => String::new(),
+            (_, false) => format!("azimuth {}°", super::scale::tick(reference)),
+            _ => format!("+ towards {}°", super::scale::tick(reference)),
+        };
+        Track { name, places }
+    };
+    Some(references.into_iter().map(track).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(name: &str, numbers: &[f64]) -> Axis {
+        Axis { name: name.to_owned(), points: AxisPoints::Numbers(numbers.to_vec()) }
+    }
+
+    fn bands(names: &[&str]) -> Vec<Axis> {
+        let labels = names.iter().map(|&name| name.to_owned()).collect();
+        vec![Axis { name: "band".to_owned(), points: AxisPoints::Labels(labels) }]
+    }
+
+    fn product(dimensions: Vec<Vec<Axis>>, values: &[f64]) -> Product {
+        Product {
+            name: "brf".to_owned(),
+            unit: "1".to_owned(),
+            dimensions,
+            values: values.to_vec(),
+            standard_error: vec![0.1; values.len()],
+            image: None,
+            faces: None,
+        }
+    }
+
+    #[test]
+    fn a_principal_plane_is_one_line_with_signs() {
+        let views = vec![
+            axis("zenith_deg", &[30.0, 0.0, 30.0]),
+            axis("azimuth_deg", &[335.0, 155.0, 155.0]),
+        ];
+        let lines = Lines::of(&product(vec![views, bands(&["red"])], &[1.0, 2.0, 3.0]));
+        let lines = lines.expect("a chart");
+        assert_eq!(lines.lines.len(), 1);
+        let places: Vec<(f64, f64)> =
+            lines.lines[0].points.iter().map(|point| (point.at, point.value)).collect();
+        assert_eq!(places, [(-30.0, 1.0), (0.0, 2.0), (30.0, 3.0)]);
+    }
+
+    #[test]
+    fn planes_and_bands_have_lines_of_their_own_and_hemispheres_none() {
+        let views = |azimuths: &[f64]| {
+            let zeniths: Vec<f64> =
+                azimuths.iter().enumerate().map(|(at, _)| 10.0 + at as f64).collect();
+            vec![axis("zenith_deg", &zeniths), axis("azimuth_deg", azimuths)]
+        };
+        let values: Vec<f64> = (0..8).map(f64::from).collect();
+        let of = |azimuths: &[f64]| {
+            Lines::of(&product(vec![views(azimuths), bands(&["red", "nir"])], &values))
+        };
+        let two = of(&[0.0, 0.0, 90.0, 90.0]).expect("a chart");
+        let names: Vec<&str> = two.lines.iter().map(|line| line.name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["red, azimuth 0°", "red, azimuth 90°", "nir, azimuth 0°", "nir, azimuth 90°"]
+        );
+        let all = product(
+            vec![views(&[0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0]), bands(&["red"])],
+            &values,
+        );
+        assert_eq!(Lines::of(&all), None);
+    }
+
+    #[test]
+    fn layers_are_a_profile() {
+        let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
+        let lines =
+            Lines::of(&product(vec![layers, bands(&["red", "nir"])], &[1.0, 2.0, 3.0, 4.0]));
+        let lines = lines.expect("a chart");
+        assert!(lines.is_profile);
+        assert_eq!(lines.lines[1].points[1], Point { at: 3.0, value: 4.0, error: 0.1 });
+    }
+
+    #[test]
+    fn many_lines_are_thinned_out() {
+        let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
+        let names: Vec<String> = (0..20).map(|band| format!("b{band}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let lines = Lines::of(&product(vec![layers, bands(&names)], &[1.0; 40]));
+        let lines = lines.expect("a chart");
+        assert_eq!((lines.lines.len(), lines.hidden), (8, 12));
+        assert_eq!((lines.lines[0].name.as_str(), lines.lines[7].name.as_str()), ("b0", "b19"));
+    }
+}

@@ -1,0 +1,367 @@
+//! What a scene consists of, for its author to compare with what was meant.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+use hecs::World;
+use serde::Serialize;
+
+use super::checkpoint::Keeper;
+use super::forecast::Size;
+use super::sensors::begin;
+use super::{Options, sensors};
+use crate::accel::Ray;
+use crate::components::{
+    Mesh, Name, PartMaterials, Placement, SceneId, Sensor, Stop, Sun, SurfaceOptics, TerrainPatch,
+};
+use crate::document::{self, Material, PhotonMeasure, Scene};
+use crate::extract::Stage;
+use crate::products::Context;
+use crate::sampling::Key;
+
+/// Vertical rays along each side of the grid that canopy cover is found with.
+const COVER_RAYS: u32 = 64;
+/// Square metres of a hectare.
+const HECTARE: f64 = 1e4;
+
+/// What a scene consists of.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneFacts {
+    /// Title of the scene.
+    pub title: String,
+    /// The ground.
+    pub ground: GroundFacts,
+    /// Meshes that stand on it, in the order of the scene.
+    pub meshes: Vec<MeshFacts>,
+    /// Number of instances.
+    pub instances: u64,
+    /// Triangles and discs of all instances and of the ground.
+    pub faces: u64,
+    /// Triangles and discs that are kept in memory.
+    pub unique_faces: u64,
+    /// Height of the highest point, m, local frame.
+    pub highest_m: f64,
+    /// One-sided area of surfaces of `Leaf` materials per area of the ground's rectangle.
+    pub leaf_area_index: f64,
+    /// Fraction of the ground that is hidden from above.
+    pub canopy_cover: f64,
+    /// Standard error of the canopy cover.
+    pub canopy_cover_error: f64,
+    /// The sun, if there is one.
+    pub sun: Option<SunFacts>,
+    /// Spectral bands.
+    pub bands: Vec<BandFacts>,
+    /// Sensors.
+    pub sensors: Vec<SensorFacts>,
+    /// Memory of the geometry, bytes.
+    pub geometry_bytes: u64,
+}
+
+/// The ground.
+#[derive(Clone, Debug, Serialize)]
+pub struct GroundFacts {
+    /// South-west corner, m, local frame.
+    pub corner_m: [f64; 2],
+    /// Extent to the east and to the north, m.
+    pub size_m: [f64; 2],
+    /// Easting, northing and height of the local frame's origin on the map, m.
+    pub origin_m: [f64; 3],
+    /// Projection of the map, if a raster names one.
+    pub projection: Option<String>,
+    /// Height of the lowest ground, m, local frame.
+    pub lowest_m: f64,
+    /// Height of the highest ground, m, local frame.
+    pub highest_m: f64,
+    /// Number of triangles.
+    pub triangles: u64,
+    /// Whether the rectangle repeats without end.
+    pub periodic: bool,
+}
+
+/// A mesh and its instances.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeshFacts {
+    /// Name of the mesh.
+    pub name: String,
+    /// Number of instances.
+    pub instances: u64,
+    /// Instances per hectare of the ground's rectangle.
+    pub per_hectare: f64,
+    /// Triangles and discs of one.
+    pub faces: u64,
+    /// Mean height of the instances, m.
+    pub height_m: f64,
+    /// Mean one-sided area of an instance's surfaces of `Leaf` materials, m².
+    pub leaf_area_m2: f64,
+    /// What the instances add to the leaf area index of the scene.
+    pub leaf_area_index: f64,
+}
+
+/// Where the sun is.
+#[derive(Clone, Debug, Serialize)]
+pub struct SunFacts {
+    /// Angle from the vertical, degrees.
+    pub zenith_deg: f64,
+    /// Clockwise from north, degrees.
+    pub azimuth_deg: f64,
+    /// Whether the angles follow from place and time.
+    pub from_place_and_time: bool,
+}
+
+/// A spectral band.
+#[derive(Clone, Debug, Serialize)]
+pub struct BandFacts {
+    /// Its name.
+    pub name: String,
+    /// Its centre, nm.
+    pub center_nm: f64,
+    /// Its width, nm.
+    pub width_nm: f64,
+    /// Irradiance of the horizontal plane by sun and sky, W m⁻² nm⁻¹.
+    pub irradiance: f64,
+    /// Fraction of it that the sky gives.
+    pub diffuse_fraction: f64,
+    /// Whether it holds what surfaces emit.
+    pub emits: bool,
+}
+
+/// A sensor.
+#[derive(Clone, Debug, Serialize)]
+pub struct SensorFacts {
+    /// Its name.
+    pub name: String,
+    /// Its kind as the scene names it.
+    pub kind: &'static str,
+    /// What it measures.
+    pub measures: Vec<String>,
+    /// Number of pixels or views; none of photons.
+    pub pixels: Option<u64>,
+    /// Paths or photon packets that it traces, where that is fixed.
+    pub samples: Option<u64>,
+    /// Why it ends.
+    pub ends: String,
+    /// Memory of the measurement, bytes.
+    pub memory_bytes: u64,
+}
+
+impl SceneFacts {
+    /// Collects them from a scene that was read, spawned and built.
+    pub(super) fn new(
+        scene: &Scene,
+        world: &World,
+        (stage, context): (&Stage, &Context),
+        options: &Options,
+    ) -> Self {
+        let ground = ground(scene, world);
+        let area = ground.size_m[0] * ground.size_m[1];
+        let meshes = meshes(scene, world, area);
+        let memory = stage.geometry.memory();
+        let (canopy_cover, canopy_cover_error) = canopy_cover(stage);
+        Self {
+            title: scene.title.clone(),
+            instances: meshes.iter().map(|mesh| mesh.instances).sum(),
+            faces: ground.triangles
+                + meshes.iter().map(|mesh| mesh.instances * mesh.faces).sum::<u64>(),
+            unique_faces: memory.primitives as u64,
+            highest_m: stage.top(),
+            leaf_area_index: meshes.iter().map(|mesh| mesh.leaf_area_index).sum(),
+            canopy_cover,
+            canopy_cover_error,
+            sun: sun(scene),
+            bands: bands(scene, world, stage),
+            sensors: sensor_facts(scene, world, (stage, context), options),
+            geometry_bytes: (memory.mesh_bytes + memory.instance_bytes) as u64,
+            ground,
+            meshes,
+        }
+    }
+}
+
+fn ground(scene: &Scene, world: &World) -> GroundFacts {
+    let mut patches = world.query::<&TerrainPatch>();
+    let patch = patches.iter().next().expect("a scene has a terrain");
+    let heights = patch.mesh.vertices.iter().map(|vertex| f64::from(vertex.z));
+    let (x, y, z) = scene.frame.origin_m;
+    GroundFacts {
+        corner_m: patch.corner.to_array(),
+        size_m: patch.size.to_array(),
+        origin_m: [x, y, z],
+        projection: patch.projection.as_ref().map(|map| format!("{}, {}", map.name, map.rest)),
+        lowest_m: patch.lowest(),
+        highest_m: patch.base + patch.unit * heights.reduce(f64::max).unwrap_or(0.0),
+        triangles: u64::from(patch.first_cut),
+        periodic: scene.boundary == document::Boundary::Periodic,
+    }
+}
+
+/// What is the same in all instances of a mesh.
+struct MeshSize {
+    name: String,
+    faces: u64,
+    height: f64,
+    leaf_area: f64,
+}
+
+/// Sums over the instances of a mesh.
+#[derive(Clone, Copy, Default)]
+struct InstanceSums {
+    count: u64,
+    height: f64,
+    leaf_area: f64,
+}
+
+fn meshes(scene: &Scene, world: &World, area: f64) -> Vec<MeshFacts> {
+    let mut leaves: BTreeMap<u32, bool> = BTreeMap::new();
+    for (id, name, _) in &mut world.query::<(&SceneId, &Name, &SurfaceOptics)>() {
+        let is_leaf = matches!(scene.materials.get(name.0.as_str()), Some(Material::Leaf { .. }));
+        leaves.insert(id.0, is_leaf);
+    }
+    let mut sizes: BTreeMap<u32, MeshSize> = BTreeMap::new();
+    for (id, name, mesh, materials) in
+        &mut world.query::<(&SceneId, &Name, &Mesh, &PartMaterials)>()
+    {
+        let parts = mesh.parts.iter().zip(&materials.0);
+        let of_leaves = parts.filter(|(_, material)| leaves.get(&material.0) == Some(&true));
+        let leaf_area = of_leaves.map(|(part, _)| mesh.part_area(part)).sum();
+        let height = mesh.bounds().map_or(0.0, |(low, high)| f64::from(high.z - low.z));
+        let faces = (mesh.triangles.len() + mesh.discs.len()) as u64;
+        sizes.insert(id.0, MeshSize { name: name.0.clone(), faces, height, leaf_area });
+    }
+    let mut sums: BTreeMap<u32, InstanceSums> = BTreeMap::new();
+    for placement in &mut world.query::<&Placement>() {
+        let Some(size) = sizes.get(&placement.prototype.0) else { continue };
+        let across = f64::from(placement.scale_horizontal);
+        let up = f64::from(placement.scale_vertical);
+        let sum = sums.entry(placement.prototype.0).or_default();
+        sum.count += 1;
+        sum.height += size.height * up.abs();
+        // Exact for equal scales; leaves of all directions grow so, nearly, if the two differ.
+        sum.leaf_area += size.leaf_area * (across * across * up).abs().powf(2.0 / 3.0);
+    }
+    let facts = |(id, size): (u32, MeshSize)| {
+        let sum = sums.get(&id).copied().unwrap_or_default();
+        let count = (sum.count as f64).max(1.0);
+        MeshFacts {
+            name: size.name,
+            instances: sum.count,
+            per_hectare: sum.count as f64 / area * HECTARE,
+            faces: size.faces,
+            height_m: sum.height / count,
+            leaf_area_m2: sum.leaf_area / count,
+            leaf_area_index: sum.leaf_area / area,
+        }
+    };
+    sizes.into_iter().map(facts).collect()
+}
+
+/// Fraction of vertical rays that meet something above the ground, and its standard error.
+fn canopy_cover(stage: &Stage) -> (f64, f64) {
+    let key = Key::new(stage.rules.seed).path("canopy cover");
+    let count = COVER_RAYS * COVER_RAYS;
+    let top = stage.top() + 1.0;
+    let is_covered = |index: u32| {
+        let jitter = key.index(index.into());
+        let cell = DVec2::new(f64::from(index % COVER_RAYS), f64::from(index / COVER_RAYS));
+        let at = cell + DVec2::new(jitter.uniform(0), jitter.uniform(1));
+        let origin = (stage.corner + stage.size * at / f64::from(COVER_RAYS)).extend(top);
+        let ray = Ray { origin, direction: DVec3::NEG_Z, from: None };
+        stage.geometry.closest(&ray).is_some_and(|hit| !stage.is_ground(&hit))
+    };
+    let covered = (0..count).filter(|&index| is_covered(index)).count() as f64;
+    let fraction = covered / f64::from(count);
+    (fraction, (fraction * (1.0 - fraction) / f64::from(count)).sqrt())
+}
+
+fn sun(scene: &Scene) -> Option<SunFacts> {
+    let sun = scene.sun.as_ref()?;
+    let (zenith_deg, azimuth_deg) = sun.angles_deg()?;
+    Some(SunFacts { zenith_deg, azimuth_deg, from_place_and_time: sun.position.is_some() })
+}
+
+fn bands(scene: &Scene, world: &World, stage: &Stage) -> Vec<BandFacts> {
+    let mut suns = world.query::<&Sun>();
+    let sun = suns.iter().next();
+    let facts = |(index, band): (usize, &document::Band)| {
+        let irradiance = stage.light.irradiance[index];
+        let direct = sun.map_or(0.0, |sun| sun.irradiance[index] * sun.direction.z);
+        BandFacts {
+            name: band.name.clone(),
+            center_nm: band.center_nm,
+            width_nm: band.width_nm,
+            irradiance,
+            diffuse_fraction: if irradiance > 0.0 {
+                (1.0 - direct / irradiance).max(0.0)
+            } else {
+                0.0
+            },
+            emits: band.emits(),
+        }
+    };
+    scene.bands.iter().enumerate().map(facts).collect()
+}
+
+fn sensor_facts(
+    scene: &Scene,
+    world: &World,
+    (stage, context): (&Stage, &Context),
+    options: &Options,
+) -> Vec<SensorFacts> {
+    let facts = |(name, sensor): &(String, Sensor)| {
+        let (mut measurement, plan) = begin(name, sensor, (stage, context), options.quality);
+        let pixels = match sensor {
+            Sensor::Image(image) => Some(u64::from(image.size.x) * u64::from(image.size.y)),
+            Sensor::Directions(directions) => Some(directions.views.len() as u64),
+            Sensor::Photons(_) => None,
+        };
+        let limit = plan.until.iter().find_map(|stop| match stop {
+            Stop::Samples(samples) => Some(samples.saturating_mul(pixels.unwrap_or(1))),
+            _ => None,
+        });
+        let (kind, measures) = scene.sensors.get(name.as_str()).map(describe).unwrap_or_default();
+        SensorFacts {
+            name: name.clone(),
+            kind,
+            measures,
+            pixels,
+            samples: limit,
+            ends: plan.until.iter().map(ends).collect::<Vec<_>>().join(" or "),
+            memory_bytes: Size::of(measurement.as_mut(), &Keeper::idle()).memory(),
+        }
+    };
+    sensors::in_order(world).iter().map(facts).collect()
+}
+
+/// Kind and measures of a sensor as the scene names them.
+fn describe(sensor: &document::Sensor) -> (&'static str, Vec<String>) {
+    let kind = match sensor {
+        document::Sensor::Orthographic { .. } => "Orthographic",
+        document::Sensor::Perspective { .. } => "Perspective",
+        document::Sensor::Fisheye { .. } => "Fisheye",
+        document::Sensor::Directions { .. } => "Directions",
+        document::Sensor::Photons { .. } => "Photons",
+    };
+    let name_of = |measure: &PhotonMeasure| {
+        let text = format!("{measure:?}");
+        text.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or_default().to_owned()
+    };
+    let measures = match sensor {
+        document::Sensor::Photons { measure, .. } => measure.iter().map(name_of).collect(),
+        other => {
+            let measures = other.image_measures().into_iter().flatten();
+            measures.map(|measure| format!("{measure:?}")).collect()
+        }
+    };
+    (kind, measures)
+}
+
+fn ends(stop: &Stop) -> String {
+    match stop {
+        Stop::RelError(limit) => format!("relative error {limit:?}"),
+        Stop::RelErrors(limits) => {
+            let texts = limits.iter().map(|(name, limit)| format!("{name} {limit:?}"));
+            format!("relative error of {}", texts.collect::<Vec<_>>().join(", "))
+        }
+        Stop::Seconds(limit) => format!("{limit:?} s"),
+        Stop::Samples(limit) => format!("{limit} samples"),
+    }
+}
