@@ -1,7 +1,5 @@
 //! What a scene consists of, as `sunfleck check` prints it.
 
-use std::fmt::Write as _;
-
 use sunfleck::run::{SceneFacts, SunFacts};
 
 /// A scene's facts and warnings as JSON.
@@ -203,11 +201,10 @@ fn aligned(rows: &[Vec<String>], left: &[usize]) -> String {
         let mut line = String::new();
         for (column, cell) in row.iter().enumerate() {
             let room = " ".repeat(widths[column] - cell.chars().count());
-            // Writing to a string does not fail.
-            let _infallible = match text[column] {
-                true => write!(line, "{cell}{room}  "),
-                false => write!(line, "{room}{cell}  "),
-            };
+            let (first, second) = if text[column] { (cell, &room) } else { (&room, cell) };
+            line.push_str(first);
+            line.push_str(second);
+            line.push_str("  ");
         }
         out.push_str(line.trim_end());
         out.push('\n');

@@ -87,7 +87,8 @@ fn the_first_scene_of_the_readme_runs() {
     let scene = text.split("```ron\n").nth(1).unwrap().split("```").next().unwrap();
     let folder = folder_with(scene);
     let (code, stdout, _) = outcome(folder.path(), &["check", "soil.ron", "--set", "sza=50"]);
-    assert_eq!((code, stdout.as_str()), (0, "soil.ron: no errors\n"));
+    assert_eq!(code, 0);
+    assert!(stdout.ends_with("soil.ron: no errors\n"), "{stdout}");
     let (code, _, stderr) = outcome(folder.path(), &["run", "soil.ron", "--quality", "0.01"]);
     assert_eq!((code, stderr.as_str()), (0, ""));
     assert!(folder.path().join("out/soil/nadir_brf.png").is_file());
@@ -141,12 +142,95 @@ fn an_expanded_scene_is_a_scene() {
     assert_eq!(hash("soil.ron"), hash("again.ron"));
 }
 
+/// Two trees of 25 m² of leaves on 100 m² and the sun over Berlin at noon: stems, leaf area, cover and sun are
+/// those that follow by hand.
 #[test]
-fn check_traces_nothing_and_writes_nothing() {
+fn check_says_what_a_scene_is() {
+    let folder = folder_with(
+        r#"Scene(
+    format: 1,
+    bands: [(name: "red", center_nm: 660.0), (name: "dark", center_nm: 865.0)],
+    materials: {
+        "soil": Lambertian(reflectance: Constant(0.2)),
+        "leaf": Leaf(reflectance: Constant(0.1), transmittance: Constant(0.1)),
+    },
+    meshes: {
+        "tree": Crown(
+            shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 1.0, leaf_area_m2: 25.0,
+            leaf: Disc(radius_m: 0.05), leaf_material: "leaf",
+        ),
+    },
+    terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(3.0, 3.0, 0.0), (7.0, 7.0, 0.0)])],
+    sun: (
+        position: Spa(date: (2026, 6, 21), time: (12, 0, 0), utc_offset_h: 1, latitude_deg: 52.5, longitude_deg: 13.4),
+        irradiance: Bands([1.5, 0.0]),
+    ),
+    sensors: { "top": Orthographic(size_px: (20, 10), extent_m: (10.0, 10.0), samples_per_px: 4) },
+)"#,
+    );
+    let (code, stdout, stderr) = outcome(folder.path(), &["check", "soil.ron"]);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    for part in
+        ["zenith 29.1", "leaf area index 0.5", "none: dark", "Orthographic", "from place and time"]
+    {
+        assert!(stdout.contains(part), "{part}: {stdout}");
+    }
+    let (_, stdout, _) = outcome(folder.path(), &["check", "soil.ron", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    let scene = &json["scene"];
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((number(&scene["meshes"][0]["per_hectare"]) - 200.0).abs() < 1e-9);
+    // Leaves fill their area to one leaf; a circle of 1 m radius, but for its gaps.
+    assert!((number(&scene["leaf_area_index"]) - 0.5).abs() < 0.01, "{scene}");
+    let circles = 2.0 * std::f64::consts::PI / 100.0;
+    let cover = number(&scene["canopy_cover"]);
+    assert!((0.7 * circles..1.05 * circles).contains(&cover), "{cover}");
+    assert_eq!(scene["sensors"][0]["samples"], 800);
+    assert_eq!(json["warnings"], serde_json::json!([]));
+}
+
+/// *Scene*: a crown of 2 m with 1200 m² of leaves, 400 in place of 4 m². *Expected*: a warning of each.
+#[test]
+fn check_warns_of_what_cannot_be() {
+    let scene = |leaf_area: f64| {
+        format!(
+            r#"Scene(
+    format: 1,
+    bands: [(name: "red", center_nm: 660.0)],
+    materials: {{
+        "soil": Lambertian(reflectance: Constant(0.2)),
+        "leaf": Leaf(reflectance: Constant(0.1), transmittance: Constant(0.1)),
+    }},
+    meshes: {{
+        "tree": Crown(
+            shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 1.0, leaf_area_m2: {leaf_area:?},
+            leaf: Disc(radius_m: 0.2), leaf_material: "leaf",
+        ),
+    }},
+    terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
+    instances: [List(of: "tree", at_m: [(3.0, 3.0, 0.0), (7.0, 7.0, 0.0)])],
+    sun: (zenith_deg: 30.0),
+    sensors: {{ "top": Orthographic(size_px: (20, 10), extent_m: (10.0, 10.0), samples_per_px: 4) }},
+)"#
+        )
+    };
+    let folder = folder_with(&scene(1400.0));
+    let (_, stdout, stderr) = outcome(folder.path(), &["check", "soil.ron"]);
+    assert!(stderr.contains("`tree` holds") && stderr.contains("leaf area index of"), "{stderr}");
+    assert!(stderr.contains("the leaf area index of the scene is 28"), "{stderr}");
+    assert!(stdout.ends_with("no errors, 2 warnings\n"), "{stdout}");
+    let folder = folder_with(&scene(14.0));
+    let (_, _, stderr) = outcome(folder.path(), &["check", "soil.ron"]);
+    assert_eq!(stderr, "");
+}
+
+#[test]
+fn check_writes_nothing() {
     let folder = folder_with(SOIL);
     let (code, stdout, stderr) = outcome(folder.path(), &["check", "soil.ron"]);
     assert_eq!((code, stderr.as_str()), (0, ""));
-    assert_eq!(stdout, "soil.ron: no errors\n");
+    assert!(stdout.ends_with("soil.ron: no errors\n"), "{stdout}");
     assert_eq!(names(folder.path()), ["soil.ron"]);
 }
 

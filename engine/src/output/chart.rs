@@ -93,6 +93,7 @@ fn draw_lines(area: &Panel<'_>, lines: &Lines, heading: &Heading<'_>) -> Result<
     };
     let mut chart = ChartBuilder::on(area)
         .margin_top(56)
+        .margin_left(18)
         .margin_right(16)
         .margin_bottom(8)
         .x_label_area_size(46)

@@ -54,7 +54,14 @@ impl Lines {
             match (numbers(first, "zenith_deg"), numbers(first, "bottom_m")) {
                 (Some(zeniths), _) => {
                     let azimuths = numbers(first, "azimuth_deg")?;
-                    (planes(&upright(zeniths, azimuths))?, "zenith angle (°)".to_owned(), false)
+                    let mut tracks = planes(&upright(zeniths, azimuths))?;
+                    let mut title = "zenith angle (°)".to_owned();
+                    if let [track] = &mut tracks[..]
+                        && !track.name.is_empty()
+                    {
+                        title = format!("{title}, {}", std::mem::take(&mut track.name));
+                    }
+                    (tracks, title, false)
                 }
                 (_, Some(bottoms)) => {
                     let tops = numbers(first, "top_m")?;

@@ -6,7 +6,7 @@
 //! | bytes | |
 //! |---|---|
 //! | 16 | `sunfleck traced` and a line feed |
-//! | 4 | version of this format, 2 |
+//! | 4 | version of this format, 3 |
 //! | 4, n | length and text of the version of sunfleck: another one may draw other numbers |
 //! | 32 | hash of the scene without what says how long it is measured |
 //! | 4, 4 | which share of the run this is, from 0, and of how many |
@@ -30,7 +30,7 @@ use crate::products::data_size;
 use crate::transport::Share;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Where and how often a run writes down what it has traced.
 #[derive(Clone, Debug, PartialEq)]

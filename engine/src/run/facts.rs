@@ -12,9 +12,10 @@ use super::sensors::begin;
 use super::{Options, sensors};
 use crate::accel::Ray;
 use crate::components::{
-    Mesh, Name, PartMaterials, Placement, SceneId, Sensor, Stop, Sun, SurfaceOptics, TerrainPatch,
+    MaterialId, Mesh, Name, PartMaterials, Placement, SceneId, Sensor, Stop, Sun, SurfaceOptics,
+    TerrainPatch,
 };
-use crate::document::{self, Material, PhotonMeasure, Scene};
+use crate::document::{self, Diagnostic, Material, PhotonMeasure, Scene};
 use crate::extract::Stage;
 use crate::products::Context;
 use crate::sampling::Key;
@@ -175,6 +176,36 @@ impl SceneFacts {
             meshes,
         }
     }
+}
+
+/// Reflectance of fresh snow, which no ground exceeds.
+const SNOW: f32 = 0.9;
+/// Wavelength beyond which surfaces are not known by their brightness, nm.
+const VISIBLE_END: f64 = 1100.0;
+
+/// Warns of ground that is brighter than fresh snow.
+pub(super) fn warn_bright_ground(scene: &Scene, world: &World) -> Vec<Diagnostic> {
+    let ground: Vec<MaterialId> =
+        world.query::<&TerrainPatch>().iter().flat_map(|patch| patch.materials.0.clone()).collect();
+    let mut surfaces = world.query::<(&SceneId, &Name, &SurfaceOptics)>();
+    let warning = |(id, name, optics): (&SceneId, &Name, &SurfaceOptics)| {
+        if !ground.contains(&MaterialId(id.0)) {
+            return None;
+        }
+        let bands = scene.bands.iter().zip(optics.front());
+        let bright = bands.filter(|(band, _)| band.center_nm < VISIBLE_END);
+        let (band, reflectance) = bright.max_by(|a, b| a.1.total_cmp(b.1))?;
+        (*reflectance > SNOW).then(|| {
+            let message = format!(
+                "the ground reflects {:.1} % in band `{}`: more than fresh snow",
+                100.0 * reflectance,
+                band.name
+            );
+            let help = "soil reflects 5 to 40 %: is the spectrum right, and no white reference?";
+            Diagnostic::warning(format!("materials.{}", name.0), message).help(help)
+        })
+    };
+    surfaces.iter().filter_map(warning).collect()
 }
 
 fn ground(scene: &Scene, world: &World) -> GroundFacts {

@@ -187,15 +187,6 @@ fn warn_camera(camera: &CameraPlace, path: &str, relief: &Relief) -> Vec<Diagnos
     let at = format!("{path}.position_m");
     let high = metres(ground);
     if camera.is_above_ground {
-        if z < 0.0 {
-            let message = format!("the camera is {} m below the ground", metres(-z));
-            let help = format!(
-                "`above_ground: true` counts heights from the ground upwards: write \
-                 `position_m: ({x:?}, {y:?}, {:?})`",
-                -z
-            );
-            return vec![Diagnostic::warning(at, message).help(help)];
-        }
         // A height above sea level that is added to that of the ground.
         let over = z - ground;
         if ground > 50.0 && over > 0.0 && over < 0.1 * ground && over < 50.0 {

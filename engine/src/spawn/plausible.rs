@@ -112,7 +112,9 @@ impl Spawner<'_> {
     /// Warns of a raster of heights that are all 0: a mask, or a map without heights.
     pub(super) fn warn_flat_raster(&mut self, patch: &TerrainPatch) {
         let Terrain::Raster { file, .. } = &self.scene.terrain else { return };
-        let is_flat = patch.mesh.vertices.iter().all(|vertex| vertex.z == patch.mesh.vertices[0].z);
+        let heights = || patch.mesh.vertices.iter().map(|vertex| vertex.z);
+        let is_flat = heights()
+            .all(|height| heights().next().is_some_and(|one| one.total_cmp(&height).is_eq()));
         let height =
             patch.mesh.vertices.first().map_or(0.0, |v| patch.base + patch.unit * f64::from(v.z));
         let origin = self.scene.frame.origin_m.2;
