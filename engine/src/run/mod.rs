@@ -194,6 +194,9 @@ fn checked(
         let sensors = sensors::in_order(&spawned.world);
         check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
         spawned.warnings.extend(enclosed::warnings(&sensors, &stage));
+        if with_facts {
+            spawned.warnings.extend(facts::warn_bright_ground(&reading.scene, &spawned.world));
+        }
         let facts = with_facts
             .then(|| SceneFacts::new(&reading.scene, &spawned.world, (&stage, &context), options));
         Ok((spawned, facts))
