@@ -39,7 +39,7 @@ impl Replicates {
     /// - `halves`: those of the strata from which a replicate takes this net, shape `[replicates][2][values]`
     /// - `samples`: samples of each stratum by net
     ///
-    /// Source: McCarthy (1969), "Pseudo-replication: half samples", Rev. Int. Stat. Inst. 37, 239-264.
+    /// Source: `McCarthy` (1969), "Pseudo-replication: half samples", Rev. Int. Stat. Inst. 37, 239-264.
     #[must_use]
     pub fn from_half_samples(nets: [&[f64]; 2], halves: &[[&[f64]; 2]], samples: [f64; 2]) -> Self {
         let [a, b] = samples;

@@ -65,6 +65,7 @@ pub(super) fn draw(lines: &Lines, heading: &Heading<'_>) -> io::Result<String> {
 
 type DrawError = DrawingAreaErrorKind<io::Error>;
 
+#[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
 fn failed(error: DrawError) -> io::Error {
     io::Error::other(error.to_string())
 }
@@ -76,7 +77,7 @@ fn letters(size: i32) -> TextStyle<'static> {
 fn draw_lines(area: &Panel<'_>, lines: &Lines, heading: &Heading<'_>) -> Result<(), DrawError> {
     area.draw_text(&heading.title, &letters(18), (16, 10))?;
     area.draw_text(heading.scene, &letters(13), (16, 32))?;
-    let all = || lines.lines.iter().flat_map(|line| &line.points);
+    let all = || lines.curves.iter().flat_map(|line| &line.points);
     let places = range_of(all().map(|point| point.at));
     let values =
         range_of(all().flat_map(|point| [point.value - point.error, point.value + point.error]));
@@ -111,7 +112,7 @@ fn draw_lines(area: &Panel<'_>, lines: &Lines, heading: &Heading<'_>) -> Result<
         .label_style(letters(13))
         .axis_desc_style(letters(14))
         .draw()?;
-    for (number, line) in lines.lines.iter().enumerate() {
+    for (number, line) in lines.curves.iter().enumerate() {
         draw_line(&mut chart, line, (COLOURS[number % COLOURS.len()], lines.is_profile))?;
     }
     Ok(())
@@ -139,7 +140,8 @@ fn draw_line(
 fn draw_names(area: &Panel<'_>, lines: &Lines) -> Result<(), DrawError> {
     let style = letters(13).pos(Pos::new(HPos::Left, VPos::Center));
     let mut y = 66;
-    for (number, line) in lines.lines.iter().enumerate().filter(|(_, line)| !line.name.is_empty()) {
+    for (number, line) in lines.curves.iter().enumerate().filter(|(_, line)| !line.name.is_empty())
+    {
         let colour = COLOURS[number % COLOURS.len()];
         area.draw(&PathElement::new(vec![(0, y), (16, y)], colour.stroke_width(3)))?;
         area.draw_text(&line.name, &style, (22, y))?;
@@ -149,7 +151,7 @@ fn draw_names(area: &Panel<'_>, lines: &Lines) -> Result<(), DrawError> {
         area.draw_text(&format!("{} more are in the table", lines.hidden), &style, (0, y))?;
         y += 20;
     }
-    if lines.lines.iter().flat_map(|line| &line.points).any(|point| point.error > 0.0) {
+    if lines.curves.iter().flat_map(|line| &line.points).any(|point| point.error > 0.0) {
         area.draw_text("bars: ± 1 standard error", &style, (0, y + 6))?;
     }
     Ok(())

@@ -185,7 +185,7 @@ impl Layout {
             }
             Row::Ramp(bar) => self.draw_ramp(bar, top, canvas),
             Row::Class(class) => {
-                self.draw_swatch(&class.name, Swatch::Plain(class.colour), top, canvas)
+                self.draw_swatch(&class.name, Swatch::Plain(class.colour), top, canvas);
             }
             Row::NoData => self.draw_swatch("no data", Swatch::NoData, top, canvas),
         }
@@ -255,6 +255,7 @@ impl Layout {
 }
 
 /// How a colour of a legend is filled.
+#[derive(Clone, Copy)]
 enum Swatch {
     Plain([u8; 3]),
     NoData,

@@ -14,7 +14,7 @@ pub(super) struct Lines {
     pub(super) axis: String,
     /// Whether that axis is height, and stands upright.
     pub(super) is_profile: bool,
-    pub(super) lines: Vec<Line>,
+    pub(super) curves: Vec<Line>,
     /// Lines that are left out.
     pub(super) hidden: usize,
 }
@@ -109,7 +109,7 @@ impl Lines {
         if let [line] = &mut lines[..] {
             line.name.clear();
         }
-        (!lines.is_empty()).then_some(Self { axis, is_profile, lines, hidden })
+        (!lines.is_empty()).then_some(Self { axis, is_profile, curves: lines, hidden })
     }
 }
 
@@ -231,9 +231,9 @@ mod tests {
         ];
         let lines = Lines::of(&product(vec![views, bands(&["red"])], &[1.0, 2.0, 3.0]));
         let lines = lines.expect("a chart");
-        assert_eq!(lines.lines.len(), 1);
+        assert_eq!(lines.curves.len(), 1);
         let places: Vec<(f64, f64)> =
-            lines.lines[0].points.iter().map(|point| (point.at, point.value)).collect();
+            lines.curves[0].points.iter().map(|point| (point.at, point.value)).collect();
         assert_eq!(places, [(-30.0, 1.0), (0.0, 2.0), (30.0, 3.0)]);
     }
 
@@ -249,7 +249,7 @@ mod tests {
             Lines::of(&product(vec![views(azimuths), bands(&["red", "nir"])], &values))
         };
         let two = of(&[0.0, 0.0, 90.0, 90.0]).expect("a chart");
-        let names: Vec<&str> = two.lines.iter().map(|line| line.name.as_str()).collect();
+        let names: Vec<&str> = two.curves.iter().map(|line| line.name.as_str()).collect();
         assert_eq!(
             names,
             ["red, azimuth 0°", "red, azimuth 90°", "nir, azimuth 0°", "nir, azimuth 90°"]
@@ -268,7 +268,7 @@ mod tests {
             Lines::of(&product(vec![layers, bands(&["red", "nir"])], &[1.0, 2.0, 3.0, 4.0]));
         let lines = lines.expect("a chart");
         assert!(lines.is_profile);
-        assert_eq!(lines.lines[1].points[1], Point { at: 3.0, value: 4.0, error: 0.1 });
+        assert_eq!(lines.curves[1].points[1], Point { at: 3.0, value: 4.0, error: 0.1 });
     }
 
     #[test]
@@ -278,7 +278,7 @@ mod tests {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let lines = Lines::of(&product(vec![layers, bands(&names)], &[1.0; 40]));
         let lines = lines.expect("a chart");
-        assert_eq!((lines.lines.len(), lines.hidden), (8, 12));
-        assert_eq!((lines.lines[0].name.as_str(), lines.lines[7].name.as_str()), ("b0", "b19"));
+        assert_eq!((lines.curves.len(), lines.hidden), (8, 12));
+        assert_eq!((lines.curves[0].name.as_str(), lines.curves[7].name.as_str()), ("b0", "b19"));
     }
 }
