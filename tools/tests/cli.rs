@@ -71,7 +71,7 @@ fn a_run_writes_its_files_and_prints_a_table() {
     ];
     assert_eq!(names(&folder.path().join("out/soil")), expected);
     assert!(stdout.starts_with("sensor "), "{stdout}");
-    assert!(stdout.contains("views ") && stdout.contains("8 files in out/soil: "), "{stdout}");
+    assert!(stdout.contains("views ") && stdout.contains("10 files in out/soil: "), "{stdout}");
     let text = fs::read_to_string(folder.path().join("out/soil/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     for value in summary["sensors"]["views"]["brf"]["values"].as_array().unwrap() {

@@ -7,12 +7,12 @@ const NUMBER: u64 = 20;
 /// Size of a number or name that tells where a value lies: these have few digits.
 const PLACE: u64 = 8;
 
-/// Size of what an image's files or a table hold beside their values, bytes.
-const HEADERS: u64 = 3000;
+/// Size of what an image's files, its legend among them, or a table hold beside their values, bytes.
+const HEADERS: u64 = 12_000;
 const HEADER: u64 = 300;
 
-/// Size of an opaque pixel in a PNG, bytes.
-const PIXEL: u64 = 2;
+/// Size of an opaque pixel in the PNG with a legend and in that without, bytes.
+const PIXEL: u64 = 2 * 2;
 
 /// Size of the files of a product that is to be measured, bytes: exact but for compression, for how
 /// many digits its numbers have, and for headers.
