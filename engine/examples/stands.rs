@@ -70,7 +70,7 @@ fn stand(leaf_area_m2: f64, trees_a_side: u32) -> Result<Scene, Box<dyn std::err
     // What has defaults is shortest as text.
     let text = "(format: 1, bands: [(name: \"nir\", center_nm: 865.0)], \
                 terrain: Plane(size_m: (1.0, 1.0), material: \"\"), \
-                sun: (zenith_deg: 30.0), sensors: { \"light\": Photons(per_m2: 50.0) })";
+                sun: (zenith_deg: 30.0, irradiance: Constant(1.0)), sensors: { \"light\": Photons(per_m2: 50.0) })";
     let defaults = read_text("defaults", text, &Options::default())?.scene;
     let sun: Option<Sun> = defaults.sun;
     scene.sun = sun;

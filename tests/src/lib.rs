@@ -57,7 +57,7 @@ pub fn two_trees(boundary: &str, sensors: &str) -> String {
     ) }},
     terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     sky: Fraction([0.3, 0.1]),
     boundary: {boundary},
     sensors: {{ {sensors} }},
@@ -93,7 +93,7 @@ pub fn sheets(optics: &[SheetOptics], heights_m: &[f64], keys: &str) -> String {
     ) }},
     terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
     instances: [List(of: "sheet", at_m: {at:?})],
-    sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
+    sun: (zenith_deg: 35.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     {keys}
 )"#

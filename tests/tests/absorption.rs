@@ -288,7 +288,7 @@ fn more_than_memory_holds_is_refused_with_numbers() {
     ) }},
     terrain: Plane(size_m: (100.0, 110.0), material: "leaf"),
     instances: [Scatter(of: {{ "tree": 1.0 }}, rule: Grid(spacing_m: (1.0, 1.0)))],
-    sun: (zenith_deg: 50.0),
+    sun: (zenith_deg: 50.0, irradiance: Constant(1.0)),
     sensors: {{ "photons": Photons(per_m2: 0.01, measure: [Absorbed(per: {per})]) }},
 )"#
         );

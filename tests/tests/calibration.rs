@@ -41,7 +41,7 @@ fn grove(sensors: &str) -> Report {
     ) }},
     terrain: Plane(size_m: (1.0, 1.0), material: "soil"),
     instances: [List(of: "crown", at_m: [(0.3, 0.3, 0.0), (0.8, 0.7, 0.0)])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 150.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 150.0, irradiance: Constant(1.0)),
     sky: Fraction([0.2, 0.1, 0.0]),
     thermal_sky: BlackBody(240.0),
     boundary: Periodic,

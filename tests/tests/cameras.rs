@@ -29,7 +29,7 @@ fn stars(stars: &str, height: f64, boundary: &str, sensors: &str) -> Report {
     meshes: {{ "star": Obj(file: "star.obj", up: Z, unit_m: 1.0, material: Some("bright")) }},
     terrain: Plane(size_m: (40.0, 40.0), height_m: {height:?}, material: "black"),
     instances: [List(of: "star", at_m: [{stars}])],
-    sun: (zenith_deg: 35.0, azimuth_deg: 115.0),
+    sun: (zenith_deg: 35.0, azimuth_deg: 115.0, irradiance: Constant(1.0)),
     boundary: {boundary},
     sensors: {{ {sensors} }},
 )"#
@@ -324,7 +324,7 @@ fn plane(sensors: &str) -> Report {
     bands: [(name: "a", center_nm: 660.0)],
     materials: {{ "soil": Lambertian(reflectance: Constant(0.5)) }},
     terrain: Plane(size_m: (20.0, 20.0), corner_m: (5.0, -3.0), height_m: 2.0, material: "soil"),
-    sun: (zenith_deg: 60.0),
+    sun: (zenith_deg: 60.0, irradiance: Constant(1.0)),
     sky: Fraction([0.4]),
     sensors: {{ {sensors} }},
 )"#

@@ -120,9 +120,10 @@ fn a_slope_takes_its_share_of_the_sun_and_of_the_sky() {
     let ground =
         "terrain: Plane(size_m: (900.0, 100.0), corner_m: (-50.0, -50.0), material: \"cold\"),";
     let grey = "\"grey\": Lambertian(reflectance: Bands([0.5, 0.2])),";
-    for light in
-        ["sun: (zenith_deg: 40.0, azimuth_deg: 200.0)", "sky: Isotropic(irradiance: Constant(1.0))"]
-    {
+    for light in [
+        "sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0))",
+        "sky: Isotropic(irradiance: Constant(1.0))",
+    ] {
         let report = run(&format!("{VISIBLE} {ground} {light},"), grey, &meshes, &sensors);
         for (index, (slope, aspect)) in slopes.into_iter().enumerate() {
             for (band, rho) in rho.into_iter().enumerate() {
@@ -251,7 +252,7 @@ fn an_integrating_sphere_lights_its_wall_evenly() {
     for order in [2, 3, 200] {
         let report = run(
             &format!(
-                "{VISIBLE} {GROUND} sun: (zenith_deg: 0.0), \
+                "{VISIBLE} {GROUND} sun: (zenith_deg: 0.0, irradiance: Constant(1.0)), \
                  transport: ({NO_ROULETTE}, max_order: {order}),"
             ),
             "\"wall\": Lambertian(reflectance: Bands([0.5, 0.8])),",

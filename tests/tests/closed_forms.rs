@@ -24,7 +24,7 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
     bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
     materials: {{ "soil": Lambertian(reflectance: Bands([0.127, 0.7])) }},
     terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
-    sun: (zenith_deg: 40.0, azimuth_deg: 200.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)),
     sky: {sky},
     boundary: {boundary},
     sensors: {{
@@ -120,7 +120,7 @@ fn furnace(leaf: &str, light: &str, roulette: &str, sensor: &str) -> Report {
 /// differ and the roulette of the manual bring noise, and no bias.
 #[test]
 fn a_white_furnace_has_albedo_1() {
-    let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0),";
+    let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),";
     let alike = "reflectance: Constant(0.6), transmittance: Constant(0.4)";
     let unlike = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
     for (leaf, roulette, system, most) in [

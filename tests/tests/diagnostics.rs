@@ -15,7 +15,7 @@ const SCENE: &str = r#"Scene(
     meshes: { "tree": Obj(file: "t.obj", up: Z, unit_m: 1.0, parts: { "laef": "leaf" }) },
     terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0)])],
-    sun: (zenith_deg: 20.0, azimuth_deg: 270.0),
+    sun: (zenith_deg: 20.0, azimuth_deg: 270.0, irradiance: Constant(1.0)),
     sensors: { "a": Photons(per_m2: 100.0) },
 )
 "#;
@@ -69,7 +69,7 @@ fn ground_under_ground_is_told() {
     materials: { "soil": Lambertian(reflectance: Constant(0.5)) },
     meshes: { "hill": Obj(file: "hill.obj", up: Z, unit_m: 1.0, material: "soil") },
     terrain: Mesh(mesh: "hill", at_m: (100.0, 0.0, 0.0)),
-    sun: (zenith_deg: 20.0),
+    sun: (zenith_deg: 20.0, irradiance: Constant(1.0)),
     sensors: { "a": Photons },
 )
 "#;
@@ -104,7 +104,7 @@ fn what_is_most_likely_not_meant_is_told() {
     meshes: { "tree": Obj(file: "t.obj", up: Z, unit_m: 1.0, material: "leaf") },
     terrain: Plane(size_m: (10.0, 20.0), material: "leaf"),
     instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0), (11.0, 2.0, 0.0)])],
-    sun: (zenith_deg: 20.0),
+    sun: (zenith_deg: 20.0, irradiance: Constant(1.0)),
     sensors: {
         "beside": Orthographic(size_px: (8, 8), extent_m: (4.0, 4.0), center_m: (5.0, 21.0)),
         "wide": Orthographic(size_px: (8, 8), extent_m: (20.0, 20.0), azimuth_deg: 90.0),

@@ -13,7 +13,8 @@ use sunfleck_tests::{measure, product};
 /// are traced.
 #[test]
 fn incident_energy_is_reflected_lost_absorbed_or_taken_by_roulette() {
-    let sun = "sun: (zenith_deg: 60.0, azimuth_deg: 30.0, disc_deg: 0.5),";
+    let sun =
+        "sun: (zenith_deg: 60.0, azimuth_deg: 30.0, disc_deg: 0.5, irradiance: Constant(1.0)),";
     let lights = [
         sun.to_owned(),
         format!("{sun} sky: Fraction([0.5, 0.2]),"),

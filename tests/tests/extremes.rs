@@ -21,7 +21,7 @@ fn forest(x: f64, sun_zenith_deg: f64, view_zenith_deg: f64) -> Report {
     ) }},
     terrain: Plane(size_m: (5.0, 4.0), material: "soil"),
     instances: [List(of: "tree", at_m: [({x:?}, 3.9, 0.0), (3.2, 1.0, 0.0)])],
-    sun: (zenith_deg: {sun_zenith_deg:?}, azimuth_deg: 110.0),
+    sun: (zenith_deg: {sun_zenith_deg:?}, azimuth_deg: 110.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: {{
         "views": Directions(system: Backward, views: List([(0.0, 0.0), ({view_zenith_deg:?}, 77.0)]), until: Samples(65536)),
@@ -95,7 +95,7 @@ fn sheets_a_tenth_of_a_millimetre_apart_are_two_anywhere() {
     meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
     terrain: Plane(size_m: (1.0, 1.0), corner_m: ({x:?}, {y:?}), material: "soil"),
     instances: [List(of: "sheet", at_m: [({0:?}, {1:?}, 2.0), ({0:?}, {1:?}, 2.0001)])],
-    sun: (zenith_deg: 20.0, azimuth_deg: 10.0),
+    sun: (zenith_deg: 20.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     sensors: {{
         "view": Orthographic(size_px: (16, 16), extent_m: (1.0, 1.0), samples_per_px: 512),
     }},

@@ -256,7 +256,7 @@ fn single_scattering_by_small_discs_is_that_of_a_turbid_medium() {
     ) }},
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
     instances: [List(of: "layer", at_m: [(2.0, 2.0, 0.0)])],
-    sun: (zenith_deg: {:?}, azimuth_deg: {:?}),
+    sun: (zenith_deg: {:?}, azimuth_deg: {:?}, irradiance: Constant(1.0)),
     boundary: Periodic,
     transport: (first_order_only: true),
     sensors: {{

@@ -28,7 +28,7 @@ fn scene(instances: &str) -> String {
     meshes: {{ {} {} {} {} }},
     terrain: Plane(size_m: (200.0, 100.0), material: "soil", height_m: 12.0),
     {instances}
-    sun: (zenith_deg: 30.0),
+    sun: (zenith_deg: 30.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: {{ "albedo": Photons }},
 )"#,

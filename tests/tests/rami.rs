@@ -17,7 +17,7 @@ fn folder() -> PathBuf {
 
 /// A RAMI scene that keeps these sensors alone.
 fn scene(name: &str, set: &[(&str, f64)], sensors: &[&str]) -> Scene {
-    let set = set.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
+    let set = set.iter().map(|&(name, value)| (name.to_owned(), value.into())).collect();
     let options = document::Options { set, ..document::Options::default() };
     let reading = document::read_file(&folder().join(name), &options).expect("a file");
     assert!(reading.is_sound(), "{}", reading.render());

@@ -67,7 +67,7 @@ fn scene(terrain: &str, instances: &str) -> String {
     meshes: {{ {} {} {} }},
     terrain: Raster(file: "dem.asc", material: "soil"{terrain}),
     instances: [{instances}],
-    sun: (zenith_deg: 30.0),
+    sun: (zenith_deg: 30.0, irradiance: Constant(1.0)),
     sensors: {{ "albedo": Photons }},
 )"#,
         crown("shrub", 3.0, 4.0),

@@ -126,7 +126,7 @@ impl Wood {
         (name: "tir", center_nm: 10500.0),
     ],
     {}
-    sun: (zenith_deg: {}, azimuth_deg: {}),
+    sun: (zenith_deg: {}, azimuth_deg: {}, irradiance: Constant(1.0)),
     {more}
     sensors: {{ {sensors} }},
 )"#,

@@ -205,8 +205,12 @@ fn measured(
         );
         measure(&text, Path::new("."), &Options::default())
     };
-    let under_sun =
-        run(&format!("sun: (zenith_deg: {sun}, azimuth_deg: {SUN_AZIMUTH_DEG}),"), &sensors);
+    let under_sun = run(
+        &format!(
+            "sun: (zenith_deg: {sun}, azimuth_deg: {SUN_AZIMUTH_DEG}, irradiance: Constant(1.0)),"
+        ),
+        &sensors,
+    );
     let under_sky =
         run("sky: Isotropic(irradiance: Constant(1.0)),", &format!(r#""photons": {photons}"#));
     let mut all = Vec::new();

@@ -91,7 +91,7 @@ fn forest(unit: f64, place: (f64, f64, f64), origin: (f64, f64, f64), quality: f
     ) }},
     terrain: Plane(size_m: {:?}, corner_m: {:?}, height_m: {:?}, material: "soil"),
     instances: [List(of: "crown", at_m: [{:?}, {:?}])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 110.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 110.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: {{
         "views": Directions(system: Backward, views: List([(0.0, 0.0), (50.0, 77.0), (40.0, 110.0)]), until: Samples(4096)),
@@ -217,7 +217,7 @@ impl Sheets {
     meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
     terrain: Plane(size_m: {:?}, corner_m: {:?}, height_m: {ground:?}, material: "soil"),
     instances: [List(of: "sheet", at_m: {:?})],
-    sun: (zenith_deg: {:?}, azimuth_deg: 10.0),
+    sun: (zenith_deg: {:?}, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     transport: (roulette: (after_order: 5, kill: {:?})),
     sensors: {{

@@ -97,7 +97,7 @@ fn a_disc_gives_the_horizontal_the_same_irradiance() {
     bands: [(name: "a", center_nm: 660.0)],
     materials: {{ "soil": Lambertian(reflectance: Constant(0.4)) }},
     terrain: Plane(size_m: (10.0, 7.0), material: "soil"),
-    sun: (zenith_deg: 80.0, azimuth_deg: 130.0, disc_deg: 6.0),
+    sun: (zenith_deg: 80.0, azimuth_deg: 130.0, disc_deg: 6.0, irradiance: Constant(1.0)),
     boundary: {boundary},
     sensors: {{
         "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(256)),
@@ -138,7 +138,7 @@ fn a_disc_casts_the_penumbra_of_an_edge() {
     meshes: { "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("black")) },
     terrain: Plane(size_m: (5.0, 5.0), material: "black"),
     instances: [List(of: "sheet", at_m: [(0.0, 0.0, 0.0)])],
-    sun: (zenith_deg: 0.0, disc_deg: 4.0),
+    sun: (zenith_deg: 0.0, disc_deg: 4.0, irradiance: Constant(1.0)),
     boundary: Isolated,
     sensors: { "photons": Photons(per_m2: 40000.0, measure: [Fluxes(pixel_m: 0.05)]) },
 )"#,
@@ -189,7 +189,7 @@ fn both_systems_see_the_same_disc() {
     ) }},
     terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 60.0, azimuth_deg: 10.0, disc_deg: 8.0),
+    sun: (zenith_deg: 60.0, azimuth_deg: 10.0, disc_deg: 8.0, irradiance: Constant(1.0)),
     sky: Fraction([0.2]),
     boundary: {boundary},
     sensors: {{

@@ -19,7 +19,7 @@ const STAND: &str = r#"Scene(
     ) },
     terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0), (3.0, 4.0, 0.0)])],
-    sun: (zenith_deg: "=sza", azimuth_deg: 10.0),
+    sun: (zenith_deg: "=sza", azimuth_deg: 10.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: { "view": Directions(system: Backward, views: List([(0.0, 0.0)]), until: Samples(4096)) },
     transport: (seed: SEED),
@@ -34,7 +34,7 @@ const F: f64 = 3.06;
 /// The BRF towards the zenith.
 fn brf(seed: u32, zenith: f64) -> f64 {
     let mut options = Options::default();
-    options.document.set.push(("sza".to_owned(), zenith));
+    options.document.set.push(("sza".to_owned(), zenith.into()));
     let report = measure(&STAND.replace("SEED", &seed.to_string()), Path::new("."), &options);
     product(&report, "view", "brf").values[0]
 }

@@ -36,7 +36,7 @@ fn scene(terrain: &str, boundary: &str, sensors: &str) -> String {
         leaf_area_m2: 60.0, leaf: Disc(radius_m: 0.1), leaf_material: "leaf") }},
     frame: (origin_m: (1000.0, 500.0, 0.0)),
     terrain: {terrain},
-    sun: (zenith_deg: 40.0, azimuth_deg: 250.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 250.0, irradiance: Constant(1.0)),
     boundary: {boundary},
     sensors: {{ {sensors} }},
 )"#

@@ -38,7 +38,7 @@ fn an_isothermal_scene_looks_black_whatever_its_emissivity() {
     ) },
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
     instances: [List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 10.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     thermal_sky: BlackBody(300.0),
     boundary: Periodic,
     sensors: {
@@ -95,7 +95,7 @@ fn plates(upper: &str, boundary: &str, more: &str, sensors: &str) -> Report {
         "whole": Obj(file: "whole.obj", up: Z, unit_m: 1.0, material: Some("upper")),
     }},
     terrain: Plane(size_m: (4.0, 4.0), material: "lower"),
-    sun: (zenith_deg: 45.0, azimuth_deg: 90.0),
+    sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(1.0)),
     boundary: {boundary},
     {more}
     sensors: {{ {sensors} }},

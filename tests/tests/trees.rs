@@ -61,7 +61,7 @@ fn scene(file: &str, reader: &str, unit_m: f64, highest: f64) -> String {
     meshes: {{ "tree": {reader}(file: {file:?}, up: Y, unit_m: {unit_m}, material: Some("plant"), origin: BaseCenter) }},
     terrain: Plane(size_m: ({ground:?}, {ground:?}), material: "soil"),
     instances: [List(of: "tree", at_m: [({0:?}, {0:?}, 0.0)])],
-    sun: (zenith_deg: 30.0, azimuth_deg: 180.0),
+    sun: (zenith_deg: 30.0, azimuth_deg: 180.0, irradiance: Constant(1.0)),
     sensors: {{ "view": Orthographic(size_px: (64, 64), extent_m: ({frame:?}, {frame:?}), zenith_deg: 60.0, azimuth_deg: 180.0, samples_per_px: 16) }},
 )"#,
         ground / 2.0

@@ -27,7 +27,7 @@ fn trees(boundary: &str, plane: &str, quality: f64) -> Report {
     ) }},
     terrain: Plane(size_m: (6.0, 5.0), corner_m: (-1.0, 2.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(-0.8, 4.0, 0.0), (2.0, 6.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     sky: Fraction([0.3, 0.1]),
     boundary: {boundary},
     sensors: {{
@@ -186,7 +186,7 @@ fn a_plane_over_a_lambertian_plain_has_its_reflectance() {
     bands: [(name: "a", center_nm: 660.0)],
     materials: {{ "soil": Lambertian(reflectance: Constant(0.37)) }},
     terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
-    sun: (zenith_deg: 40.0, azimuth_deg: 200.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)),
     sky: Fraction([0.25]),
     boundary: {boundary},
     sensors: {{
@@ -264,7 +264,7 @@ fn a_low_plane_is_left_only_by_what_comes_from_below_it() {
     meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, parts: {{ "sheet": "sheet" }}) }},
     instances: [List(of: "sheet", at_m: [(0.0, 0.0, 0.0)])],
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sun: (zenith_deg: 0.0),
+    sun: (zenith_deg: 0.0, irradiance: Constant(1.0)),
     boundary: {boundary},
     transport: (first_order_only: true),
     sensors: {{

@@ -338,9 +338,9 @@ pub(crate) struct Scene {
     #[arg(value_name = "SCENE")]
     pub(crate) file: PathBuf,
 
-    /// Give a parameter of the scene another value; may be repeated
+    /// Give a parameter of the scene another value, a number or a text; may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
-    pub(crate) settings: Vec<(String, f64)>,
+    pub(crate) settings: Vec<(String, document::Param)>,
 
     /// Apply one of the scene's variants
     #[arg(long, value_name = "NAME")]
@@ -361,8 +361,8 @@ impl Scene {
     fn name(&self) -> String {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         // Only the last value of a parameter counts.
-        let settings: BTreeMap<&str, f64> =
-            self.settings.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let settings: BTreeMap<&str, &document::Param> =
+            self.settings.iter().map(|(name, value)| (name.as_str(), value)).collect();
         let settings = settings.iter().map(|(param, value)| format!("{param}={value}"));
         let parts = [stem].into_iter().chain(self.variant.clone()).chain(settings);
         let name = parts.collect::<Vec<_>>().join("_");
@@ -391,15 +391,24 @@ impl Out {
     }
 }
 
-fn setting(text: &str) -> Result<(String, f64), String> {
+/// A number, or a text: that of digits behind a zero, `007`, is none that a formula would need.
+fn param(text: &str) -> document::Param {
+    let is_code = text.starts_with('0') && text[1..].starts_with(|c: char| c.is_ascii_digit());
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && !is_code => number.into(),
+        _ => text.into(),
+    }
+}
+
+fn setting(text: &str) -> Result<(String, document::Param), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as sza=30")?;
     let name = name.trim();
     if name.is_empty() {
         return Err("there is no name before `=`".to_owned());
     }
-    match value.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok((name.to_owned(), number)),
-        _ => Err(format!("{value:?} is not a number")),
+    match value.trim() {
+        "" => Err("there is no value behind `=`".to_owned()),
+        value => Ok((name.to_owned(), param(value))),
     }
 }
 
@@ -489,10 +498,12 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_names_with_finite_numbers() {
-        assert_eq!(setting("sza=30"), Ok(("sza".to_owned(), 30.0)));
-        assert_eq!(setting(" lai = -1e-3 "), Ok(("lai".to_owned(), -1e-3)));
-        for wrong in ["sza", "=3", "sza=", "sza=high", "sza=NaN", "sza=inf", "a=b=c"] {
+    fn settings_are_names_with_values() {
+        assert_eq!(setting("sza=30"), Ok(("sza".to_owned(), 30.0.into())));
+        assert_eq!(setting(" lai = -1e-3 "), Ok(("lai".to_owned(), (-1e-3).into())));
+        assert_eq!(setting("plot=007"), Ok(("plot".to_owned(), "007".into())));
+        assert_eq!(setting("soil=a=b.csv"), Ok(("soil".to_owned(), "a=b.csv".into())));
+        for wrong in ["sza", "=3", "sza=", "sza= "] {
             assert!(setting(wrong).is_err(), "{wrong}");
         }
     }

@@ -18,6 +18,9 @@ use crate::{bench, compare, describe, import_less, verify};
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
 
+/// Heading of what was taken without a word in the scene.
+const NOTE: &str = "note: ";
+
 /// Does what `command` asks for.
 pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
@@ -134,6 +137,7 @@ fn results(scene: &Scene, options: &run::Options, into: &Out, folder: &Path) -> 
     warn(&report.warnings);
     let written = results.write(&report)?;
     let mut text = output::table(&report);
+    report.notes.iter().try_for_each(|note| writeln!(text, "{NOTE}{note}"))?;
     let rays = report.rays as f64 / 1e6;
     writeln!(text, "\n{}: {rays:.3} million rays in {:.1} s", told(&written), report.seconds)?;
     print(&text)
@@ -205,7 +209,7 @@ fn check(arguments: &Check) -> anyhow::Result<()> {
         return print(&describe::json(facts.as_ref(), &warnings)?);
     }
     warn(&warnings);
-    let found = match warnings.iter().filter(|warning| !warning.starts_with(SKIPPED)).count() {
+    let found = match warnings.iter().filter(|text| !has_heading(text, &[SKIPPED, NOTE])).count() {
         0 => "no errors".to_owned(),
         1 => "no errors, 1 warning".to_owned(),
         n => format!("no errors, {n} warnings"),
@@ -248,10 +252,14 @@ fn verify(arguments: &Verify) -> anyhow::Result<()> {
     Ok(())
 }
 
+fn has_heading(text: &str, headings: &[&str]) -> bool {
+    headings.iter().any(|heading| text.starts_with(heading))
+}
+
 pub(crate) fn warn(warnings: &[String]) {
     let mut stderr = io::stderr().lock();
     for warning in warnings {
-        let headed = ["warning: ", SKIPPED].iter().any(|heading| warning.starts_with(heading));
+        let headed = has_heading(warning, &["warning: ", SKIPPED, NOTE]);
         let heading = if headed { "" } else { "warning: " };
         // A warning that cannot be shown is no reason to lose the results.
         drop(writeln!(stderr, "{heading}{}", warning.trim_end()));

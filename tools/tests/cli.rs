@@ -289,7 +289,7 @@ fn wrong_usage_has_its_own_exit_code() {
         &["run"],
         &["run", "soil.ron", "--fast"],
         &["run", "soil.ron", "--set", "sza"],
-        &["run", "soil.ron", "--set", "sza=high"],
+        &["run", "soil.ron", "--set", "sza="],
         &["run", "soil.ron", "--threads", "0"],
         &["run", "soil.ron", "--quality", "0"],
         &["check", "soil.ron", "--out", "x"],

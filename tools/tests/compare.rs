@@ -24,7 +24,7 @@ const LEAVES: &str = r#"Scene(
     ) },
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
     instances: [List(of: "tree", at_m: [(1.2, 2.0, 0.0)])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 10.0),
+    sun: (zenith_deg: 40.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: {
         "top": Orthographic(size_px: (4, 4), extent_m: (4.0, 4.0), samples_per_px: 256),

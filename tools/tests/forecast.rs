@@ -17,7 +17,7 @@ const SOIL: &str = r#"Scene(
     bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0)],
     materials: { "soil": Lambertian(reflectance: Constant(0.3)) },
     terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
-    sun: (zenith_deg: 30.0),
+    sun: (zenith_deg: 30.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: {
         "views": Directions(views: List([(0.0, 0.0), (30.0, 90.0)]), until: Samples(4096)),

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::import::coarse;
-use super::table::{Column, Table, known_columns, missing};
+use super::table::{Column, Content, Table, known_columns, missing};
 use super::{AssetError, Loaded};
 use crate::components::{Disc, Mesh, Part};
 use crate::document::Origin;
@@ -55,10 +55,11 @@ fn columns(table: &mut Table) -> Result<Vec<Column>, AssetError> {
         table.skip_header()?;
         return Ok(columns);
     }
-    let layer =
-        (count == COLUMNS.len() + 1).then(|| Column { name: "layer".to_owned(), slot: None });
+    let layer = || Column { name: "layer".to_owned(), content: Content::Ignored };
+    let layer = (count == COLUMNS.len() + 1).then(layer);
     let named = COLUMNS.iter().enumerate();
-    let named = named.map(|(slot, &name)| Column { name: name.to_owned(), slot: Some(slot) });
+    let named =
+        named.map(|(slot, &name)| Column { name: name.to_owned(), content: Content::Number(slot) });
     Ok(layer.into_iter().chain(named).collect())
 }
 

@@ -24,6 +24,8 @@ pub enum AssetError {
     LineTooLong { file: PathBuf, line: usize, most: usize },
     #[error("{}:{line}: {what} is {found:?}; write a finite number such as 1.5 or 2e-3", .file.display())]
     BadNumber { file: PathBuf, line: usize, what: String, found: String },
+    #[error("{}:{line}: {what} is {found:?}; {advice}", .file.display())]
+    OddNumber { file: PathBuf, line: usize, what: String, found: String, advice: String },
     #[error("{}:{line}: {what} is {value}; write a number above 0", .file.display())]
     NotPositive { file: PathBuf, line: usize, what: String, value: f64 },
     #[error(
@@ -66,7 +68,7 @@ pub enum AssetError {
 
     #[error("{}: holds no rows", .file.display())]
     NoRows { file: PathBuf },
-    #[error("{}:{line}: has no header; write the names of its columns there: {wanted}", .file.display())]
+    #[error("{}:{line}: has no header above it; write the names of its columns there: {wanted}", .file.display())]
     NoHeader { file: PathBuf, line: usize, wanted: String },
     #[error("{}:{line}: there is no column {column:?}; write {nearest:?} or one of {known:?}", .file.display())]
     UnknownColumn {
@@ -78,18 +80,67 @@ pub enum AssetError {
     },
     #[error("{}:{line}: column {column:?} is missing among {found:?}; add it", .file.display())]
     MissingColumn { file: PathBuf, line: usize, column: String, found: Vec<String> },
+    #[error(
+        "{}:{line}: column {column:?} is missing among {found:?}; if {alike:?} is that in metres, write \
+         {column:?} in its place, or list the names of all columns under `columns` in the scene",
+        .file.display()
+    )]
+    MissingStemColumn {
+        file: PathBuf,
+        line: usize,
+        column: &'static str,
+        alike: String,
+        found: Vec<String>,
+    },
+    #[error(
+        "{}:{line}: the header calls a column {own:?} which `columns` in the scene calls {given:?}; take \
+         `columns` out, or write its names in the order of the file",
+        .file.display()
+    )]
+    ContradictedColumn { file: PathBuf, line: usize, own: String, given: String },
     #[error("{}:{line}: columns {first:?} and {second:?} say the same; keep one", .file.display())]
     RepeatedColumn { file: PathBuf, line: usize, first: String, second: String },
-    #[error("{}:{line}: has {found} values for {wanted} columns", .file.display())]
-    WrongFieldCount { file: PathBuf, line: usize, found: usize, wanted: usize },
+    #[error("{}:{line}: has {found} values for {wanted} columns{advice}", .file.display())]
+    WrongFieldCount {
+        file: PathBuf,
+        line: usize,
+        found: usize,
+        wanted: usize,
+        advice: &'static str,
+    },
     #[error("{}:{line}: the normal is zero; write a direction", .file.display())]
     ZeroNormal { file: PathBuf, line: usize },
     #[error(
-        "{}:{line}: wavelength {wavelength} nm follows {previous} nm; sort the rows by wavelength, \
+        "{}:{line}: wavelength {wavelength} follows {previous}; sort the rows by wavelength, \
          each once",
         .file.display()
     )]
     WavelengthOrder { file: PathBuf, line: usize, previous: f64, wavelength: f64 },
+    #[error(
+        "{}:{line}: there is no column {column:?} among {found:?}; if {nearest:?} is meant, write \
+         `{key}: {nearest:?}` in the scene; titles may stand above a header, not in its place",
+        .file.display()
+    )]
+    NoSuchColumn {
+        file: PathBuf,
+        line: usize,
+        column: String,
+        found: Vec<String>,
+        key: &'static str,
+        nearest: String,
+    },
+    #[error(
+        "{}:{line}: {said:?} says that the wavelengths are not in nm; write `wavelength_unit: {unit}` in \
+         the scene, or `wavelength_unit: Nanometres` if they are",
+        .file.display()
+    )]
+    WavelengthUnit { file: PathBuf, line: usize, said: String, unit: &'static str },
+    #[error(
+        "{}:{line}: a wavelength of {written} ({}`{unit}`) is no light; write the `wavelength_unit` of the \
+         table in the scene: `Nanometres`, `Micrometres`, `Angstroms` or `Wavenumbers`",
+        .file.display(), if *.is_unit_given { "" } else { "taken as " }
+    )]
+    NoLight { file: PathBuf, line: usize, written: f64, unit: &'static str, is_unit_given: bool },
     #[error("{}: holds one wavelength; a spectrum needs two or more", .file.display())]
     ShortSpectrum { file: PathBuf },
 
@@ -126,6 +177,23 @@ pub enum AssetError {
     FarFace { face: usize },
     #[error(transparent)]
     Crown(#[from] CrownError),
+}
+
+impl AssetError {
+    /// The error of a text that is no number, with what to write instead if that is known.
+    pub(super) fn bad_number(
+        file: PathBuf,
+        line: usize,
+        what: String,
+        text: &str,
+        advice: Option<String>,
+    ) -> Self {
+        let found = excerpt(text);
+        match advice {
+            Some(advice) => Self::OddNumber { file, line, what, found, advice },
+            None => Self::BadNumber { file, line, what, found },
+        }
+    }
 }
 
 /// The beginning of a text that may be long, for a message.

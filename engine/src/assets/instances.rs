@@ -1,14 +1,15 @@
 //! Tables of instances.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
 
 use super::AssetError;
-use super::table::{Table, known_columns, missing};
-use crate::document::INSTANCE_COLUMNS;
+use super::table::{Column, Content, Table, known_columns, missing};
+use crate::document::{INSTANCE_COLUMNS, meant_column};
 
-/// Where one instance stands, as its row says.
+/// Where one instance stands and how large it is, as its row says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Position, m.
@@ -23,67 +24,219 @@ pub struct Row {
     pub scale_horizontal: f64,
     /// Vertical scale.
     pub scale_vertical: f64,
+    /// Height of the plant, m, in place of the vertical scale.
+    pub height: Option<f64>,
+    /// Diameter of its crown, m, in place of the horizontal scale.
+    pub diameter: Option<f64>,
+    /// Place of its species in [`StemTable::species`].
+    pub species: Option<u32>,
+    /// Line of the file.
+    pub line: usize,
 }
 
-/// Rows of a table of instances, in file order.
+/// What a table of instances holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StemTable {
+    /// Rows in file order.
+    pub rows: Vec<Row>,
+    /// Species in the order of their first rows.
+    pub species: Vec<String>,
+    /// Whether the diameters are said to be those of crowns.
+    pub diameter_is_of_crown: bool,
+    /// Columns that mean nothing here.
+    pub left_out: Vec<String>,
+    /// Those of them that are spelled nearly as one that does, with that one.
+    pub misspelt: Vec<(String, &'static str)>,
+}
+
+/// Columns that say the same.
+const CONTRADICTIONS: [(&str, &str); 8] = [
+    ("yaw_deg", "yaw_rad"),
+    ("diameter_m", "crown_diameter_m"),
+    ("scale", "height_m"),
+    ("scale_vertical", "height_m"),
+    ("scale", "diameter_m"),
+    ("scale", "crown_diameter_m"),
+    ("scale_vertical", "diameter_m"),
+    ("scale_vertical", "crown_diameter_m"),
+];
+
+/// Reads a table of instances.
 ///
-/// Columns `x_m`, `y_m` and perhaps `z_m`, `yaw_deg` or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`,
-/// `scale` and `scale_vertical` in any order, separated by commas, semicolons, tabs or white space.
-/// A missing column is 0, a missing `scale` 1, a missing `scale_vertical` the same as `scale`.
-/// `columns` names them where the file has no header.
+/// Columns `x_m`, `y_m` and perhaps others of [`INSTANCE_COLUMNS`] in any order, separated by commas,
+/// semicolons, tabs or white space. A missing column is 0, a missing `scale` 1, a missing
+/// `scale_vertical` the same as `scale`. Other columns are let be. `columns` names them where the file
+/// has no header, or in place of its header.
 ///
 /// # Errors
-/// A file that cannot be read, is not text or holds no row; an unknown or missing column; a number
-/// that is not finite; a scale that is not above 0.
-pub fn read_instances(path: &Path, columns: Option<&[String]>) -> Result<Vec<Row>, AssetError> {
+/// A file that cannot be read, is not text or holds no row; a missing column, or two that say the same;
+/// a number that is not finite; a scale, height or diameter that is not above 0.
+pub fn read_instances(path: &Path, columns: Option<&[String]>) -> Result<StemTable, AssetError> {
     let mut table = Table::open(path)?;
     let line = table.first_line;
-    let names = match columns {
-        Some(names) => names.to_vec(),
-        None if table.has_header() => {
-            table.skip_header()?;
-            table.first.clone()
-        }
-        None => {
-            let wanted = "`x_m,y_m` and perhaps `z_m,yaw_deg,scale` and others, or list them under \
-                          `columns` in the scene";
-            let (file, wanted) = (path.to_owned(), wanted.to_owned());
-            return Err(AssetError::NoHeader { file, line, wanted });
-        }
-    };
-    let known = known_columns(&names, &INSTANCE_COLUMNS, path, line)?;
+    let names = names(&mut table, columns)?;
     let has = |name: &str| names.iter().any(|n| n == name);
     if let Some(column) = ["x_m", "y_m"].into_iter().find(|name| !has(name)) {
-        return Err(missing(column, &names, path, line));
+        return Err(match like(column, &names) {
+            Some(alike) => AssetError::MissingStemColumn {
+                file: path.to_owned(),
+                line,
+                column,
+                alike,
+                found: names,
+            },
+            None => missing(column, &names, path, line),
+        });
     }
-    if has("yaw_deg") && has("yaw_rad") {
-        let (first, second) = ("yaw_deg".to_owned(), "yaw_rad".to_owned());
+    if let Some((first, second)) = CONTRADICTIONS.into_iter().find(|(a, b)| has(a) && has(b)) {
+        let (first, second) = (first.to_owned(), second.to_owned());
         return Err(AssetError::RepeatedColumn { file: path.to_owned(), line, first, second });
     }
-    let own_vertical = has("scale_vertical");
-
+    let (fields, left_out) = contents(&names, path, line)?;
+    let misspelt = left_out.iter().filter_map(|name| {
+        let free: Vec<_> = INSTANCE_COLUMNS.into_iter().filter(|known| !has(known)).collect();
+        Some((name.clone(), meant_column(name, &free)?))
+    });
+    let misspelt = misspelt.collect();
     let mut rows = Vec::new();
-    let mut row = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0];
-    while let Some(line) = table.read_row(&known, &mut row)? {
-        let [x, y, z, yaw_deg, yaw_rad, tilt_deg, tilt_azimuth_deg, scale, vertical] = row;
-        let scale_vertical = if own_vertical { vertical } else { scale };
-        for (value, name) in [(scale, "scale"), (scale_vertical, "scale_vertical")] {
-            if value <= 0.0 {
-                let (file, what) = (path.to_owned(), name.to_owned());
-                return Err(AssetError::NotPositive { file, line, what, value });
-            }
+    let mut species: Vec<String> = Vec::new();
+    let mut places: HashMap<String, u32> = HashMap::new();
+    let mut numbers = [0.0; INSTANCE_COLUMNS.len()];
+    (numbers[SCALE], numbers[SCALE + 1]) = (1.0, 1.0);
+    let mut texts = [String::new()];
+    while let Some(line) = table.read_mixed_row(&fields, &mut numbers, &mut texts)? {
+        let mut row = row(&numbers, &has, path, line)?;
+        if has("species") {
+            let [name] = &texts;
+            let place = places.get(name).copied().unwrap_or_else(|| {
+                let place = species.len() as u32;
+                species.push(name.clone());
+                places.insert(name.clone(), place);
+                place
+            });
+            row.species = Some(place);
         }
-        rows.push(Row {
-            position: DVec3::new(x, y, z),
-            yaw: yaw_deg.to_radians() + yaw_rad,
-            tilt: tilt_deg.to_radians(),
-            tilt_azimuth: tilt_azimuth_deg.to_radians(),
-            scale_horizontal: scale,
-            scale_vertical,
-        });
+        rows.push(row);
     }
     if rows.is_empty() {
         return Err(AssetError::NoRows { file: path.to_owned() });
     }
-    Ok(rows)
+    let diameter_is_of_crown = has("crown_diameter_m");
+    Ok(StemTable { rows, species, diameter_is_of_crown, left_out, misspelt })
+}
+
+/// Names of the columns, by the header or by the scene; a header is left behind.
+fn names(table: &mut Table, columns: Option<&[String]>) -> Result<Vec<String>, AssetError> {
+    let (file, line) = (table.file().to_owned(), table.first_line);
+    if !table.has_header() {
+        return columns.map(<[String]>::to_vec).ok_or_else(|| {
+            let wanted = "`x_m,y_m` and perhaps `z_m,yaw_deg,scale` and others, or list them under \
+                          `columns` in the scene";
+            AssetError::NoHeader { file, line, wanted: wanted.to_owned() }
+        });
+    }
+    table.skip_header()?;
+    let Some(columns) = columns else { return Ok(table.first.clone()) };
+    // The scene's names go before those of the file, but must not turn them around.
+    let mut pairs = table.first.iter().zip(columns);
+    match pairs.find(|(own, given)| own != given && columns.contains(own)) {
+        Some((own, given)) => Err(AssetError::ContradictedColumn {
+            file,
+            line,
+            own: own.clone(),
+            given: given.clone(),
+        }),
+        None => Ok(columns.to_vec()),
+    }
+}
+
+/// Place of `scale` among the columns, which `scale_vertical` follows.
+const SCALE: usize = 7;
+
+/// What each column holds, and the names of those that mean nothing here.
+fn contents(
+    names: &[String],
+    path: &Path,
+    line: usize,
+) -> Result<(Vec<Column>, Vec<String>), AssetError> {
+    let is_known = |name: &&String| INSTANCE_COLUMNS.contains(&name.as_str());
+    let known: Vec<String> = names.iter().filter(is_known).cloned().collect();
+    let mut known = known_columns(&known, &INSTANCE_COLUMNS, path, line)?.into_iter();
+    let mut left_out = Vec::new();
+    let fields = names.iter().map(|name| {
+        if !is_known(&name) {
+            left_out.extend((!name.is_empty()).then(|| name.clone()));
+            return Column { name: name.clone(), content: Content::Ignored };
+        }
+        match known.next() {
+            Some(column) if column.name != "species" => column,
+            _ => Column { name: name.clone(), content: Content::Text(0) },
+        }
+    });
+    Ok((fields.collect(), left_out))
+}
+
+fn row(
+    numbers: &[f64; INSTANCE_COLUMNS.len()],
+    has: &impl Fn(&str) -> bool,
+    path: &Path,
+    line: usize,
+) -> Result<Row, AssetError> {
+    let &[
+        x,
+        y,
+        z,
+        yaw_deg,
+        yaw_rad,
+        tilt_deg,
+        tilt_azimuth_deg,
+        scale,
+        vertical,
+        height,
+        d,
+        crown,
+        _,
+    ] = numbers;
+    let scale_vertical = if has("scale_vertical") { vertical } else { scale };
+    let height = has("height_m").then_some(height);
+    let diameter = match (has("diameter_m"), has("crown_diameter_m")) {
+        (true, _) => Some(d),
+        (_, true) => Some(crown),
+        _ => None,
+    };
+    let sizes = [
+        (Some(scale), "scale"),
+        (Some(scale_vertical), "scale_vertical"),
+        (height, "height_m"),
+        (diameter, "the diameter"),
+    ];
+    for (value, name) in sizes {
+        if let Some(value) = value.filter(|value| *value <= 0.0) {
+            let (file, what) = (path.to_owned(), name.to_owned());
+            return Err(AssetError::NotPositive { file, line, what, value });
+        }
+    }
+    Ok(Row {
+        position: DVec3::new(x, y, z),
+        yaw: yaw_deg.to_radians() + yaw_rad,
+        tilt: tilt_deg.to_radians(),
+        tilt_azimuth: tilt_azimuth_deg.to_radians(),
+        scale_horizontal: scale,
+        scale_vertical,
+        height,
+        diameter,
+        species: None,
+        line,
+    })
+}
+
+/// The column that a person may have meant by a coordinate.
+fn like(column: &str, names: &[String]) -> Option<String> {
+    let words: &[&str] =
+        if column == "x_m" { &["x", "east", "rechts"] } else { &["y", "north", "hoch"] };
+    let is_like = |name: &&String| {
+        let lower = name.to_lowercase();
+        words.iter().any(|word| lower == *word || lower.contains(word) && lower.len() < 20)
+    };
+    names.iter().find(is_like).cloned()
 }

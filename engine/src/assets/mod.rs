@@ -6,10 +6,10 @@
 //! | [`read_discs`] | CSV or RAMI text | [`Mesh`](crate::components::Mesh) |
 //! | [`mesh_of_faces`] | polygons in the scene | [`Mesh`](crate::components::Mesh) |
 //! | [`grow_crown`] | a [`CrownSpec`] | [`Mesh`](crate::components::Mesh) |
-//! | [`read_instances`] | a text table | [`Row`]s |
+//! | [`read_instances`] | a text table | [`StemTable`] |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
 //! | [`read_raster`] | ESRI ASCII grid, ENVI, GeoTIFF | [`Raster`] |
-//! | [`read_spectrum`] | two columns of a table | points (wavelength, value) |
+//! | [`read_spectrum`] | two columns of a table | [`SpectrumTable`] |
 
 mod areas;
 mod crown;
@@ -19,6 +19,7 @@ mod faces;
 mod gltf;
 mod import;
 mod instances;
+mod numbers;
 mod obj;
 mod polygon;
 mod raster;
@@ -33,11 +34,11 @@ pub use error::AssetError;
 pub use faces::mesh_of_faces;
 pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
-pub use instances::{Row, read_instances};
+pub use instances::{Row, StemTable, read_instances};
 pub use obj::read_obj;
 pub(crate) use raster::companion;
 pub use raster::{Place, Projection, Raster, RasterError, Unit, read_raster};
-pub use spectrum::read_spectrum;
+pub use spectrum::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
 
 /// What was read, and what about it the author of the scene should know.
 #[derive(Clone, Debug, PartialEq)]

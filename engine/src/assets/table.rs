@@ -3,29 +3,42 @@
 use std::path::Path;
 
 use super::AssetError;
-use super::text::{Lines, finite, number};
+use super::numbers::{Decimals, NotANumber, Separator, is_missing, looks_like_number};
+use super::text::Lines;
 
-/// What stands between two fields.
+/// Most title lines that are kept.
+const MOST_TITLES: usize = 100;
+
+/// What the field of a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Separator {
-    Character(char),
-    WhiteSpace,
+pub(super) enum Content {
+    /// Nothing that is asked for.
+    Ignored,
+    /// A number for this place in the caller's row.
+    Number(usize),
+    /// The same; NaN where the field says that there is none.
+    NumberOrMissing(usize),
+    /// A text for this place in the caller's texts.
+    Text(usize),
 }
 
-/// What the field of a column is for: a place in the caller's row of numbers, or nothing.
+/// A column: its name and what it holds.
 pub(super) struct Column {
     pub(super) name: String,
-    pub(super) slot: Option<usize>,
+    pub(super) content: Content,
 }
 
 /// A text table, open for reading.
 pub(super) struct Table {
     lines: Lines,
     separator: Separator,
+    decimals: Decimals,
     /// Fields of the first row, be it a header or not.
     pub(super) first: Vec<String>,
     /// Its line.
     pub(super) first_line: usize,
+    /// Line and number of fields of the first row of numbers below titles.
+    pub(super) below_titles: Option<(usize, usize)>,
 }
 
 impl Table {
@@ -38,26 +51,42 @@ impl Table {
         };
         let (separator, first) = names(line);
         lines.hold();
-        Ok(Self { lines, separator, first, first_line })
+        Ok(Self {
+            lines,
+            separator,
+            decimals: Decimals::default(),
+            first,
+            first_line,
+            below_titles: None,
+        })
     }
 
-    /// Moves past titles to the header that has this column; stays if there is none before the
-    /// first row of numbers.
-    pub(super) fn seek_header(&mut self, column: &str) -> Result<(), AssetError> {
-        let mut title = self.first.clone();
-        while !title.iter().any(|name| name == column) {
-            let Some((line, text)) = self.lines.next()? else { return Ok(()) };
-            let separator;
-            (separator, title) = names(text);
-            if is_number(title.first()) {
-                return Ok(());
-            }
-            if title.iter().any(|name| name == column) {
-                (self.separator, self.first, self.first_line) = (separator, title.clone(), line);
+    /// Moves past titles to the header that has these columns, or to the last line before the first
+    /// row of numbers; returns the titles.
+    pub(super) fn seek_header(&mut self, columns: &[&str]) -> Result<Vec<String>, AssetError> {
+        let mut titles = Vec::new();
+        if !self.has_header() {
+            return Ok(titles);
+        }
+        // The first row is read again.
+        while let Some((line, text)) = self.lines.next()? {
+            let (separator, fields) = names(text);
+            if is_row_of_numbers(&fields) {
+                self.below_titles = Some((line, fields.len()));
                 self.lines.hold();
+                break;
+            }
+            let is_header = columns.iter().all(|column| fields.iter().any(|name| name == column));
+            if titles.len() < MOST_TITLES {
+                titles.push(text.to_owned());
+            }
+            (self.separator, self.first, self.first_line) = (separator, fields, line);
+            if is_header {
+                break;
             }
         }
-        Ok(())
+        titles.pop();
+        Ok(titles)
     }
 
     pub(super) fn file(&self) -> &Path {
@@ -66,7 +95,7 @@ impl Table {
 
     /// Whether the first row is one of numbers.
     pub(super) fn has_header(&self) -> bool {
-        !is_number(self.first.first())
+        !is_row_of_numbers(&self.first)
     }
 
     /// Leaves the header behind.
@@ -74,15 +103,32 @@ impl Table {
         self.lines.next().map(|_header| ())
     }
 
-    /// Reads one row into the slots of its columns; gives its line, or `None` at the end.
+    /// Reads one row into the places of its columns; returns its line, or `None` at the end.
     pub(super) fn read_row(
         &mut self,
         columns: &[Column],
-        row: &mut [f64],
+        numbers: &mut [f64],
     ) -> Result<Option<usize>, AssetError> {
-        let separator = self.separator;
-        // Only for the messages: the lines are borrowed while one of them is read.
-        let Some((line, text)) = self.lines.next()? else { return Ok(None) };
+        self.read_mixed_row(columns, numbers, &mut [])
+    }
+
+    /// The same of a table that holds texts too. Rows of which all fields are empty, as spreadsheets
+    /// leave them, are skipped.
+    pub(super) fn read_mixed_row(
+        &mut self,
+        columns: &[Column],
+        numbers: &mut [f64],
+        texts: &mut [String],
+    ) -> Result<Option<usize>, AssetError> {
+        let Self { lines, separator, decimals, .. } = self;
+        let separator = *separator;
+        let (line, text) = loop {
+            let Some((line, text)) = lines.next()? else { return Ok(None) };
+            let is_empty = Fields::new(text, separator).all(str::is_empty);
+            if !is_empty || columns.len() < 2 {
+                break (line, text);
+            }
+        };
         let mut bad = None;
         let mut found = 0;
         for field in Fields::new(text, separator) {
@@ -91,33 +137,51 @@ impl Table {
                 continue;
             }
             found += 1;
-            if let Some(Column { name, slot: Some(slot) }) = column {
-                match finite(field) {
-                    Some(value) => row[*slot] = value,
-                    None => bad = bad.or_else(|| Some((name, field.to_owned()))),
+            let Some(Column { name, content }) = column else { continue };
+            match *content {
+                Content::Ignored => {}
+                Content::Text(place) => field.clone_into(&mut texts[place]),
+                Content::NumberOrMissing(place) if is_missing(field) => numbers[place] = f64::NAN,
+                Content::Number(place) | Content::NumberOrMissing(place) => {
+                    match decimals.read(field, separator, line) {
+                        Ok(value) => numbers[place] = value,
+                        Err(error) => bad = bad.or_else(|| Some((name, field.to_owned(), error))),
+                    }
                 }
             }
         }
+        let file = || lines.file().to_owned();
         if found != columns.len() {
-            let (file, wanted) = (self.file().to_owned(), columns.len());
-            return Err(AssetError::WrongFieldCount { file, line, found, wanted });
+            let wanted = columns.len();
+            let is_of_commas = separator == Separator::Character(',') && found == 2 * wanted;
+            let advice = if is_of_commas {
+                "; if commas are decimal marks, save the table with `;` between its columns"
+            } else {
+                ""
+            };
+            return Err(AssetError::WrongFieldCount { file: file(), line, found, wanted, advice });
         }
         match bad {
-            Some((name, field)) => {
-                number(&field, &format!("column {name:?}"), self.file(), line).map(|_| Some(line))
+            Some((name, field, NotANumber { advice })) => {
+                let what = format!("column {name:?}");
+                Err(AssetError::bad_number(file(), line, what, &field, advice))
             }
             None => Ok(Some(line)),
         }
     }
 }
 
-fn is_number(field: Option<&String>) -> bool {
-    field.is_some_and(|field| field.parse::<f64>().is_ok())
+/// Whether fields are a row of numbers, rather than a header or a title: the first is a number, and
+/// so is at least half of them.
+fn is_row_of_numbers(fields: &[String]) -> bool {
+    let numbers = fields.iter().filter(|field| looks_like_number(field) || is_missing(field));
+    fields.first().is_some_and(|field| looks_like_number(field))
+        && 2 * numbers.count() >= fields.len()
 }
 
 /// The fields of a first row, and what stands between them.
 fn names(line: &str) -> (Separator, Vec<String>) {
-    let separator = [';', ',', '\t'].into_iter().find(|&c| line.contains(c));
+    let separator = [';', '\t', ','].into_iter().find(|&c| line.contains(c));
     let separator = separator.map_or(Separator::WhiteSpace, Separator::Character);
     let mut names: Vec<String> = Fields::new(line, separator).map(str::to_owned).collect();
     // Spreadsheets fill up short rows with separators.
@@ -182,11 +246,11 @@ pub(super) fn known_columns(
                 known: known.iter().map(|&name| name.to_owned()).collect(),
             });
         };
-        if columns.iter().any(|column| column.slot == Some(slot)) {
+        if columns.iter().any(|column| column.content == Content::Number(slot)) {
             let (first, second) = (name.clone(), name.clone());
             return Err(AssetError::RepeatedColumn { file: file.to_owned(), line, first, second });
         }
-        columns.push(Column { name: name.clone(), slot: Some(slot) });
+        columns.push(Column { name: name.clone(), content: Content::Number(slot) });
     }
     Ok(columns)
 }

@@ -28,7 +28,8 @@ impl Book {
 /// written, which are known.
 ///
 /// JSON has fewer shapes than RON. A variant `Obj(file: ..)` is `{ "Obj": { "file": .. } }`, `Periodic`
-/// alone a string, `(1, 2)` an array; a string `"=expr"` may stand for any number.
+/// alone a string, `(1, 2)` an array; a string `"=expr"` may stand for any number, and `"=name"` of a
+/// parameter that is a text for any string.
 #[must_use]
 pub fn json_schema() -> String {
     let mut book = Book::default();
@@ -109,9 +110,23 @@ mod tests {
 
     use super::super::include;
 
-    /// Keys whose strings are what they say: no names of definitions, no paths.
-    const PLAIN: [&str; 9] =
-        ["blue", "columns", "green", "name", "red", "title", "value", "variant", "wavelength"];
+    /// Keys whose strings are what they say: no names of definitions, no paths. Those of parameters are
+    /// qualified where formulas use them.
+    const PLAIN: [&str; 13] = [
+        "Grid",
+        "Zip",
+        "blue",
+        "columns",
+        "green",
+        "name",
+        "params",
+        "red",
+        "title",
+        "value",
+        "variant",
+        "variants",
+        "wavelength",
+    ];
 
     fn holds_text(schema: &Value) -> bool {
         match schema {

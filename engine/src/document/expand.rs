@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::read::Reading;
+use super::scene::Param;
 use super::syntax::{Node, Value};
 
 impl Reading {
@@ -15,7 +16,11 @@ impl Reading {
         let mut out = String::new();
         for (name, value) in &self.scene.params {
             // Writing to a string cannot fail.
-            let _infallible = writeln!(out, "// {name} = {value:?}  ({})", self.origin(name));
+            let value = match value {
+                Param::Number(number) => format!("{number:?}"),
+                Param::Text(text) => format!("{text:?}"),
+            };
+            let _infallible = writeln!(out, "// {name} = {value}  ({})", self.origin(name));
         }
         let scene = self.scene.resolved();
         out + &scene.to_text().into_file_with(&|path| self.remark(path))
@@ -23,7 +28,7 @@ impl Reading {
 
     /// Where the value of a parameter comes from.
     fn origin(&self, name: &str) -> String {
-        let has = |given: &[(String, f64)]| given.iter().any(|(given, _)| given == name);
+        let has = |given: &[(String, Param)]| given.iter().any(|(given, _)| given == name);
         if has(&self.options.set) {
             return "--set".to_owned();
         }

@@ -11,6 +11,7 @@ use std::ops::Range;
 use indexmap::IndexMap;
 
 use super::diagnostic::suggestion;
+use super::scene::Param;
 
 /// A formula may be so long, bytes.
 const LENGTH: usize = 1000;
@@ -38,7 +39,7 @@ impl FormulaError {
 #[derive(Debug)]
 pub(super) struct Scope<'a> {
     /// Parameters that have been settled, by their full names; those without a value are NaN.
-    pub(super) params: &'a IndexMap<String, f64>,
+    pub(super) params: &'a IndexMap<String, Param>,
     /// What the full names of the formula's own file start with.
     pub(super) namespace: &'a str,
     /// Parameters that are settled later.
@@ -49,11 +50,23 @@ pub(super) struct Scope<'a> {
     pub(super) used: &'a RefCell<HashSet<String>>,
 }
 
-/// Value of a formula.
+/// Value of a formula; the text of a parameter that stands alone, if it is one.
 ///
 /// # Errors
 /// Where it is not a formula, names what is unknown, or comes to no finite number.
-pub(super) fn evaluate(formula: &str, scope: &Scope<'_>) -> Result {
+pub(super) fn evaluate(
+    formula: &str,
+    scope: &Scope<'_>,
+) -> std::result::Result<Param, FormulaError> {
+    let full = format!("{}{}", scope.namespace, formula.trim());
+    if let Some(Param::Text(text)) = scope.params.get(&full) {
+        scope.used.borrow_mut().insert(full);
+        return Ok(Param::Text(text.clone()));
+    }
+    evaluate_number(formula, scope).map(Param::Number)
+}
+
+fn evaluate_number(formula: &str, scope: &Scope<'_>) -> Result {
     let error = |message: String| FormulaError::new(0..formula.len(), message, None);
     if formula.len() > LENGTH {
         return Err(error(format!("this formula is longer than {LENGTH} bytes")));
@@ -219,7 +232,16 @@ impl Parser<'_> {
         let at = start..start + length;
         let constant = || CONSTANTS.iter().find(|(known, _)| *known == name).map(|&(_, v)| v);
         let full = format!("{}{name}", self.scope.namespace);
-        let param = self.scope.params.get(&full).copied();
+        let param = match self.scope.params.get(&full) {
+            Some(Param::Text(text)) => {
+                let message = format!("the parameter `{name}` is the text {text:?}");
+                let help = format!("formulas are of numbers; a text stands alone: `\"={name}\"`");
+                self.scope.used.borrow_mut().insert(full);
+                return Err(FormulaError::new(at, message, Some(help)));
+            }
+            Some(Param::Number(value)) => Some(*value),
+            None => None,
+        };
         match param.or_else(constant) {
             Some(value) if value.is_nan() => Err(FormulaError { at, message: None, help: None }),
             Some(value) => {
@@ -338,12 +360,14 @@ mod tests {
     use indexmap::IndexMap;
     use proptest::prelude::*;
 
-    use super::{FormulaError, Scope, evaluate};
+    use super::{FormulaError, Param, Scope, evaluate};
 
     fn over(params: &IndexMap<String, f64>, formula: &str) -> super::Result {
         let (later, used) = Default::default();
-        let scope = Scope { params, namespace: "", later: &later, lost: &[], used: &used };
-        evaluate(formula, &scope)
+        let params = params.iter().map(|(name, value)| (name.clone(), Param::Number(*value)));
+        let params = params.chain([("leaf".to_owned(), "birch.csv".into())]).collect();
+        let scope = Scope { params: &params, namespace: "", later: &later, lost: &[], used: &used };
+        evaluate(formula, &scope).map(|value| value.number().expect("a number"))
     }
 
     fn value(formula: &str) -> f64 {
@@ -391,6 +415,18 @@ mod tests {
         assert_eq!(at("1/0"), 0..3);
         assert_eq!(at("é"), 0..2);
         assert_eq!(at(""), 0..0);
+    }
+
+    #[test]
+    fn a_text_stands_alone() {
+        let (later, used) = Default::default();
+        let params = IndexMap::from([("leaf".to_owned(), Param::from("birch.csv"))]);
+        let scope = Scope { params: &params, namespace: "", later: &later, lost: &[], used: &used };
+        assert_eq!(evaluate(" leaf ", &scope), Ok("birch.csv".into()));
+        assert!(used.borrow().contains("leaf"));
+        let found = error("2 * leaf");
+        assert_eq!(found.at, 4..8);
+        assert!(found.message.is_some_and(|message| message.contains("the text \"birch.csv\"")));
     }
 
     #[test]

@@ -8,13 +8,15 @@ use indexmap::IndexMap;
 use super::decode::Reader;
 use super::diagnostic::{Diagnostic, unknown_name};
 use super::formula::{Scope, evaluate};
+use super::include::Role;
 use super::read::Options;
+use super::scene::Param;
 use super::syntax::{BadNumber, Field, Node, Span, Step, Value};
 
 /// The parameters of a scene, and what its formulas have made of them.
 pub(super) struct Params {
     /// Value of each; NaN where it could not be read.
-    pub(super) values: IndexMap<String, f64>,
+    pub(super) values: IndexMap<String, Param>,
     /// What names of included files start with that could not be read.
     lost: Vec<String>,
     used: RefCell<HashSet<String>>,
@@ -44,22 +46,26 @@ pub(super) fn settle_params<'a>(
         let own = reader.within(Step::Key("params"), |reader| {
             reader.within(Step::Key(name), |reader| match &node.value {
                 Value::Formula(formula) => compute(formula, node, &params, &later, reader),
-                _ => plain_number(node),
+                _ => plain(node),
             })
         });
         let varied = variant.iter().flatten().find(|(varied, _)| *varied == name);
         let mut given = options.set.iter().rev().chain(options.point.iter().rev());
-        let given = given.find(|(given, _)| given == name).map(|&(_, value)| value);
-        let value = given.or(varied.map(|&(_, value)| value)).or(own);
+        let given = given.find(|(given, _)| given == name).map(|(_, value)| value);
+        let value = match (given.or(varied.map(|(_, value)| value)), own) {
+            (Some(given), Some(own)) => Some(of_kind(name, given, &own, reader)),
+            (Some(given), None) => Some(given.clone()),
+            (None, own) => own,
+        };
         later.remove(name);
-        params.values.insert(name.to_owned(), value.unwrap_or(f64::NAN));
+        params.values.insert(name.to_owned(), value.unwrap_or(Param::Number(f64::NAN)));
     }
     for (name, value) in options.set.iter().chain(&options.point) {
         if !params.values.contains_key(name) {
             let known = params.values.keys().map(String::as_str);
             let message = format!("no parameter `{name}` to set");
             reader.push(Diagnostic { message, ..unknown_name("params", "parameter", name, known) });
-        } else if !value.is_finite() {
+        } else if !value.is_lawful() {
             let message = format!("`{name}` cannot be set to {value}: it must be a finite number");
             reader.push(Diagnostic::error("params", message));
         }
@@ -67,24 +73,34 @@ pub(super) fn settle_params<'a>(
     params
 }
 
+/// A value that replaces the scene's own, as one of its kind; the scene's own where it cannot be one.
+fn of_kind(name: &str, given: &Param, own: &Param, reader: &mut Reader<'_>) -> Param {
+    given.like(own).unwrap_or_else(|| {
+        let message = format!("`{name}` cannot be {:?}: it is a number", given.to_string());
+        let help = format!("its value in the scene is {own}; write a finite number");
+        reader.push(Diagnostic::error("params", message).help(help));
+        own.clone()
+    })
+}
+
 /// One walk over the tree: evaluates formulas, and reports repeated keys and numbers that no scene
 /// can hold.
 pub(super) fn survey<'a>(tree: &'a Node, params: &Params, reader: &mut Reader<'a>) {
-    walk(tree, params, true, reader);
+    walk(tree, params, Role::Plain, true, reader);
 }
 
 fn chosen_variant<'a>(
     tree: &'a Node,
     name: &str,
     reader: &mut Reader<'a>,
-) -> Option<Vec<(&'a str, f64)>> {
+) -> Option<Vec<(&'a str, Param)>> {
     let variants: Vec<_> = entries(key(tree, "variants")).collect();
     let Some((_, node)) = variants.iter().find(|(variant, _)| *variant == name) else {
         let known = variants.iter().map(|(variant, _)| *variant);
         reader.push(unknown_name("variants", "variant", name, known));
         return None;
     };
-    Some(entries(Some(node)).filter_map(|(name, node)| Some((name, plain_number(node)?))).collect())
+    Some(entries(Some(node)).filter_map(|(name, node)| Some((name, plain(node)?))).collect())
 }
 
 pub(super) fn key<'a>(tree: &'a Node, name: &str) -> Option<&'a Node> {
@@ -105,6 +121,14 @@ pub(super) fn entries(map: Option<&Node>) -> impl Iterator<Item = (&str, &Node)>
     })
 }
 
+/// The value of a node that is no formula.
+pub(super) fn plain(node: &Node) -> Option<Param> {
+    match &node.value {
+        Value::Text(text) => Some(Param::Text(text.clone())),
+        _ => plain_number(node).map(Param::Number),
+    }
+}
+
 pub(super) fn plain_number(node: &Node) -> Option<f64> {
     match node.value {
         Value::Float(value) => Some(value),
@@ -121,7 +145,7 @@ fn compute<'a>(
     params: &Params,
     later: &HashSet<&str>,
     reader: &mut Reader<'a>,
-) -> Option<f64> {
+) -> Option<Param> {
     let scope = Scope {
         params: &params.values,
         namespace: reader.namespace(node),
@@ -142,8 +166,18 @@ fn compute<'a>(
             None
         }
     };
-    reader.set_computed(node, value);
+    reader.set_computed(node, value.clone());
     value
+}
+
+/// Evaluates a formula that stands where the scene needs a value; a text there is qualified as if it
+/// had been written in its file.
+fn settle<'a>(formula: &str, node: &'a Node, params: &Params, role: Role, reader: &mut Reader<'a>) {
+    if let Some(Param::Text(mut text)) = compute(formula, node, params, &HashSet::new(), reader) {
+        let (namespace, folder) = reader.file_of(node);
+        role.qualify(&mut text, namespace, folder);
+        reader.set_computed(node, Some(Param::Text(text)));
+    }
 }
 
 /// Bytes of the text that are these bytes of the formula; all of the string where it has escapes.
@@ -158,28 +192,32 @@ fn within_text(text: &str, span: Span, formula: &str, at: &std::ops::Range<usize
     }
 }
 
-fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader<'a>) {
+fn walk<'a>(node: &'a Node, params: &Params, own: Role, is_scene: bool, reader: &mut Reader<'a>) {
+    let own = own.within(node);
     let node = node.inner();
     match &node.value {
         Value::BadNumber(bad) => report_bad_number(node, *bad, reader),
-        Value::Formula(formula) => {
-            compute(formula, node, params, &HashSet::new(), reader);
-        }
+        Value::Formula(formula) => settle(formula, node, params, own, reader),
         Value::List(items) | Value::Tuple(items) => {
             for (index, item) in items.iter().enumerate() {
-                reader.within(Step::Index(index), |reader| walk(item, params, false, reader));
+                reader.within(Step::Index(index), |reader| walk(item, params, own, false, reader));
             }
         }
         Value::Record(fields) => {
             report_repeated(fields.iter().map(|f| (f.name.as_str(), f.name_span)), reader);
             for Field { name, value, .. } in fields {
-                // `params` are settled, variants hold plain numbers, and a title is what it says.
-                let own =
+                // `params` are settled, variants hold plain values, and a title is what it says.
+                let is_plain =
                     is_scene && matches!(name.as_str(), "params" | "variants" | "sweep" | "title");
+                let role = match (is_scene, &value.inner().value) {
+                    // Definitions by their names.
+                    (true, Value::Map(_)) => Role::Plain,
+                    _ => Role::of_key(name),
+                };
                 reader.within(Step::Key(name), |reader| match &value.inner().value {
-                    Value::Formula(_) if own => {}
-                    Value::Map(_) if own => walk_plain(value, reader),
-                    _ => walk(value, params, false, reader),
+                    Value::Formula(_) if is_plain => {}
+                    Value::Map(_) if is_plain => walk_plain(value, reader),
+                    _ => walk(value, params, role, false, reader),
                 });
             }
         }
@@ -187,7 +225,7 @@ fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader
             report_repeated(names(entries), reader);
             for (key, value) in entries {
                 if let Value::Text(key) = &key.value {
-                    reader.within(Step::Key(key), |reader| walk(value, params, false, reader));
+                    reader.within(Step::Key(key), |reader| walk(value, params, own, false, reader));
                 }
             }
         }

@@ -11,7 +11,7 @@ use super::diagnostic::{Diagnostic, Place};
 use super::encode::{Encode as _, Group, Text};
 use super::include::{Included, include};
 use super::params::{settle_params, survey};
-use super::scene::Scene;
+use super::scene::{Param, Scene};
 use super::source::Source;
 use super::syntax::{Node, parse};
 
@@ -22,9 +22,9 @@ pub(super) const FILE_SIZE: u64 = 256 << 20;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// Parameters to set, by name; they go before those of the file, of the variant and of the point.
-    pub set: Vec<(String, f64)>,
+    pub set: Vec<(String, Param)>,
     /// Parameters at a point of a sweep; they go before those of the file and of the variant.
-    pub point: Vec<(String, f64)>,
+    pub point: Vec<(String, Param)>,
     /// The variant to apply.
     pub variant: Option<String>,
 }
@@ -172,7 +172,7 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
     if dropped == 0 {
         diagnostics.extend(check_readable(&scene, &broken));
     }
-    if diagnostics.is_empty() {
+    if !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(unused.iter().map(|name| unused_param(name)));
     }
     for diagnostic in &mut diagnostics {

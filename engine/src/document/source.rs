@@ -21,6 +21,8 @@ struct SourceFile {
     name: String,
     /// What its names start with in the scene: nothing, or `birch.`.
     namespace: String,
+    /// What its paths start with in the scene: nothing, or `species/`.
+    folder: String,
     /// First byte and first line in the text of all.
     start: usize,
     line: usize,
@@ -30,18 +32,28 @@ impl Source {
     pub(super) fn new(name: &str, text: &str) -> Self {
         let mut source =
             Self { files: Vec::new(), text: String::new(), lines: Vec::new(), tree: None };
-        source.add(name, text, "");
+        source.add(name, text, ("", ""));
         source
     }
 
-    /// Appends a file; returns its first byte.
-    pub(super) fn add(&mut self, name: &str, text: &str, namespace: &str) -> usize {
+    /// Appends a file, with what its names and its paths start with; returns its first byte.
+    pub(super) fn add(
+        &mut self,
+        name: &str,
+        text: &str,
+        (namespace, folder): (&str, &str),
+    ) -> usize {
         if !self.text.is_empty() && !self.text.ends_with('\n') {
             self.text.push('\n');
         }
         let start = self.text.len();
-        let (name, namespace) = (name.to_owned(), namespace.to_owned());
-        self.files.push(SourceFile { name, namespace, start, line: self.lines.len() });
+        self.files.push(SourceFile {
+            name: name.to_owned(),
+            namespace: namespace.to_owned(),
+            folder: folder.to_owned(),
+            start,
+            line: self.lines.len(),
+        });
         self.lines.push(start);
         self.lines.extend(text.match_indices('\n').map(|(at, _)| start + at + 1));
         self.text.push_str(text);
@@ -56,6 +68,11 @@ impl Source {
     /// What the names of a file start with: nothing, or `birch.`.
     pub(super) fn namespace(&self, span: Span) -> &str {
         &self.file_at(span.start as usize).namespace
+    }
+
+    /// The same of its paths: nothing, or `species/`.
+    pub(super) fn folder(&self, span: Span) -> &str {
+        &self.file_at(span.start as usize).folder
     }
 
     pub(super) fn with_tree(self, tree: Node) -> Self {

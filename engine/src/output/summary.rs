@@ -10,6 +10,7 @@ use super::lines::Lines;
 use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
 use super::rows::columns;
+use crate::document::Param;
 use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport};
 
 /// Names and sizes of a report's files.
@@ -26,9 +27,9 @@ pub(super) struct Head<'a> {
     command: &'a str,
     /// Path of the scene, relative to the folder of the results.
     scene_file: Option<String>,
-    params: Ordered<'a, f64>,
+    params: Ordered<'a, &'a Param>,
     variant: Option<&'a str>,
-    set: Ordered<'a, f64>,
+    set: Ordered<'a, &'a Param>,
     quality: f64,
     hash: &'a str,
     version: &'a str,
@@ -39,16 +40,16 @@ pub(super) struct Head<'a> {
 impl<'a> Head<'a> {
     pub(super) fn of(report: &'a Report, command: &'a str, scene_file: Option<String>) -> Self {
         let origin = report.origin.as_ref();
-        let numbers = |list: &'a [(String, f64)]| {
-            Ordered(list.iter().map(|(name, value)| (name.as_str(), *value)).collect())
+        let values = |list: &'a [(String, Param)]| {
+            Ordered(list.iter().map(|(name, value)| (name.as_str(), value)).collect())
         };
         Self {
             scene: &report.scene,
             command,
             scene_file,
-            params: numbers(&report.params),
+            params: values(&report.params),
             variant: origin.and_then(|origin| origin.variant.as_deref()),
-            set: numbers(origin.map_or(&[], |origin| &origin.set)),
+            set: values(origin.map_or(&[], |origin| &origin.set)),
             quality: origin.map_or(1.0, |origin| origin.quality),
             hash: &report.hash,
             version: &report.version,
@@ -103,6 +104,7 @@ pub(super) fn write(
         wavelengths_nm: &report.wavelengths,
         stages: Ordered(report.stages.iter().map(|(name, s)| (name.as_str(), *s)).collect()),
         skipped: &report.skipped,
+        notes: &report.notes,
         warnings: &report.warnings,
         sensors: Ordered(
             sensors().map(|(s, n)| (n.key.as_str(), products(report, s, n))).collect(),
@@ -138,6 +140,7 @@ struct Summary<'a> {
     wavelengths_nm: &'a [f64],
     stages: Ordered<'a, f64>,
     skipped: &'a [String],
+    notes: &'a [String],
     warnings: &'a [String],
     sensors: Ordered<'a, Ordered<'a, Entry<'a>>>,
     runs: Ordered<'a, Run<'a>>,

@@ -11,6 +11,7 @@ use super::axes::Axes;
 use super::rows::{harmless, number};
 use super::staging::Staging;
 use super::{OutputError, Results};
+use crate::document::Param;
 use crate::products::{Point, Report};
 
 /// Longest name of a point's folder.
@@ -95,7 +96,13 @@ fn unreadable(path: &Path, error: csv::Error) -> OutputError {
 }
 
 fn folder_of(point: &Point, folder: &Path) -> PathBuf {
-    folder.join("points").join(folder_name(&point.name(), &point.key))
+    let written = point.name();
+    let mut name = folder_name(&written, &point.key);
+    // Texts may differ in what a folder's name cannot hold.
+    if written.len() <= LENGTH && name != written {
+        name = format!("{name},{}", point.key.get(..16).unwrap_or(&point.key));
+    }
+    folder.join("points").join(name)
 }
 
 /// A name for a folder that is safe on every file system; `identity` tells apart what is too long.
@@ -131,7 +138,11 @@ fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Resu
     let before = ["sensor", "product", "unit"].map(str::to_owned);
     let after = ["band", "value", "standard_error"].map(str::to_owned);
     writer.write_record(names.chain(before).chain(axes.names().map(harmless)).chain(after))?;
-    let params: Vec<_> = point.params.iter().map(|&(_, value)| number(value)).collect();
+    let shown = |(_, value): &(String, Param)| match value {
+        Param::Number(value) => number(*value),
+        Param::Text(text) => harmless(text),
+    };
+    let params: Vec<_> = point.params.iter().map(shown).collect();
     for (sensor, product) in products() {
         for (row, (value, error)) in product.values.iter().zip(&product.standard_error).enumerate()
         {

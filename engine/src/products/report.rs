@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use super::Faces;
 use crate::components::{Channels, Projection};
+use crate::document::Param;
 
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
@@ -275,12 +276,14 @@ pub struct Report {
     pub stages: Vec<(String, f64)>,
     /// What the scene did not need and was not built.
     pub skipped: Vec<String>,
+    /// What was taken without a word in the scene, or left out of its files.
+    pub notes: Vec<String>,
     /// What a person should know: dropped faces, say.
     pub warnings: Vec<String>,
     /// What each sensor measured, in document order.
     pub sensors: Vec<SensorReport>,
     /// Values of the scene's parameters.
-    pub params: Vec<(String, f64)>,
+    pub params: Vec<(String, Param)>,
     /// Azimuth of the sun, degrees clockwise from north, if there is one.
     pub sun_azimuth_deg: Option<f64>,
     /// Where the scene was read; none of a scene that was built.
@@ -295,7 +298,7 @@ pub struct Origin {
     /// Variant that was applied.
     pub variant: Option<String>,
     /// Parameters that were given other values.
-    pub set: Vec<(String, f64)>,
+    pub set: Vec<(String, Param)>,
     /// Factor on the numbers of samples.
     pub quality: f64,
 }
@@ -304,7 +307,7 @@ pub struct Origin {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// The swept parameters and their values.
-    pub params: Vec<(String, f64)>,
+    pub params: Vec<(String, Param)>,
     /// Hash of all that decides the results: the scene as it is at this point, the content of every
     /// file that it names, the number of samples and this version of sunfleck. Hexadecimal.
     pub key: String,

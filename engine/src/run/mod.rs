@@ -25,7 +25,7 @@ use hecs::World;
 
 use crate::accel::Boundary;
 use crate::components::{Projection, TerrainPatch};
-use crate::document::{self, Diagnostic, Reading, Scene, Sun};
+use crate::document::{self, Diagnostic, Param, Reading, Scene, Sun};
 use crate::extract::{Rules, Setting, Stage};
 use crate::products::{BandSources, Context, Origin, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
@@ -208,6 +208,7 @@ fn checked(
     let mut warnings: Vec<String> =
         warnings.map(|one| reading.source.render(std::slice::from_ref(one))).collect();
     warnings.extend(spawned.skipped.iter().map(|what| format!("skipped: {what}")));
+    warnings.extend(spawned.notes.iter().map(|what| format!("note: {what}")));
     Ok(Checked { warnings, facts })
 }
 
@@ -310,6 +311,7 @@ fn run_kept(
         wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
         stages: clock.laps,
         skipped: spawned.skipped.clone(),
+        notes: spawned.notes.clone(),
         warnings: spawned
             .warnings
             .iter()
@@ -329,8 +331,8 @@ fn run_kept(
 }
 
 /// Values of a scene's parameters.
-fn params(scene: &Scene) -> Vec<(String, f64)> {
-    scene.params.iter().map(|(name, value)| (name.clone(), *value)).collect()
+fn params(scene: &Scene) -> Vec<(String, Param)> {
+    scene.params.iter().map(|(name, value)| (name.clone(), value.clone())).collect()
 }
 
 /// Projection of the coordinates of the ground.

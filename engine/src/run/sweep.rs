@@ -118,6 +118,7 @@ impl Sweep {
             wavelengths: Vec::new(),
             stages: Vec::new(),
             skipped: Vec::new(),
+            notes: Vec::new(),
             warnings: Vec::new(),
             sensors: Vec::new(),
             params: params(&self.scene),

@@ -32,7 +32,7 @@ fn with_scene(sensors: &str, look: impl Fn(&str, &Sensor, (&Stage, &Context))) {
             ) }},
             terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
             instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-            sun: (zenith_deg: 50.0, azimuth_deg: 10.0),
+            sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
             boundary: Periodic,
             sensors: {{ {sensors} }},
         )"#

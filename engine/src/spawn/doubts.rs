@@ -14,21 +14,27 @@ use crate::terrain::Ground;
 /// Ground that lies less below other ground is the same but for rounding, m.
 const OVERHANG: f64 = 1e-3;
 
+/// Instances that are further than both of these from the ground cannot be meant: this, m, and this
+/// many times the ground's larger extent.
+const FAR_M: f64 = 1000.0;
+const FAR_EXTENTS: f64 = 20.0;
+
 /// No plant is larger, m.
 const TALLEST: f32 = 200.0;
 
 impl Spawner<'_> {
-    /// Warns of instances that stand beside the ground of an isolated scene.
+    /// Refuses instances that stand so far from the ground that other coordinates must be meant, and
+    /// warns of those that stand beside the ground of an isolated scene.
     pub(super) fn doubt_places(
         &mut self,
         placements: &[Placement],
         meshes: &BTreeMap<u32, Prototype>,
         ground: &Ground,
     ) {
-        if self.is_periodic() {
+        let (low, high) = (ground.corner(), ground.corner() + ground.size());
+        if self.refuse_far_places(placements, low, high) || self.is_periodic() {
             return;
         }
-        let (low, high) = (ground.corner(), ground.corner() + ground.size());
         let mut beside: BTreeMap<u32, (usize, DVec2)> = BTreeMap::new();
         for placement in placements {
             let at = placement.position.truncate();
@@ -46,6 +52,26 @@ impl Spawner<'_> {
             );
             self.problems.push(Diagnostic::warning("instances", message).help(help));
         }
+    }
+
+    /// Refuses instances that are far from the ground's rectangle; returns whether there are any.
+    fn refuse_far_places(&mut self, placements: &[Placement], low: DVec2, high: DVec2) -> bool {
+        let far = FAR_M.max(FAR_EXTENTS * (high - low).max_element());
+        let gap = |at: DVec2| (low - at).max(at - high).max_element();
+        let places = placements.iter().map(|placement| placement.position.truncate());
+        let mut away = places.filter(|&at| gap(at) > far);
+        let Some(first) = away.next() else { return false };
+        let count = 1 + away.clone().count();
+        let south_west = away.fold(first, DVec2::min);
+        let message = format!("{count} instances stand more than {far:.0} m from the ground");
+        let origin = ((south_west - low) / 10.0).floor() * 10.0;
+        let help = format!(
+            "one stands at ({}, {}), and the ground reaches from ({}, {}) to ({}, {}) m: if these are \
+             coordinates of a map, write `frame: (origin_m: ({}, {}, 0))`",
+            first.x, first.y, low.x, low.y, high.x, high.y, origin.x, origin.y
+        );
+        self.problems.push(Diagnostic::error("instances", message).help(help));
+        true
     }
 
     /// Warns of a mesh as ground of which triangles lie under others.

@@ -20,10 +20,12 @@ pub fn missing_files(scene: &Scene, folder: &Path) -> Vec<Diagnostic> {
         } else {
             continue;
         };
-        missing.push(
-            Diagnostic::error(path, message)
-                .help("paths are relative to the folder of the scene file"),
-        );
+        let help = match file {
+            _ if file.contains('\\') && !full.is_dir() => "write `/` between folders",
+            _ if file.starts_with('~') => "write the path in full: `~` is not expanded",
+            _ => "paths are relative to the folder of the scene file",
+        };
+        missing.push(Diagnostic::error(path, message).help(help));
     }
     missing
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Spawner;
 use super::meshes::Prototype;
-use crate::assets::{self, Row};
+use crate::assets::Row;
 use crate::components::{Placement, PrototypeId, SceneId};
 use crate::document::{Diagnostic, Instances, Scene, suggestion, unknown_name};
 use crate::placement::Pattern;
@@ -25,24 +25,16 @@ impl Spawner<'_> {
         for (index, instances) in scene.instances.iter().enumerate() {
             let path = format!("instances[{index}]");
             let mut placed = match instances {
-                Instances::Table { file, of, columns, on_terrain, .. } => {
-                    let file = self.file(file);
-                    match assets::read_instances(&file, columns.as_deref()) {
-                        Ok(rows) => {
-                            let ground = ground.filter(|_| *on_terrain);
-                            self.rows(&rows, of, ground, &path)
-                        }
-                        Err(error) => {
-                            let problem =
-                                Diagnostic::error(format!("{path}.file"), error.to_string());
-                            self.problems.push(problem);
-                            Vec::new()
-                        }
-                    }
-                }
+                Instances::Table { .. } => self.table(instances, meshes, ground, &path),
                 Instances::List { of, at_m, yaw_deg, scale, on_terrain, .. } => {
                     let rows = listed(at_m, yaw_deg, scale);
-                    self.rows(&rows, of, ground.filter(|_| *on_terrain), &path)
+                    let ground = ground.filter(|_| *on_terrain);
+                    match self.prototype(of, format!("{path}.of")) {
+                        Some(prototype) => {
+                            self.rows(&rows, &vec![prototype; rows.len()], ground, &path)
+                        }
+                        None => Vec::new(),
+                    }
                 }
                 Instances::Scatter { .. } => {
                     // A terrain that could not be built was reported.
@@ -86,18 +78,18 @@ impl Spawner<'_> {
     }
 
     /// Rows of a table or a list; their heights count from the ground where it is given.
-    fn rows(
+    pub(super) fn rows(
         &mut self,
         rows: &[Row],
-        of: &str,
+        prototypes: &[PrototypeId],
         ground: Option<&Ground>,
         path: &str,
     ) -> Vec<Placement> {
-        let Some(prototype) = self.prototype(of, format!("{path}.of")) else { return Vec::new() };
         let mut beside = Vec::new();
         let placed = rows
             .iter()
-            .filter_map(|row| {
+            .zip(prototypes)
+            .filter_map(|(row, &prototype)| {
                 let base = match ground.map(|ground| ground.height(row.position.truncate())) {
                     Some(None) => {
                         beside.push(row.position);
@@ -210,6 +202,10 @@ fn listed(at_m: &[(f64, f64, f64)], yaw_deg: &[f64], scale: &[f64]) -> Vec<Row> 
                 tilt_azimuth: 0.0,
                 scale_horizontal: scale,
                 scale_vertical: scale,
+                height: None,
+                diameter: None,
+                species: None,
+                line: 0,
             }
         })
         .collect()

@@ -3,7 +3,7 @@ use hecs::World;
 use super::Spawner;
 use super::spectra::Quantity;
 use crate::components::{SceneId, Sky, Sun, View};
-use crate::document::{self, Diagnostic};
+use crate::document::{self, Diagnostic, Spectrum};
 
 impl Spawner<'_> {
     /// Spawns sun and sky.
@@ -12,6 +12,7 @@ impl Spawner<'_> {
         let sun = scene.sun.as_ref().and_then(|sun| {
             let irradiance =
                 self.spectrum(&sun.irradiance, Quantity::Irradiance, "sun.irradiance")?;
+            self.note_irradiance(&sun.irradiance, &irradiance);
             // `document::check` asks for a position.
             let (zenith, azimuth) = sun.angles_deg()?;
             let view = View { zenith: zenith.to_radians(), azimuth: azimuth.to_radians() };
@@ -72,5 +73,23 @@ impl Spawner<'_> {
         );
         let help = "write an irradiance above 0, or take the bands out";
         self.problems.push(Diagnostic::warning(path, message).help(help));
+    }
+
+    /// Says which irradiance of the sun is taken where the scene need not have named one.
+    fn note_irradiance(&mut self, spectrum: &Spectrum, irradiance: &[f64]) {
+        /// Bands whose values are told.
+        const MOST: usize = 8;
+        if *spectrum != Spectrum::AstmG173 {
+            return;
+        }
+        let bands = self.scene.bands.iter().zip(irradiance);
+        let values = bands.take(MOST).map(|(band, value)| format!("{} {value:.4}", band.name));
+        let more = if irradiance.len() > MOST { ", .." } else { "" };
+        self.notes.push(format!(
+            "sun.irradiance is that of ASTM G173, direct and circumsolar, perpendicular to the beam: \
+             {}{more} W m⁻² nm⁻¹; `irradiance: Constant(1.0)` gives absolute results per unit of \
+             irradiance",
+            values.collect::<Vec<_>>().join(", ")
+        ));
     }
 }

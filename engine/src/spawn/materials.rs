@@ -69,13 +69,15 @@ impl Spawner<'_> {
             Ok(optics) => Some(optics),
             Err(EnergyGain { band, reflectance, transmittance }) => {
                 let band = &self.scene.bands[band].name;
-                let sum = reflectance + transmittance;
+                // As many digits as tell the sum from 1, without the rounding of the sum itself.
+                let sum = format!("{:.12}", reflectance + transmittance);
+                let sum = sum.trim_end_matches('0').trim_end_matches('.');
                 self.problems.push(
                     Diagnostic::error(
                         path,
                         format!(
                             "in band `{band}` reflectance {reflectance} and transmittance \
-                             {transmittance} sum to {sum:.6}: a surface cannot send out more light \
+                             {transmittance} sum to {sum}: a surface cannot send out more light \
                              than it receives"
                         ),
                     )

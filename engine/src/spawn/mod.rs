@@ -17,7 +17,9 @@ mod reach;
 mod scatter;
 mod sensors;
 mod spectra;
+mod spectrum_table;
 mod standing;
+mod stems;
 mod terrain;
 mod thermal;
 
@@ -45,6 +47,8 @@ pub struct Spawned {
     pub files: Vec<PathBuf>,
     /// Definitions that nothing uses and that were not built.
     pub skipped: Vec<String>,
+    /// What was taken without a word in the scene, or left out of its files.
+    pub notes: Vec<String>,
     /// What the author should know.
     pub warnings: Vec<Diagnostic>,
     /// The same of meshes, instances and terrain alone.
@@ -68,6 +72,7 @@ impl Spawned {
 struct Notes {
     files: Vec<PathBuf>,
     skipped: Vec<String>,
+    remarks: Vec<String>,
     problems: Vec<Diagnostic>,
     reach: Reach,
     origins: Origins,
@@ -79,6 +84,7 @@ pub(crate) struct Spawner<'a> {
     folder: &'a Path,
     files: Vec<PathBuf>,
     skipped: Vec<String>,
+    notes: Vec<String>,
     problems: Vec<Diagnostic>,
     reach: Reach,
     origins: Origins,
@@ -156,7 +162,7 @@ pub fn respawn(spawned: Spawned, scene: &Scene, folder: &Path) -> Result<Spawned
 
 impl<'a> Spawner<'a> {
     fn new(scene: &'a Scene, folder: &'a Path, notes: Notes) -> Self {
-        let Notes { files, skipped, problems, reach, origins } = notes;
+        let Notes { files, skipped, remarks, problems, reach, origins } = notes;
         let (x, y, _) = scene.frame.origin_m;
         let georeference = Some(Georeference {
             from: DVec2::new(x, y),
@@ -165,13 +171,25 @@ impl<'a> Spawner<'a> {
             is_of_degrees: false,
         });
         let rectangle = (DVec2::ZERO, DVec2::ONE);
-        Self { scene, folder, files, skipped, problems, reach, origins, rectangle, georeference }
+        Self {
+            scene,
+            folder,
+            files,
+            skipped,
+            notes: remarks,
+            problems,
+            reach,
+            origins,
+            rectangle,
+            georeference,
+        }
     }
 
     fn notes(&self) -> Notes {
         Notes {
             files: self.files.clone(),
             skipped: self.skipped.clone(),
+            remarks: self.notes.clone(),
             problems: self.problems.clone(),
             reach: self.reach.clone(),
             origins: self.origins.clone(),
@@ -197,13 +215,13 @@ impl<'a> Spawner<'a> {
         self.light(&mut world);
         self.emission(&mut world);
         self.sensors(&mut world);
-        let Spawner { mut files, skipped, problems, .. } = self;
+        let Spawner { mut files, skipped, notes, problems, .. } = self;
         let mut seen = BTreeSet::new();
         files.retain(|file| seen.insert(file.clone()));
         if problems.iter().any(Diagnostic::is_error) {
             return Err(problems);
         }
-        Ok(Spawned { world, files, skipped, warnings: problems, of_geometry })
+        Ok(Spawned { world, files, skipped, notes, warnings: problems, of_geometry })
     }
 
     /// The path of a file that the scene names, and a note that it was read.

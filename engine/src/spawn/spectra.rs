@@ -1,10 +1,9 @@
 use std::collections::BTreeSet;
 
 use super::Spawner;
-use crate::assets;
 use crate::document::{Diagnostic, IRRADIANCE, Spectrum, unknown_name};
-use crate::spectral::band_mean;
 use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
+use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
 
 /// What a spectrum is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,12 +54,8 @@ impl Spawner<'_> {
             Spectrum::Constant(value) => Ok(vec![*value; bands]),
             Spectrum::Bands(values) => Ok(values.clone()),
             Spectrum::Points(points) => self.mean_over_bands(points, path),
-            Spectrum::Table { file, wavelength, value } => {
-                let file_path = self.file(file);
-                let points = assets::read_spectrum(&file_path, wavelength, value.as_deref())
-                    .map_err(|error| Box::new(problem(&format!("{path}.file"), &error)))?;
-                self.mean_over_bands(&points, path)
-            }
+            Spectrum::Table { .. } => self.table_means(spectrum, quantity, path),
+            Spectrum::AstmG173 => self.astm_g173(quantity, path),
             Spectrum::Named(name) => {
                 let scene = self.scene;
                 let Some(named) = scene.spectra.get(name) else {
@@ -104,12 +99,44 @@ impl Spawner<'_> {
                     Quantity::Transmittance => self.mean_over_bands(&leaf.transmittance, path),
                     Quantity::Irradiance => {
                         let what = "Prospect gives reflectance and transmittance, no irradiance";
-                        let help = "write Constant, Bands, Points or Table";
+                        let help = "write AstmG173, Constant, Bands, Points or Table";
                         Err(Box::new(Diagnostic::error(path, what).help(help)))
                     }
                 }
             }
         }
+    }
+
+    /// The sun's irradiance of ASTM G173 in each band that holds sunlight, 0 in others.
+    fn astm_g173(&mut self, quantity: Quantity, path: &str) -> Result<Vec<f64>, Box<Diagnostic>> {
+        if quantity != Quantity::Irradiance {
+            let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
+            let help = "write Constant, Bands, Points, Table or Prospect";
+            return Err(Box::new(Diagnostic::error(path, message).help(help)));
+        }
+        let mut beyond = Vec::new();
+        let means = self.scene.bands.iter().map(|band| -> Result<f64, Box<Diagnostic>> {
+            let (center, width) = (band.center_nm, band.width_nm);
+            let mean = solar_irradiance(center, width).map_err(|error| {
+                let message = format!("band `{}`: {error}", band.name);
+                Box::new(Diagnostic::error(path, message).help("write `irradiance` of its own"))
+            })?;
+            if band.reflects() && center + 0.5 * width > ASTM_G173_END_NM {
+                beyond.push(format!("{mean:.3e} in band `{}`", band.name));
+            }
+            Ok(mean)
+        });
+        let means = means.collect::<Result<Vec<f64>, _>>()?;
+        if !beyond.is_empty() {
+            let message = format!(
+                "ASTM G173 ends at {ASTM_G173_END_NM} nm: beyond it the sun is taken as a black body of \
+                 5772 K that joins it there, without the gases of the air: {} W m⁻² nm⁻¹",
+                beyond.join(", ")
+            );
+            let help = "write `irradiance` where that is not good enough";
+            self.problems.push(Diagnostic::warning(path, message).help(help));
+        }
+        Ok(means)
     }
 
     fn mean_over_bands(

@@ -75,7 +75,7 @@ fn what_is_written_is_in_normal_form() {
 
 #[test]
 fn an_expanded_scene_says_where_its_values_come_from() {
-    let options = Options { set: vec![("sza".to_owned(), 60.0)], ..Options::default() };
+    let options = Options { set: vec![("sza".to_owned(), 60.0.into())], ..Options::default() };
     let reading = read_text("scene.ron", DESIGN, &options).expect("a scene");
     let text = reading.expanded();
     insta::assert_snapshot!("expanded", text);

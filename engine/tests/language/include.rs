@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use sunfleck::document::{
-    Include, Instances, Map, Material, Mesh, Options, Reading, Scene, Sensor, Spectrum, Terrain,
-    read_file,
+    Include, Instances, Map, Material, Mesh, Options, Param, Reading, Scene, Sensor, Spectrum,
+    Terrain, read_file,
 };
 
 /// A species as one keeps it in a library.
@@ -89,8 +89,8 @@ fn library() -> Folder {
     Folder::with(&[("stand.ron", STAND), ("site.ron", SITE), ("species/birch.ron", BIRCH)])
 }
 
-fn set(name: &str, value: f64) -> (String, f64) {
-    (name.to_owned(), value)
+fn set(name: &str, value: f64) -> (String, Param) {
+    (name.to_owned(), value.into())
 }
 
 /// What the leaves of an included birch reflect.
@@ -141,7 +141,11 @@ fn parameters_are_taken_from_the_nearest() {
     assert_eq!(leaves(&options), [0.1, 0.6]);
     let scene = folder.sound(&Options { set: vec![set("lai", 3.0)], ..Options::default() });
     assert_eq!(leaf(&scene, "birch.leaf"), 0.2, "what is passed follows the scene's own parameter");
-    assert_eq!(scene.params["birch.radius"], 0.02, "and the file's formulas follow what is passed");
+    assert_eq!(
+        scene.params["birch.radius"],
+        Param::Number(0.02),
+        "and the file's formulas follow what is passed"
+    );
 }
 
 #[test]
@@ -174,8 +178,11 @@ fn a_scene_built_in_rust_includes_files_as_well() {
     let folder = library();
     let path = folder.0.path().join("stand.ron");
     let mut built = read_file(&path, &Options::default()).expect("a scene").scene;
-    let include =
-        |params: Map<f64>| Include { file: "species/birch.ron".to_owned(), params, variant: None };
+    let include = |params: Map<Param>| Include {
+        file: "species/birch.ron".to_owned(),
+        params,
+        variant: None,
+    };
     built.include.insert("oak".to_owned(), include(Map::from([set("lai", 7.0)])));
     std::fs::write(&path, built.to_ron()).expect("a file");
     let scene = folder.sound(&Options::default());
@@ -318,4 +325,42 @@ fn files_are_included_by_one_key() {
     let again =
         sunfleck::document::read_text("again.ron", &reading.scene.to_ron(), &Options::default());
     assert_eq!(again.expect("RON").scene, reading.scene);
+}
+
+/// A text that is passed stands for a string of the file that uses it: its names and paths are its own.
+#[test]
+fn texts_are_qualified_by_the_file_that_uses_them() {
+    let library = r#"Library(
+        params: { "spectrum": "dry.csv", "of": "oak" },
+        materials: {
+            "leaf": Lambertian(reflectance: Table(file: "=spectrum")),
+            "bark": Lambertian(reflectance: Named("=of")),
+        },
+        spectra: { "oak": Constant(0.2), "birch": Constant(0.3) },
+        meshes: { "tree": Faces(faces_m: [[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]], material: "leaf") },
+        instances: [List(of: "tree", at_m: [(1.0, 1.0, 0.0)])],
+    )"#;
+    let scene = r#"Scene(
+        format: 1,
+        params: { "chosen": "birch" },
+        include: { "a": (file: "species/a.ron", params: { "spectrum": "../wet.csv", "of": "=chosen" }) },
+        bands: [(name: "red", center_nm: 660.0)],
+        terrain: Plane(size_m: (9.0, 9.0), material: "a.leaf"),
+        sun: (zenith_deg: 30.0),
+        sensors: { "v": Directions(views: PrincipalPlane) },
+    )"#;
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(folder.path().join("species")).expect("a folder");
+    std::fs::write(folder.path().join("species/a.ron"), library).expect("a file");
+    std::fs::write(folder.path().join("scene.ron"), scene).expect("a file");
+    let reading =
+        read_file(&folder.path().join("scene.ron"), &Options::default()).expect("a scene");
+    assert!(reading.is_sound(), "{}", reading.render());
+    let reflectance = |name: &str| match &reading.scene.materials[name] {
+        Material::Lambertian { reflectance, .. } => reflectance.clone(),
+        other @ Material::Leaf { .. } => panic!("{other:?}"),
+    };
+    let Spectrum::Table { file, .. } = reflectance("a.leaf") else { panic!("a table") };
+    assert_eq!(file, "species/../wet.csv");
+    assert_eq!(reflectance("a.bark"), Spectrum::Named("a.birch".to_owned()));
 }

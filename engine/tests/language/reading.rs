@@ -47,7 +47,7 @@ fn red(scene: &Scene) -> f64 {
 }
 
 fn options(set: &[(&str, f64)], variant: Option<&str>) -> Options {
-    let set = set.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
+    let set = set.iter().map(|&(name, value)| (name.to_owned(), value.into())).collect();
     Options { set, variant: variant.map(str::to_owned), ..Options::default() }
 }
 
@@ -79,13 +79,13 @@ fn the_example_of_the_design_reads_as_written() {
     let names: Vec<_> = scene.sensors.keys().collect();
     assert_eq!(names, ["nadir", "brf", "flux"]);
     assert!(matches!(scene.sensors["flux"], Sensor::Photons { per_m2: 2500.0, .. }));
-    assert_eq!(scene.variants["winter"]["lai_scale"].to_bits(), 0.2_f64.to_bits());
+    assert_eq!(scene.variants["winter"]["lai_scale"], 0.2.into());
 }
 
 #[test]
 fn keys_that_are_left_out_have_their_defaults() {
     let scene = sound(&small("0.2", ""));
-    let irradiance = Spectrum::Constant(1.0);
+    let irradiance = Spectrum::AstmG173;
     let sun =
         Sun { zenith_deg: Some(30.0), azimuth_deg: 0.0, position: None, disc_deg: 0.0, irradiance };
     assert_eq!(scene.sun, Some(sun));
@@ -305,4 +305,65 @@ fn files_that_hold_no_scene_are_errors_that_say_why() {
 fn nearest_names_are_offered_to_other_stages_too() {
     assert_eq!(nearest("laef", ["bark", "leaf"]), Some("leaf"));
     assert_eq!(nearest("granite", ["bark", "leaf"]), None);
+}
+
+/// Texts in `params` stand for strings, in every way that parameters get their values.
+#[test]
+fn parameters_may_be_texts() {
+    let text = r#"Scene(
+        format: 1,
+        params: { "soil": "dry.csv", "kind": "tree", "n": 2.0, "alias": "=soil" },
+        bands: [(name: "red", center_nm: 660.0)],
+        materials: { "soil": Lambertian(reflectance: Table(file: "=soil", value: "=alias")) },
+        meshes: { "tree": Faces(faces_m: [[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]], material: "soil") },
+        terrain: Plane(size_m: (9.0, 9.0), material: "soil"),
+        instances: [List(of: "=kind", at_m: [("=n", 1.0, 0.0)])],
+        sun: (zenith_deg: 30.0),
+        sensors: { "v": Directions(views: PrincipalPlane) },
+        variants: { "wet": { "soil": "wet.csv" } },
+        sweep: Grid({ "soil": ["a.csv", "b.csv"], "n": [1.0, 2.0] }),
+    )"#;
+    let read = |options: &Options| read_text("scene.ron", text, options).expect("RON");
+    let files = |options: &Options| {
+        let reading = read(options);
+        assert!(reading.is_sound(), "{}", reading.render());
+        let Material::Lambertian { reflectance: Spectrum::Table { file, value, .. }, .. } =
+            &reading.scene.materials["soil"]
+        else {
+            panic!("a table")
+        };
+        assert_eq!(reading.scene.instances[0].meshes(), ["tree"]);
+        (file.clone(), value.clone())
+    };
+    let both = |name: &str| (name.to_owned(), Some(name.to_owned()));
+    assert_eq!(files(&Options::default()), both("dry.csv"));
+    let wet = Options { variant: Some("wet".to_owned()), ..Options::default() };
+    assert_eq!(files(&wet), both("wet.csv"));
+    let set = |name: &str, value: &str| Options {
+        set: vec![(name.to_owned(), value.into())],
+        ..Options::default()
+    };
+    assert_eq!(files(&set("soil", "clay.csv")), both("clay.csv"));
+    assert_eq!(files(&set("n", "3")), both("dry.csv"));
+    let sweep = read(&Options::default()).scene.sweep.expect("a sweep");
+    assert_eq!(sweep.point(2)[0], ("soil".to_owned(), "b.csv".into()));
+
+    let wrong = |options: &Options| messages(&read(options).diagnostics);
+    assert_eq!(wrong(&set("n", "many")), ["params: `n` cannot be \"many\": it is a number"]);
+    let replaced = |from: &str, to: &str| {
+        let text = text.replace(from, to);
+        messages(&read_text("scene.ron", &text, &Options::default()).expect("RON").diagnostics)
+    };
+    assert_eq!(
+        replaced("\"=kind\"", "\"=n\""),
+        ["instances[0].of: expected a string, found a formula that gives 2.0"]
+    );
+    assert_eq!(
+        replaced("zenith_deg: 30.0", "zenith_deg: \"=2 * soil\""),
+        ["sun.zenith_deg: the parameter `soil` is the text \"dry.csv\""]
+    );
+    assert_eq!(
+        replaced("{ \"soil\": \"wet.csv\" }", "{ \"soil\": 1.0 }"),
+        ["variants.wet.soil: expected a text, as in `params`, found 1.0"]
+    );
 }

@@ -4,10 +4,10 @@ use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
     Area, Axis, Band, BandSource, Boundary, Cover, Distribution, Ends, FisheyeProjection, Frame,
-    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, Per,
-    PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky, Spectrum, Stems, Sun, SunPosition,
-    Sweep, System, Temperature, Terrain, ThermalSky, Transport, Until, Views, VirtualPlane,
-    read_text,
+    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, Param, Per,
+    PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky, SpeciesMeshes, Spectrum, Stems,
+    Sun, SunPosition, Sweep, System, TableCoordinates, Temperature, Terrain, ThermalSky, Transport,
+    Until, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_text,
 };
 
 use crate::crowns::crown;
@@ -37,16 +37,27 @@ pub(crate) fn option<T: std::fmt::Debug>(
     prop::option::of(of)
 }
 
+fn param() -> impl Strategy<Value = Param> {
+    prop_oneof![number().prop_map(Param::Number), text().prop_map(Param::Text)]
+}
+
 fn spectrum() -> BoxedStrategy<Spectrum> {
     prop_oneof![
         number().prop_map(Spectrum::Constant),
         prop::collection::vec(number(), 0..60).prop_map(Spectrum::Bands),
         prop::collection::vec((number(), number()), 0..20).prop_map(Spectrum::Points),
-        (text(), text(), option(text())).prop_map(|(file, wavelength, value)| Spectrum::Table {
-            file,
-            wavelength,
-            value
-        }),
+        (
+            (text(), text(), option(text())),
+            (
+                option(prop::sample::select(WavelengthUnit::ALL.to_vec())),
+                option(prop_oneof![Just(ValueUnit::Fraction), Just(ValueUnit::Percent)]),
+                number()
+            )
+        )
+            .prop_map(|((file, wavelength, value), (wavelength_unit, unit, scale))| {
+                Spectrum::Table { file, wavelength, value, wavelength_unit, unit, scale }
+            }),
+        Just(Spectrum::AstmG173),
         text().prop_map(Spectrum::Named),
         ((number(), number(), number(), number()), (number(), number(), number(), number()))
             .prop_map(
@@ -202,18 +213,22 @@ fn scatter() -> BoxedStrategy<Instances> {
         .boxed()
 }
 
+fn species_meshes() -> BoxedStrategy<SpeciesMeshes> {
+    let pairs = prop::collection::vec((text(), text()), 0..5);
+    let by_species = pairs.prop_map(|pairs| SpeciesMeshes::BySpecies(pairs.into_iter().collect()));
+    prop_oneof![text().prop_map(SpeciesMeshes::One), by_species].boxed()
+}
+
 fn instances() -> BoxedStrategy<Instances> {
     let place = (number(), number(), number());
     prop_oneof![
-        (text(), text(), option(list(text())), any::<bool>(), option(text())).prop_map(
-            |(file, of, columns, on_terrain, name)| Instances::Table {
-                file,
-                of,
-                columns,
-                on_terrain,
-                name
-            }
-        ),
+        (
+            (text(), species_meshes(), option(list(text())), any::<bool>(), option(text())),
+            option(prop_oneof![Just(TableCoordinates::Map), Just(TableCoordinates::Local)])
+        )
+            .prop_map(|((file, of, columns, on_terrain, name), coordinates)| {
+                Instances::Table { file, of, columns, on_terrain, coordinates, name }
+            }),
         (
             (text(), prop::collection::vec(place, 0..20), list(number()), list(number())),
             (any::<bool>(), option(text()))
@@ -520,10 +535,10 @@ fn scene() -> BoxedStrategy<Scene> {
             max_order,
         });
     let sweep = prop_oneof![
-        map(list(number())).prop_map(Sweep::Grid),
-        map(list(number())).prop_map(Sweep::Zip),
+        map(list(param())).prop_map(Sweep::Grid),
+        map(list(param())).prop_map(Sweep::Zip),
     ];
-    let names = (any::<u32>(), text(), map(number()), map(map(number())), option(sweep));
+    let names = (any::<u32>(), text(), map(param()), map(map(param())), option(sweep));
     let surfaces = (list(band), map(spectrum()), map(material()), map(mesh()));
     (
         names,

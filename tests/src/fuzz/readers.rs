@@ -3,8 +3,8 @@ use std::path::Path;
 
 use glam::DVec2;
 use sunfleck::assets::{
-    AssetError, Import, Loaded, Raster, read_discs, read_geojson, read_gltf, read_instances,
-    read_obj, read_polygons, read_raster, read_spectrum,
+    AssetError, Import, Loaded, Raster, SpectrumColumns, SpectrumTable, StemTable, read_discs,
+    read_geojson, read_gltf, read_instances, read_obj, read_polygons, read_raster, read_spectrum,
 };
 use sunfleck::components::Mesh;
 use sunfleck::document::{self, Axis, Options, Origin, Reading};
@@ -233,7 +233,7 @@ fn areas(read: Result<Vec<sunfleck::geometry::Polygon>, AssetError>) -> Said {
 
 fn instances(path: &Path) -> Said {
     match read_instances(path, None) {
-        Ok(rows) => {
+        Ok(StemTable { rows, .. }) => {
             for row in &rows {
                 assert!(row.position.is_finite() && row.yaw.is_finite(), "{row:?}");
                 assert!(row.scale_horizontal > 0.0 && row.scale_vertical > 0.0, "{row:?}");
@@ -245,9 +245,10 @@ fn instances(path: &Path) -> Said {
 }
 
 fn spectrum(path: &Path) -> Said {
-    match read_spectrum(path, "wavelength_nm", None) {
-        Ok(points) => {
-            assert!(points.is_sorted_by(|a, b| a.0 < b.0), "wavelengths rise");
+    let columns = SpectrumColumns { wavelength: "wavelength_nm", value: None, unit: None };
+    match read_spectrum(path, &columns) {
+        Ok(SpectrumTable { points, .. }) => {
+            assert!(points.is_sorted_by(|a, b| a.wavelength < b.wavelength), "wavelengths rise");
             (format!("{} points", points.len()), vec![bits(points.len())])
         }
         Err(error) => said(&error),

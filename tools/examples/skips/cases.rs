@@ -168,7 +168,7 @@ impl Stand<'_> {
     }},
     terrain: {terrain},
     instances: [{instances}],
-    sun: (zenith_deg: 35.0, azimuth_deg: 120.0),
+    sun: (zenith_deg: 35.0, azimuth_deg: 120.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     {keys}
     sensors: {{ {sensors} }},

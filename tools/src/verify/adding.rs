@@ -69,7 +69,7 @@ fn scene(sheets: &str) -> anyhow::Result<sunfleck::products::Report> {
         meshes: {{ "lower": {}, "upper": {} }},
         terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
         instances: [{}],
-        sun: (zenith_deg: 35.0, azimuth_deg: 10.0),
+        sun: (zenith_deg: 35.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
         boundary: Periodic,
         sensors: {{
             "photons": Photons(per_m2: 30000.0, measure: [Albedo, Fapar(layer_m: 2.0)]),

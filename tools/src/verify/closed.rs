@@ -19,7 +19,7 @@ fn plane() -> anyhow::Result<Vec<Finding>> {
         r#"{RED_AND_NIR}
         materials: {{ "soil": Lambertian(reflectance: Bands([{rho:?}, 0.7])) }},
         terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
-        sun: (zenith_deg: 40.0, azimuth_deg: 200.0),
+        sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)),
         sensors: {{
             "back": Directions(system: Backward, views: List([(70.0, 30.0)]), until: Samples(2048)),
             "forth": Directions(views: List([(70.0, 30.0)]), until: Samples(2048), system: Forward),
@@ -70,7 +70,7 @@ fn slope() -> anyhow::Result<Vec<Finding>> {
     };
     // Of the sun's own irradiance of 1 across the beam.
     let share = theta.cos() * cos + theta.sin() * sin * turned.cos();
-    let sun = radiance("sun: (zenith_deg: 40.0, azimuth_deg: 70.0),")?;
+    let sun = radiance("sun: (zenith_deg: 40.0, azimuth_deg: 70.0, irradiance: Constant(1.0)),")?;
     let sky = radiance("sky: Isotropic(irradiance: Constant(1.0)),")?;
     let of_sky = rho * 0.5 * (1.0 + cos) / PI;
     Ok(vec![
@@ -98,7 +98,7 @@ fn shadow() -> anyhow::Result<Vec<Finding>> {
         ) }},
         terrain: Plane(size_m: (2.0, 2.0), material: "soil"),
         instances: [List(of: "plate", at_m: [(0.2, 0.7, {height:?})])],
-        sun: (zenith_deg: {zenith:?}, azimuth_deg: 90.0),
+        sun: (zenith_deg: {zenith:?}, azimuth_deg: 90.0, irradiance: Constant(1.0)),
         boundary: Periodic,
         sensors: {{
             "nadir": Directions(

@@ -18,7 +18,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
         let keys = forest(
             (0.0, 0.0),
             &format!(
-                r#"sun: (zenith_deg: {ZENITH_DEG:?}, azimuth_deg: 10.0), sky: Fraction([0.3, 0.1]),
+                r#"sun: (zenith_deg: {ZENITH_DEG:?}, azimuth_deg: 10.0, irradiance: Constant(1.0)), sky: Fraction([0.3, 0.1]),
             transport: (roulette: (after_order: 1, kill: 0.5)),
             sensors: {{ "photons": Photons(
                 per_m2: 4000.0, measure: [Albedo, Fapar(layer_m: 0.7), Absorbed(per: Instance)],

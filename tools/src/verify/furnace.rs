@@ -41,7 +41,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     // First of the terms of `ftran` is the total.
     let down = value(&report, "photons", "ftran", 0)?;
     findings.push(Finding::estimate("flux at the ground under the sky", 1.0, down, 0.01));
-    let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0),";
+    let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),";
     let report = scene(sun, r#""photons": Photons(per_m2: 16000.0, measure: [Albedo]),"#)?;
     for (band, name) in ["even leaves", "uneven leaves"].iter().enumerate() {
         let albedo = value(&report, "photons", "albedo", band)?;

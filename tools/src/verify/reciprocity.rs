@@ -13,7 +13,10 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     let mut findings = Vec::new();
     for [a, b] in PAIRS {
         let brf = |sun: (f64, f64), view: (f64, f64), sensor: &str| {
-            let light = format!("sun: (zenith_deg: {:?}, azimuth_deg: {:?}),", sun.0, sun.1);
+            let light = format!(
+                "sun: (zenith_deg: {:?}, azimuth_deg: {:?}, irradiance: Constant(1.0)),",
+                sun.0, sun.1
+            );
             let view = format!("[({:?}, {:?})]", view.0, view.1);
             let sensor = sensor.replace("VIEW", &view);
             measure(&forest((0.0, 0.0), &format!("{light} sensors: {{ \"one\": {sensor} }},")))

@@ -7,7 +7,7 @@ use super::measured::{bits, differing, forest, measure};
 pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     let keys = forest(
         (0.0, 0.0),
-        r#"sun: (zenith_deg: 50.0, azimuth_deg: 10.0), sky: Fraction([0.3, 0.1]),
+        r#"sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)), sky: Fraction([0.3, 0.1]),
         sensors: {
             "image": Orthographic(size_px: (40, 33), cover: WholeScene, samples_per_px: 17),
             "fisheye": Fisheye(

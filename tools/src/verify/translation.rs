@@ -12,7 +12,7 @@ const FAR: f64 = 1e6;
 /// *Expected*: the anchor changes no bit; 1000 km from the origin coordinates are rounded to 10⁻¹⁰ m, so
 /// paths are the same but for a few, and so are the results within a tenth of their errors.
 pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
-    let sensors = r#"sun: (zenith_deg: 50.0, azimuth_deg: 10.0), sky: Fraction([0.3, 0.1]),
+    let sensors = r#"sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)), sky: Fraction([0.3, 0.1]),
         sensors: {
             "image": Orthographic(size_px: (24, 20), cover: WholeScene, zenith_deg: 20.0, samples_per_px: 32),
             "views": Directions(system: Backward, views: List([(0.0, 0.0), (40.0, 110.0)]), until: Samples(16384)),

@@ -90,7 +90,7 @@ fn layer(seed: u32) -> anyhow::Result<Vec<f64>> {
         ) }},
         terrain: Plane(size_m: ({SIDE:?}, {SIDE:?}), material: "soil"),
         instances: [List(of: "layer", at_m: [({middle:?}, {middle:?}, 0.0)])],
-        sun: (zenith_deg: 20.0),
+        sun: (zenith_deg: 20.0, irradiance: Constant(1.0)),
         boundary: Periodic,
         transport: (seed: {seed}),
         sensors: {{

@@ -6,7 +6,9 @@ use proptest::prelude::*;
 
 use super::glb::{glb, square_bytes, square_json};
 use super::*;
-use crate::assets::{read_discs, read_gltf, read_instances, read_obj, read_spectrum};
+use crate::assets::{
+    SpectrumColumns, read_discs, read_gltf, read_instances, read_obj, read_spectrum,
+};
 
 /// Characters that mean something to one of the readers.
 const TELLING: &[u8] = b"0123456789-+.eE/ ,;\n\\{}[]\"naif";
@@ -30,12 +32,15 @@ fn instances(path: &Path) -> bool {
     let lawful = |row: &crate::assets::Row| {
         row.position.is_finite() && row.scale_horizontal > 0.0 && row.scale_vertical > 0.0
     };
-    read_instances(path, None).inspect(|rows| assert!(rows.iter().all(lawful))).is_ok()
+    read_instances(path, None).inspect(|table| assert!(table.rows.iter().all(lawful))).is_ok()
 }
 
 fn spectrum(path: &Path) -> bool {
-    read_spectrum(path, "wavelength_nm", None)
-        .inspect(|points| assert!(points.is_sorted_by(|a, b| a.0 < b.0)))
+    let columns = SpectrumColumns { wavelength: "wavelength_nm", value: None, unit: None };
+    read_spectrum(path, &columns)
+        .inspect(|table| {
+            assert!(table.points.is_sorted_by(|a, b| a.wavelength < b.wavelength));
+        })
         .is_ok()
 }
 

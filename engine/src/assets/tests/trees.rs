@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::assets::{read_gltf, read_instances, read_obj, read_spectrum};
+use crate::assets::{SpectrumColumns, read_gltf, read_instances, read_obj, read_spectrum};
 
 fn data(place: &str) -> Option<PathBuf> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data")).join(place);
@@ -53,8 +53,9 @@ fn every_tree_of_the_collection_loads_at_a_plausible_size() {
 #[test]
 fn the_standard_solar_spectrum_is_read_as_it_is_published() {
     let Some(path) = data("solar/ASTMG173.csv") else { return };
-    let points = read_spectrum(&path, "wavelength", Some("direct")).unwrap();
-    assert_eq!(points[0], (280.0, 2.5361e-26));
+    let columns = SpectrumColumns { wavelength: "wavelength", value: Some("direct"), unit: None };
+    let points = read_spectrum(&path, &columns).unwrap().points;
+    assert_eq!((points[0].wavelength, points[0].value), (280.0, 2.5361e-26));
     assert_eq!(points.len(), 2002);
 }
 
@@ -67,7 +68,7 @@ fn the_stand_loads_whole() {
     assert_eq!(part_names(&loaded.value), ["leaf", "trunk"]);
     assert_eq!(loaded.value.triangles.len(), 50_024);
     let names = ["x_m", "y_m", "yaw_rad"].map(str::to_owned);
-    let rows = read_instances(&folder.join("instances.txt"), Some(&names)).unwrap();
+    let rows = read_instances(&folder.join("instances.txt"), Some(&names)).unwrap().rows;
     assert_eq!(rows.len(), 700);
     assert_eq!(rows[0].yaw, 0.081_970_516);
 }

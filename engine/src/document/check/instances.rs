@@ -2,7 +2,8 @@
 
 use super::super::diagnostic::{Diagnostic, suggestion};
 use super::super::scene::{
-    Area, Distribution, INSTANCE_COLUMNS, Instances, Map, Rule, Scene, Stems,
+    Area, Distribution, INSTANCE_COLUMNS, Instances, Map, Rule, Scene, SpeciesMeshes, Stems,
+    meant_column,
 };
 use super::{Report, count};
 
@@ -12,7 +13,7 @@ pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
         check_name(scene, index, instances.name(), &path, report);
         match instances {
             Instances::Table { of, columns, .. } => {
-                report.name(&format!("{path}.of"), "mesh", of, &scene.meshes, "meshes");
+                check_meshes(scene, of, &path, report);
                 if let Some(columns) = columns {
                     check_columns(&format!("{path}.columns"), columns, report);
                 }
@@ -292,12 +293,34 @@ fn check_count(path: &str, key: &str, values: usize, places: usize, report: &mut
     }
 }
 
+fn check_meshes(scene: &Scene, of: &SpeciesMeshes, path: &str, report: &mut Report<'_>) {
+    let path = format!("{path}.of");
+    match of {
+        SpeciesMeshes::One(mesh) => report.name(&path, "mesh", mesh, &scene.meshes, "meshes"),
+        SpeciesMeshes::BySpecies(meshes) if meshes.is_empty() => {
+            let help = "write, for example, `of: { \"birch\": \"birch.tree\" }`";
+            report.error(&path, "no species has a mesh", help);
+        }
+        SpeciesMeshes::BySpecies(meshes) => {
+            for (species, mesh) in meshes {
+                let path = format!("{path}.{species}");
+                report.name(&path, "mesh", mesh, &scene.meshes, "meshes");
+            }
+        }
+    }
+}
+
 fn check_columns(path: &str, columns: &[String], report: &mut Report<'_>) {
     for (index, column) in columns.iter().enumerate() {
         let at = format!("{path}[{index}]");
         if !INSTANCE_COLUMNS.contains(&column.as_str()) {
-            let help = suggestion(column, &INSTANCE_COLUMNS, "columns may be");
-            report.error(&at, format!("no column `{column}`"), help);
+            // Other columns are let be, unless one that means something is meant.
+            let is_free = |name: &&'static str| !columns.iter().any(|column| column == name);
+            let free: Vec<_> = INSTANCE_COLUMNS.into_iter().filter(is_free).collect();
+            if meant_column(column, &free).is_some() {
+                let help = suggestion(column, &INSTANCE_COLUMNS, "columns may be");
+                report.error(&at, format!("no column `{column}`"), help);
+            }
         } else if columns[..index].contains(column) {
             report.error(&at, format!("a second column `{column}`"), "name each column once");
         }

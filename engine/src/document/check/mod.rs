@@ -138,6 +138,22 @@ impl Report<'_> {
         }
     }
 
+    /// Warns of a content of leaves that none has; 0 is always lawful.
+    fn warn_implausible(
+        &mut self,
+        path: &str,
+        key: &str,
+        value: f64,
+        low: f64,
+        high: f64,
+        help: &str,
+    ) {
+        if value > high || (value > 0.0 && value < low) {
+            let message = format!("`{key}` is {value}; real leaves have {low} to {high}");
+            self.push(Diagnostic::warning(format!("{path}.{key}"), message).help(help));
+        }
+    }
+
     /// Angle from the vertical, below the horizon's 90°.
     fn zenith(&mut self, path: &str, degrees: f64) {
         if !(0.0..=LOWEST_DEG).contains(&degrees) {

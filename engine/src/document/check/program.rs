@@ -1,7 +1,7 @@
 //! Parameters, variants and sweeps.
 
 use super::super::diagnostic::{Diagnostic, suggestion};
-use super::super::scene::{Scene, Sweep};
+use super::super::scene::{Param, Scene, Sweep};
 use super::{Report, count};
 
 /// A sweep may have so many points.
@@ -20,22 +20,42 @@ pub(super) fn check_params(scene: &Scene, report: &mut Report<'_>) {
             let help = "start with a letter, go on with letters, digits and `_`";
             report.error(&path, format!("`{name}` cannot be a parameter's name"), help);
         }
-        report.finite(&path, &[*value]);
+        report.finite(&path, value.number().as_slice());
     }
     for (variant, changes) in &scene.variants {
         let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
         for (name, value) in changes {
             let path = format!("variants.{variant}.{name}");
-            report.finite(&path, &[*value]);
+            report.finite(&path, value.number().as_slice());
+            check_kind(&path, value, scene.params.get(name), report);
             if !scene.params.contains_key(name) && report.is_readable("params") {
                 let help = if known.is_empty() {
-                    format!("add it: `params: {{ \"{name}\": {value:?} }}`")
+                    format!("add it: `params: {{ \"{name}\": {} }}`", shown(value))
                 } else {
                     suggestion(name, &known, "a variant may change")
                 };
                 report.error(&path, format!("no parameter `{name}` to change"), help);
             }
         }
+    }
+}
+
+/// A parameter is a number or a text, whatever its value.
+fn check_kind(path: &str, value: &Param, own: Option<&Param>, report: &mut Report<'_>) {
+    let Some(own) = own else { return };
+    // What could not be read counts as a number that is not finite.
+    if value.number().is_some() != own.number().is_some() && own.is_lawful() {
+        let kind = if own.number().is_some() { "a number" } else { "a text" };
+        let message = format!("expected {kind}, as in `params`, found {}", shown(value));
+        report.error(path, message, "a parameter is one of both at all of its values");
+    }
+}
+
+/// A value as it is written in a scene.
+fn shown(value: &Param) -> String {
+    match value {
+        Param::Number(number) => format!("{number:?}"),
+        Param::Text(text) => format!("{text:?}"),
     }
 }
 
@@ -49,14 +69,18 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
     let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
     for (name, values) in axes {
         let path = format!("sweep.{name}");
-        report.finite(&path, values);
+        for (index, value) in values.iter().enumerate() {
+            let at = format!("{path}[{index}]");
+            report.finite(&at, value.number().as_slice());
+            check_kind(&at, value, scene.params.get(name), report);
+        }
         if values.is_empty() {
             report.error(&path, "no values", "write at least one");
         }
         if !scene.params.contains_key(name) && report.is_readable("params") {
             let help = if known.is_empty() {
-                let first = values.first().copied().unwrap_or(1.0);
-                format!("add it: `params: {{ \"{name}\": {first:?} }}`")
+                let first = values.first().map_or_else(|| "1.0".to_owned(), shown);
+                format!("add it: `params: {{ \"{name}\": {first} }}`")
             } else {
                 suggestion(name, &known, "a sweep may vary")
             };

@@ -100,7 +100,14 @@ pub(super) fn check_spectrum(
                 value(report, &format!("{path}[{index}][1]"), *one);
             }
         }
-        Spectrum::Table { .. } => {}
+        Spectrum::Table { scale, .. } => report.above_zero(&format!("{path}.scale"), *scale),
+        Spectrum::AstmG173 => {
+            if quantity == Quantity::Fraction {
+                let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
+                let help = "write `Constant(..)`, `Bands(..)`, `Points(..)`, `Table(..)` or `Prospect(..)`";
+                report.error(path, message, help);
+            }
+        }
         Spectrum::Named(name) => {
             report.name(path, "spectrum", name, &scene.spectra, "spectra");
             let is_leaf = matches!(resolve(name, scene), Some(Spectrum::Prospect { .. }));
@@ -188,6 +195,23 @@ fn check_prospect(path: &str, spectrum: &Spectrum, report: &mut Report<'_>) {
     ];
     for (key, content) in contents {
         report.at_least(&format!("{path}.{key}"), *content, 0.0);
+    }
+    if *n >= 1.0 {
+        let help = "it is the number of layers of a leaf, without a unit";
+        report.warn_implausible(path, "n", *n, 1.0, 4.0, help);
+    }
+    let plausible = [
+        (contents[0], 1.0, 150.0, "it is in µg cm⁻²: mg m⁻² divided by 10"),
+        (contents[1], 0.0, 50.0, "it is in µg cm⁻²: mg m⁻² divided by 10"),
+        (contents[2], 0.0, 60.0, "it is in µg cm⁻²: mg m⁻² divided by 10"),
+        (contents[3], 0.0, 10.0, "it has an arbitrary unit, and is mostly below 1"),
+        (contents[4], 0.0, 0.1, "it is in cm, which is g cm⁻²: g m⁻² divided by 10000"),
+        (contents[5], 0.0, 0.05, "it is in g cm⁻²: g m⁻² divided by 10000"),
+        (contents[6], 0.0, 0.01, "it is in g cm⁻²: g m⁻² divided by 10000"),
+        (contents[7], 0.0, 0.05, "it is in g cm⁻²: g m⁻² divided by 10000"),
+    ];
+    for ((key, content), low, high, unit) in plausible {
+        report.warn_implausible(path, key, *content, low, high, unit);
     }
     if *dry_matter_g_cm2 > 0.0 && (*protein_g_cm2 > 0.0 || *carbon_g_cm2 > 0.0) {
         let message = "dry matter would count twice: proteins and other carbon are parts of it";

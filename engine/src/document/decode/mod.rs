@@ -10,6 +10,7 @@ pub(super) use keys::{Fields, Variant, example_of_keys};
 
 use super::describe::Book;
 use super::diagnostic::{Diagnostic, Place};
+use super::scene::Param;
 use super::source::Source;
 use super::syntax::{Node, Span, Step, Value, path_of};
 
@@ -49,7 +50,7 @@ pub(super) struct Reader<'a> {
     diagnostics: Vec<Diagnostic>,
     dropped: usize,
     /// What formulas came to, by their first byte; none where that was nothing.
-    computed: HashMap<u32, Option<f64>>,
+    computed: HashMap<u32, Option<Param>>,
     /// Paths without a value, beside those of `diagnostics`.
     broken: Vec<String>,
     /// How the value of the key at this depth is written.
@@ -143,17 +144,22 @@ impl<'a> Reader<'a> {
         self.source.namespace(node.span)
     }
 
+    /// What the names and the paths of a node's file start with.
+    pub(super) fn file_of(&self, node: &Node) -> (&'a str, &'a str) {
+        (self.source.namespace(node.span), self.source.folder(node.span))
+    }
+
     pub(super) fn place_of(&self, span: Span) -> Place {
         self.source.place_of(span)
     }
 
     /// What a formula came to; none where it was wrong, which has been reported.
-    pub(super) fn set_computed(&mut self, formula: &Node, value: Option<f64>) {
+    pub(super) fn set_computed(&mut self, formula: &Node, value: Option<Param>) {
         self.computed.insert(formula.span.start, value);
     }
 
-    fn computed(&self, formula: &Node) -> Option<f64> {
-        self.computed.get(&formula.span.start).copied().flatten()
+    pub(super) fn computed(&self, formula: &Node) -> Option<&Param> {
+        self.computed.get(&formula.span.start)?.as_ref()
     }
 
     /// Reads a value that is written, for example, like this.
@@ -170,12 +176,13 @@ impl<'a> Reader<'a> {
 
     /// A value of the wrong kind.
     pub(super) fn mismatch<T: Decode>(&mut self, node: &Node) -> T {
-        let computed = self.computed.get(&node.span.start).copied();
-        let reported = matches!(node.value, Value::BadNumber(_)) || computed == Some(None);
+        let computed = self.computed.get(&node.span.start);
+        let reported = matches!(node.value, Value::BadNumber(_)) || computed == Some(&None);
         if !reported {
-            let found = match computed.flatten() {
-                Some(value) => format!("a formula that gives {value:?}"),
-                None => node.describe(),
+            let found = match computed {
+                Some(Some(Param::Number(value))) => format!("a formula that gives {value:?}"),
+                Some(Some(Param::Text(text))) => format!("a parameter that is the text {text:?}"),
+                _ => node.describe(),
             };
             let message = format!("expected {}, found {found}", T::expected());
             let example = match self.example {

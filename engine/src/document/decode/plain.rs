@@ -6,6 +6,7 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use super::super::describe::Book;
+use super::super::scene::Param;
 use super::super::syntax::{Node, Step, Value};
 use super::{Decode, Reader};
 
@@ -25,7 +26,7 @@ impl Decode for f64 {
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
         match node.value {
             Value::Float(value) => value,
-            Value::Formula(_) => match reader.computed(node) {
+            Value::Formula(_) => match reader.computed(node).and_then(Param::number) {
                 Some(value) => value,
                 None => reader.mismatch(node),
             },
@@ -84,7 +85,7 @@ macro_rules! decode_integer {
                         let help = is_whole(value).then(|| format!("write `{value:.0}`"));
                         reader.number_error(node, message, help)
                     }
-                    _ => match reader.computed(node) {
+                    _ => match reader.computed(node).and_then(Param::number) {
                         Some(value) if is_whole(value) && value < 2_f64.powi(Self::BITS as i32) => {
                             value as Self
                         }
@@ -148,6 +149,10 @@ impl Decode for String {
             Value::Formula(text) if !reader.computed.contains_key(&node.span.start) => {
                 format!("={text}")
             }
+            Value::Formula(_) => match reader.computed(node) {
+                Some(Param::Text(text)) => text.clone(),
+                _ => reader.mismatch(node),
+            },
             Value::Named(named) if named.body.is_none() => {
                 let message = format!("expected a string, found the word `{}`", named.name);
                 reader.error(node.span, message, Some(format!("write `\"{}\"`", named.name)));

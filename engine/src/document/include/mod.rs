@@ -6,6 +6,7 @@
 
 mod names;
 
+pub(super) use names::Role;
 #[cfg(test)]
 pub(super) use names::is_reference;
 
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use super::decode::{Decode as _, Reader};
 use super::diagnostic::{Diagnostic, unknown_name};
-use super::params::{entries, key, plain_number};
+use super::params::{entries, key, plain, plain_number};
 use super::read::{FILE_SIZE, ReadError, text_of_file};
 use super::scene::{Include, Map, Scene};
 use super::source::Source;
@@ -174,7 +175,8 @@ impl Including<'_> {
                 return None;
             }
         };
-        let start = self.source.add(&link.shown, &text, namespace);
+        let folder = relative_folder(&self.chain[0].shown, &path);
+        let start = self.source.add(&link.shown, &text, (namespace, &folder));
         let mut tree = match parse(&text) {
             Ok(tree) => tree,
             Err(error) => {
@@ -196,7 +198,6 @@ impl Including<'_> {
             self.refuse_repeated(&repeated);
             inner
         });
-        let folder = relative_folder(&self.chain[0].shown, &path);
         names::qualify(&mut tree, namespace, &folder);
         self.pass(&mut tree, include, passed, entry, namespace)?;
         let fields = fields(&mut tree).map(std::mem::take)?;
@@ -236,7 +237,7 @@ impl Including<'_> {
                 return None;
             };
             if let Value::Map(changes) = &variant.inner().value {
-                let changes = changes.iter().filter(|(_, value)| plain_number(value).is_some());
+                let changes = changes.iter().filter(|(_, value)| plain(value).is_some());
                 passed.extend(changes.cloned().map(|(mut key, value)| {
                     if let Value::Text(name) = &mut key.value {
                         *name = bare(name, namespace).to_owned();

@@ -2,8 +2,8 @@
 
 use super::super::syntax::{Node, Value};
 
-/// Keys whose strings are names of the scene's own definitions: alone, in a list, as the values of
-/// a map, or, where those are no strings, as its keys.
+/// Keys whose strings are names of the scene's own definitions: alone, in a list or as the values of
+/// a map.
 const NAMES: [&str; 7] =
     ["classes", "leaf_material", "material", "mesh", "of", "parts", "wood_material"];
 
@@ -16,19 +16,67 @@ const FILES: [&str; 1] = ["file"];
 /// Variants whose string is a name of the scene's own definitions.
 const NAMING_VARIANTS: [&str; 1] = ["Named"];
 
+/// Keys whose map has such names as its keys, by the variant that they stand in.
+const NAMES_AS_KEYS: [(&str, &str); 1] = [("Scatter", "of")];
+
 /// Whether the strings of a key are names or paths.
 #[cfg(test)]
 pub(in super::super) fn is_reference(key: &str) -> bool {
-    role(key) != Role::Plain || NAMING_VARIANTS.contains(&key)
+    Role::of_key(key) != Role::Plain || NAMING_VARIANTS.contains(&key)
 }
 
 /// What a string stands for.
 #[derive(Clone, Copy, PartialEq)]
-enum Role {
+pub(in super::super) enum Role {
     Plain,
     Name,
+    /// The keys of a map are names.
+    Keys,
     Pattern,
     File,
+}
+
+impl Role {
+    /// What the strings of a key stand for.
+    pub(in super::super) fn of_key(key: &str) -> Self {
+        if NAMES.contains(&key) {
+            Self::Name
+        } else if PATTERNS.contains(&key) {
+            Self::Pattern
+        } else if FILES.contains(&key) {
+            Self::File
+        } else {
+            Self::Plain
+        }
+    }
+
+    /// What the strings of a node stand for that has this role by its key.
+    pub(in super::super) fn within(self, mut node: &Node) -> Self {
+        while let Value::Named(named) = &node.value {
+            if NAMING_VARIANTS.contains(&named.name.as_str()) {
+                return Self::Name;
+            }
+            match named.body.as_ref().map(|body| (body, &body.value)) {
+                Some((_, Value::Tuple(items))) if items.len() == 1 => node = &items[0],
+                _ => break,
+            }
+        }
+        self
+    }
+
+    /// Puts the namespace of a file before a name, and its folder before a path.
+    pub(in super::super) fn qualify(self, text: &mut String, namespace: &str, folder: &str) {
+        match self {
+            Self::Plain | Self::Keys => {}
+            Self::Name => text.insert_str(0, namespace),
+            Self::Pattern => {
+                let names = text.split('/').map(|name| format!("{namespace}{name}"));
+                *text = names.collect::<Vec<_>>().join("/");
+            }
+            Self::File if std::path::Path::new(text.as_str()).is_absolute() => {}
+            Self::File => text.insert_str(0, folder),
+        }
+    }
 }
 
 /// Puts the namespace before every name that a file defines or uses, and the folder before every
@@ -67,21 +115,9 @@ pub(super) fn qualify(file: &mut Node, namespace: &str, folder: &str) {
                         with.own_name(instances);
                     }
                 }
-                with.walk(&mut field.value, role(key));
+                with.walk(&mut field.value, Role::of_key(key));
             }
         }
-    }
-}
-
-fn role(key: &str) -> Role {
-    if NAMES.contains(&key) {
-        Role::Name
-    } else if PATTERNS.contains(&key) {
-        Role::Pattern
-    } else if FILES.contains(&key) {
-        Role::File
-    } else {
-        Role::Plain
     }
 }
 
@@ -92,16 +128,8 @@ struct Qualify<'a> {
 
 impl Qualify<'_> {
     fn text(&self, node: &mut Node, role: Role) {
-        let Value::Text(text) = &mut node.value else { return };
-        match role {
-            Role::Plain => {}
-            Role::Name => text.insert_str(0, self.namespace),
-            Role::Pattern => {
-                let names = text.split('/').map(|name| format!("{}{name}", self.namespace));
-                *text = names.collect::<Vec<_>>().join("/");
-            }
-            Role::File if std::path::Path::new(text.as_str()).is_absolute() => {}
-            Role::File => text.insert_str(0, self.folder),
+        if let Value::Text(text) = &mut node.value {
+            role.qualify(text, self.namespace, self.folder);
         }
     }
 
@@ -134,23 +162,35 @@ impl Qualify<'_> {
             }
             Value::Record(fields) => {
                 for field in fields {
-                    self.walk(&mut field.value, role(&field.name));
+                    self.walk(&mut field.value, Role::of_key(&field.name));
                 }
             }
             Value::Map(map) => {
-                let texts = map.iter().all(|(_, value)| matches!(value.value, Value::Text(_)));
                 for (key, value) in map.iter_mut() {
-                    if !texts {
-                        self.text(key, own);
+                    if own == Role::Keys {
+                        self.text(key, Role::Name);
                     }
                     self.walk(value, own);
                 }
             }
             Value::Named(named) => {
-                let role =
-                    if NAMING_VARIANTS.contains(&named.name.as_str()) { Role::Name } else { own };
-                if let Some(body) = &mut named.body {
-                    self.walk(body, role);
+                let name = named.name.as_str();
+                let role = if NAMING_VARIANTS.contains(&name) { Role::Name } else { own };
+                match named.body.as_mut().map(|body| &mut body.value) {
+                    Some(Value::Record(fields)) => {
+                        for field in fields {
+                            let has_keys = NAMES_AS_KEYS.contains(&(name, field.name.as_str()));
+                            let role =
+                                if has_keys { Role::Keys } else { Role::of_key(&field.name) };
+                            self.walk(&mut field.value, role);
+                        }
+                    }
+                    Some(_) => {
+                        if let Some(body) = &mut named.body {
+                            self.walk(body, role);
+                        }
+                    }
+                    None => {}
                 }
             }
             _ => {}

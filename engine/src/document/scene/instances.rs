@@ -3,8 +3,10 @@
 use std::borrow::Cow;
 
 use super::super::decode::{Decode, Reader, Variant, example_of_keys};
+use super::super::describe::Book;
+use super::super::diagnostic::nearest;
 use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
+use super::super::syntax::{Node, Value};
 use super::Map;
 
 choice! {
@@ -15,13 +17,20 @@ choice! {
         Table {
             /// Path, relative to the scene file.
             file: String => r#""stand.csv""#,
-            /// Mesh that stands there.
-            of: String => r#""tree""#,
-            /// Names of the columns where the file has no header: `x_m`, `y_m`, `z_m`, `yaw_deg`
-            /// or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`, `scale`, `scale_vertical`.
+            /// Mesh that stands there, or the mesh of each species: `{ "birch": "birch.tree" }`.
+            of: SpeciesMeshes => r#""tree""#,
+            /// Names of the columns where the file has no header, or in place of those in its header:
+            /// `x_m`, `y_m`, `z_m`, `yaw_deg` or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`, `species`
+            /// (a key of `of`), and for the size `scale` and `scale_vertical`, or `height_m` and
+            /// `crown_diameter_m`. With `height_m` the top of the mesh is so high above its origin,
+            /// with `crown_diameter_m` (or `diameter_m`) the mean of its extents to the east and to the
+            /// north is so wide; where one of the two is missing, the mesh keeps its proportions.
+            /// Columns of other names are let be.
             columns: Option<Vec<String>> = None,
             /// Whether heights count from the terrain below each place.
             on_terrain: bool = false,
+            /// What the coordinates are; if absent, whichever of the two lies on the terrain.
+            coordinates: Option<TableCoordinates> = None,
             /// Name for `hide` and `select`.
             name: Option<String> = None,
         },
@@ -197,8 +206,89 @@ choice! {
     }
 }
 
+choice! {
+    /// What the coordinates of a table are.
+    #[derive(Copy, Eq)]
+    pub enum TableCoordinates ("coordinates of a table") {
+        /// Those of the map, as of rasters: `frame.origin_m` is subtracted, also from `z_m`, unless that
+        /// counts from the terrain.
+        Map,
+        /// Those of the scene.
+        Local,
+    }
+}
+
+/// Meshes of the instances in a table: one, or one for each species.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpeciesMeshes {
+    /// The same for all.
+    One(String),
+    /// By the column `species`.
+    BySpecies(Map<String>),
+}
+
+impl SpeciesMeshes {
+    /// The meshes, in document order.
+    #[must_use]
+    pub fn meshes(&self) -> Vec<&str> {
+        match self {
+            Self::One(mesh) => vec![mesh],
+            Self::BySpecies(meshes) => meshes.values().map(String::as_str).collect(),
+        }
+    }
+}
+
+impl Decode for SpeciesMeshes {
+    fn expected() -> Cow<'static, str> {
+        "a mesh, or a map of species to meshes".into()
+    }
+
+    fn example() -> String {
+        "\"tree\"".to_owned()
+    }
+
+    fn schema(book: &mut Book) -> serde_json::Value {
+        serde_json::json!({ "anyOf": [String::schema(book), Map::<String>::schema(book)] })
+    }
+
+    fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
+        match &node.value {
+            Value::Map(_) => Self::BySpecies(Map::decode(node, reader)),
+            Value::Text(_) | Value::Formula(_) | Value::Named(_) => {
+                Self::One(String::decode(node, reader))
+            }
+            _ => reader.mismatch(node),
+        }
+    }
+
+    fn placeholder() -> Self {
+        Self::One(String::new())
+    }
+}
+
+impl Encode for SpeciesMeshes {
+    fn encode(&self) -> Text {
+        match self {
+            Self::One(mesh) => mesh.encode(),
+            Self::BySpecies(meshes) => meshes.encode(),
+        }
+    }
+}
+
+/// The column that a name without or with another unit stands for, or one that is spelled nearly so.
+#[must_use]
+pub fn meant_column(name: &str, columns: &[&'static str]) -> Option<&'static str> {
+    let stem = |name: &str| {
+        let lower = name.trim().to_lowercase();
+        let units = ["_m", "_cm", "_ft", "_deg", "_rad"];
+        units.iter().find_map(|unit| lower.strip_suffix(unit)).unwrap_or(&lower).to_owned()
+    };
+    let same = columns.iter().find(|column| stem(column) == stem(name));
+    same.copied().or_else(|| nearest(name, columns.iter().copied()))
+}
+
 /// Columns that a table of instances may have.
-pub const INSTANCE_COLUMNS: [&str; 9] = [
+pub const INSTANCE_COLUMNS: [&str; 13] = [
     "x_m",
     "y_m",
     "z_m",
@@ -208,6 +298,10 @@ pub const INSTANCE_COLUMNS: [&str; 9] = [
     "tilt_azimuth_deg",
     "scale",
     "scale_vertical",
+    "height_m",
+    "diameter_m",
+    "crown_diameter_m",
+    "species",
 ];
 
 impl Instances {
@@ -225,7 +319,8 @@ impl Instances {
     #[must_use]
     pub fn meshes(&self) -> Vec<&str> {
         match self {
-            Self::Table { of, .. } | Self::List { of, .. } => vec![of],
+            Self::Table { of, .. } => of.meshes(),
+            Self::List { of, .. } => vec![of],
             Self::Scatter { of, .. } => of.keys().map(String::as_str).collect(),
             Self::CanopyHeights { of, .. } => of.iter().map(String::as_str).collect(),
         }

@@ -21,7 +21,7 @@ record! {
         disc_deg: f64 = 0.0,
         /// Irradiance on a plane perpendicular to the beam, W m⁻² nm⁻¹; with `sky: Fraction(..)`
         /// that of sun and sky together.
-        irradiance: Spectrum = Spectrum::Constant(1.0),
+        irradiance: Spectrum = Spectrum::AstmG173,
     }
 }
 

@@ -6,6 +6,7 @@ mod ground;
 mod instances;
 mod light;
 mod mesh;
+mod param;
 mod program;
 mod sensor;
 mod spectrum;
@@ -24,12 +25,16 @@ use super::syntax::Node;
 pub use camera::{Cover, FisheyeProjection, Look, Picture};
 pub use crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
 pub use ground::{Boundary, Coordinates, LandCover, NoData, Terrain};
-pub use instances::{Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, Stems};
+pub use instances::{
+    Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, SpeciesMeshes, Stems, TableCoordinates,
+    meant_column,
+};
 pub use light::{Sky, Sun, SunPosition};
 pub use mesh::{Axis, Mesh, Origin};
+pub use param::Param;
 pub use program::{Include, Sweep};
 pub use sensor::{ImageMeasure, Layers, Per, PhotonMeasure, Sensor, System, Views, VirtualPlane};
-pub use spectrum::{Material, Spectrum};
+pub use spectrum::{Material, Spectrum, ValueUnit, WavelengthUnit};
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
 pub use until::{Ends, Until};
@@ -44,8 +49,9 @@ record! {
         format: u32 => "1",
         /// What a person calls the scene.
         title: String = String::new(),
-        /// Values that `"=expr"` strings may use.
-        params: Map<f64> = Map::new(),
+        /// Values that `"=expr"` strings may use. A text stands for a string: with `"leaf": "birch.csv"`,
+        /// `file: "=leaf"` is `file: "birch.csv"`.
+        params: Map<Param> = Map::new(),
         /// Other files, whose definitions have names that start with the include's: `birch.leaf`.
         /// Reading a scene takes them into it and leaves nothing here.
         include: Map<Include> = Map::new(),
@@ -81,7 +87,7 @@ record! {
         /// How light is traced.
         transport: Transport = Transport::default(),
         /// Named sets of changes to `params`.
-        variants: Map<Map<f64>> = Map::new(),
+        variants: Map<Map<Param>> = Map::new(),
         /// Points that `sunfleck sweep` runs the scene at.
         sweep: Option<Sweep> = None,
     }

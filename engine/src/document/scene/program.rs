@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
 use super::super::encode::{Encode, Text, differs};
 use super::super::syntax::Node;
-use super::{Band, Map, Scene, Terrain};
+use super::{Band, Map, Param, Scene, Terrain};
 
 record! {
     /// A file whose definitions are part of the scene, by names that start with the include's own:
@@ -14,7 +14,7 @@ record! {
         /// Path, relative to the file that includes it.
         file: String => r#""species/birch.ron""#,
         /// Values for its `params`; they go before the file's own and before its variant's.
-        params: Map<f64> = Map::new(),
+        params: Map<Param> = Map::new(),
         /// The variant of the file that is meant.
         variant: Option<String> = None,
     }
@@ -24,9 +24,9 @@ choice! {
     /// Points that `sunfleck sweep` runs a scene at.
     pub enum Sweep ("a sweep") {
         /// Every combination of the parameters' values; the last parameter varies fastest.
-        Grid(Map<Vec<f64>> => r#"{ "sza": [0.0, 30.0, 60.0] }"#),
+        Grid(Map<Vec<Param>> => r#"{ "sza": [0.0, 30.0, 60.0] }"#),
         /// The first values of all parameters, then the second ones, and so on.
-        Zip(Map<Vec<f64>> => r#"{ "sza": [30.0, 60.0], "vza": [0.0, 45.0] }"#),
+        Zip(Map<Vec<Param>> => r#"{ "sza": [30.0, 60.0], "vza": [0.0, 45.0] }"#),
     }
 }
 
@@ -75,11 +75,11 @@ impl Sweep {
     /// # Panics
     /// If there is no such point.
     #[must_use]
-    pub fn point(&self, index: usize) -> Vec<(String, f64)> {
+    pub fn point(&self, index: usize) -> Vec<(String, Param)> {
         assert!(index < self.len(), "the sweep has such a point");
         match self {
             Self::Zip(axes) => {
-                axes.iter().map(|(name, values)| (name.clone(), values[index])).collect()
+                axes.iter().map(|(name, values)| (name.clone(), values[index].clone())).collect()
             }
             Self::Grid(axes) => {
                 let mut rest = index;
@@ -87,7 +87,7 @@ impl Sweep {
                     .iter()
                     .rev()
                     .map(|(name, values)| {
-                        let value = values[rest % values.len()];
+                        let value = values[rest % values.len()].clone();
                         rest /= values.len();
                         (name.clone(), value)
                     })
@@ -100,7 +100,7 @@ impl Sweep {
 
     /// The same with each of these parameters at one value, where it varies them.
     #[must_use]
-    pub fn fixed(&self, set: &[(String, f64)]) -> Self {
+    pub fn fixed(&self, set: &[(String, Param)]) -> Self {
         let mut sweep = self.clone();
         let points = self.len();
         let (axes, copies) = match &mut sweep {
@@ -109,7 +109,8 @@ impl Sweep {
         };
         for (name, value) in set {
             if let Some(values) = axes.get_mut(name) {
-                *values = vec![*value; copies];
+                let value = values.first().and_then(|own| value.like(own)).unwrap_or(value.clone());
+                *values = vec![value; copies];
             }
         }
         sweep

@@ -24,7 +24,21 @@ choice! {
             wavelength: String = "wavelength_nm".to_owned(),
             /// Header of the column of values; if absent, the second column of the file.
             value: Option<String> = None,
+            /// Unit of the wavelengths; nanometres if absent. A file whose header or titles name another
+            /// one is refused without it.
+            wavelength_unit: Option<WavelengthUnit> = None,
+            /// Unit of reflectances and transmittances; fractions if absent. A file that shows percent is
+            /// refused without it.
+            unit: Option<ValueUnit> = None,
+            /// Factor on all values: 0.0001 for reflectances that are kept as 0 to 10000, 0.001 for an
+            /// irradiance in W m⁻² µm⁻¹.
+            scale: f64 = 1.0,
         },
+        /// Irradiance of the sun and of the 2.9° around it on a plane that faces it, under a clear sky at
+        /// air mass 1.5: 280 to 4000 nm.
+        ///
+        /// Source: ASTM G173-03, direct + circumsolar.
+        AstmG173,
         /// One of the scene's `spectra`.
         Named(String => r#""soil""#),
         /// Leaf reflectance or transmittance (whichever the key asks for) by PROSPECT-PRO.
@@ -48,6 +62,60 @@ choice! {
             /// Carbon-based constituents other than proteins, g cm⁻².
             carbon_g_cm2: f64 = 0.0,
         },
+    }
+}
+
+choice! {
+    /// Unit of the wavelengths in a table.
+    #[derive(Copy, Eq)]
+    pub enum WavelengthUnit ("a unit of wavelengths") {
+        /// nm.
+        Nanometres,
+        /// µm, 1000 nm.
+        Micrometres,
+        /// Å, 0.1 nm.
+        Angstroms,
+        /// Waves per cm: 10⁷ nm over their number is the wavelength.
+        Wavenumbers,
+    }
+}
+
+choice! {
+    /// Unit of the reflectances or transmittances in a table.
+    #[derive(Copy, Eq)]
+    pub enum ValueUnit ("a unit of values") {
+        /// From 0 to 1.
+        Fraction,
+        /// From 0 to 100.
+        Percent,
+    }
+}
+
+impl WavelengthUnit {
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::Nanometres, Self::Micrometres, Self::Angstroms, Self::Wavenumbers];
+
+    /// Its name in the language.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nanometres => "Nanometres",
+            Self::Micrometres => "Micrometres",
+            Self::Angstroms => "Angstroms",
+            Self::Wavenumbers => "Wavenumbers",
+        }
+    }
+
+    /// Wavelength in nm of a number in this unit.
+    #[must_use]
+    pub fn nanometres(self, value: f64) -> f64 {
+        match self {
+            Self::Nanometres => value,
+            Self::Micrometres => value * 1e3,
+            Self::Angstroms => value / 10.0,
+            Self::Wavenumbers => 1e7 / value,
+        }
     }
 }
 

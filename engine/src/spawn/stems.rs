@@ -1,0 +1,290 @@
+//! Instances from tables: where the map puts them, of which mesh, how large.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, Vec3Swizzles as _};
+
+use super::Spawner;
+use super::lay::Georeference;
+use super::meshes::Prototype;
+use crate::assets::{Row, StemTable, read_instances};
+use crate::components::{Placement, PrototypeId};
+use crate::document::{Diagnostic, Instances, SpeciesMeshes, TableCoordinates, suggestion};
+use crate::terrain::Ground;
+
+/// A plant's diameter below this part of its height is that of its stem, not of its crown.
+const STEM_TO_HEIGHT: f64 = 0.05;
+
+/// A plant that a diameter makes smaller than this part of its mesh was not meant.
+const SMALLEST: f64 = 0.1;
+
+/// Species that an error names.
+const MOST_NAMED: usize = 10;
+
+/// A mesh that rows may stand for, and its size, m.
+#[derive(Clone, Copy)]
+struct Kind {
+    prototype: PrototypeId,
+    /// Highest point above the origin.
+    top: f64,
+    /// Mean of the extents to the east and to the north.
+    width: f64,
+}
+
+impl Spawner<'_> {
+    /// Instances of a table.
+    pub(super) fn table(
+        &mut self,
+        instances: &Instances,
+        meshes: &BTreeMap<u32, Prototype>,
+        ground: Option<&Ground>,
+        path: &str,
+    ) -> Vec<Placement> {
+        let Instances::Table { file, of, columns, on_terrain, coordinates, .. } = instances else {
+            return Vec::new();
+        };
+        let at = format!("{path}.file");
+        let table = match read_instances(&self.file(file), columns.as_deref()) {
+            Ok(table) => table,
+            Err(error) => {
+                self.problems.push(Diagnostic::error(at, error.to_string()));
+                return Vec::new();
+            }
+        };
+        self.tell_left_out(&table, of, file, &at);
+        let Some(kinds) = self.kinds(&table, of, meshes, file, path) else { return Vec::new() };
+        let mut rows = table.rows;
+        let is_of_map = match coordinates {
+            Some(TableCoordinates::Map) => true,
+            Some(TableCoordinates::Local) => false,
+            None => match self.guess_coordinates(&rows, ground, file, &at) {
+                Some(is_of_map) => is_of_map,
+                None => return Vec::new(),
+            },
+        };
+        if is_of_map {
+            self.bring_from_map(&mut rows, *on_terrain);
+        }
+        let mut prototypes = Vec::with_capacity(rows.len());
+        for row in &mut rows {
+            let kind =
+                kinds[row.species.map_or(0, |species| species as usize).min(kinds.len() - 1)];
+            prototypes.push(kind.prototype);
+            if let Err(problem) = scale(row, &kind, table.diameter_is_of_crown, file) {
+                self.problems.push(problem.with_path(&at));
+                return Vec::new();
+            }
+        }
+        self.rows(&rows, &prototypes, ground.filter(|_| *on_terrain), path)
+    }
+
+    /// Notes the columns that mean nothing; warns of those that may have been meant.
+    fn tell_left_out(&mut self, table: &StemTable, of: &SpeciesMeshes, file: &str, path: &str) {
+        for (name, meant) in &table.misspelt {
+            let message = format!("{file}: the column `{name}` is let be");
+            let help = format!("if it is `{meant}`, call it so, in that unit");
+            self.problems.push(Diagnostic::warning(path, message).help(help));
+        }
+        let mut left_out = table.left_out.clone();
+        if !table.species.is_empty() && matches!(of, SpeciesMeshes::One(_)) {
+            left_out.push("species".to_owned());
+        }
+        if !left_out.is_empty() {
+            let names: Vec<String> = left_out.iter().map(|name| format!("`{name}`")).collect();
+            self.notes.push(format!("{file}: columns that are let be: {}", names.join(", ")));
+        }
+    }
+
+    /// The mesh of each species of a table, or the one of all.
+    fn kinds(
+        &mut self,
+        table: &StemTable,
+        of: &SpeciesMeshes,
+        meshes: &BTreeMap<u32, Prototype>,
+        file: &str,
+        path: &str,
+    ) -> Option<Vec<Kind>> {
+        let at = format!("{path}.of");
+        let named = match of {
+            SpeciesMeshes::One(mesh) => return Some(vec![self.kind(mesh, table, meshes, &at)?]),
+            SpeciesMeshes::BySpecies(named) => named,
+        };
+        if table.species.is_empty() {
+            let message = format!("{file} has no column `species`, which `of` needs");
+            let help = "name one mesh for all: `of: \"tree\"`, or the column in `columns`";
+            self.problems.push(Diagnostic::error(at, message).help(help));
+            return None;
+        }
+        let known: Vec<&str> = named.keys().map(String::as_str).collect();
+        let unknown: Vec<(u32, &String)> = (0..)
+            .zip(&table.species)
+            .filter(|(_, species)| !named.contains_key(species.as_str()))
+            .collect();
+        if let Some(&(first, name)) = unknown.first() {
+            let line = table.rows.iter().find(|row| row.species == Some(first));
+            let line = line.map_or(0, |row| row.line);
+            let names = unknown.iter().take(MOST_NAMED).map(|(_, name)| format!("`{name}`"));
+            let more = if unknown.len() > MOST_NAMED { ", .." } else { "" };
+            let message = format!(
+                "{file}:{line}: no mesh for the species {}{more}",
+                names.collect::<Vec<_>>().join(", ")
+            );
+            let help = suggestion(name, &known, "`of` has a mesh for");
+            self.problems.push(Diagnostic::error(at, message).help(help));
+            return None;
+        }
+        let kinds = table.species.iter().map(|species| {
+            let mesh = named.get(species.as_str())?;
+            self.kind(mesh, table, meshes, &format!("{at}.{species}"))
+        });
+        kinds.collect()
+    }
+
+    fn kind(
+        &mut self,
+        mesh: &str,
+        table: &StemTable,
+        meshes: &BTreeMap<u32, Prototype>,
+        path: &str,
+    ) -> Option<Kind> {
+        let prototype = self.prototype(mesh, path.to_owned())?;
+        let has = |size: fn(&Row) -> Option<f64>| table.rows.iter().any(|row| size(row).is_some());
+        // A hidden mesh is not loaded, and its size not needed.
+        let Some(loaded) = meshes.get(&prototype.0) else {
+            return Some(Kind { prototype, top: 1.0, width: 1.0 });
+        };
+        let (low, high) = loaded.mesh.bounds().unwrap_or_default();
+        let extent = (high - low).xy().as_dvec2();
+        let kind = Kind { prototype, top: high.z.into(), width: 0.5 * (extent.x + extent.y) };
+        let unscaled = [
+            (
+                has(|row| row.height) && kind.top <= 0.0,
+                "does not rise above its origin",
+                "`height_m`",
+            ),
+            (has(|row| row.diameter) && kind.width <= 0.0, "has no width", "the diameter"),
+        ];
+        for (_, what, column) in unscaled.into_iter().filter(|(is_so, ..)| *is_so) {
+            let message = format!("`{mesh}` {what}: {column} of the table cannot scale it");
+            let help = "add `origin: BaseCenter` to the mesh if it lies below its origin";
+            self.problems.push(Diagnostic::warning(path, message).help(help));
+        }
+        Some(kind)
+    }
+
+    /// Whether coordinates are those of the map rather than the scene's: whichever lies on the terrain.
+    fn guess_coordinates(
+        &mut self,
+        rows: &[Row],
+        ground: Option<&Ground>,
+        file: &str,
+        path: &str,
+    ) -> Option<bool> {
+        let Some(ground) = ground else { return Some(false) };
+        let map = self.map();
+        let is_same = |place: DVec2| (map.apply(place) - place).abs().max_element() < 1e-3;
+        if is_same(DVec2::ZERO) && is_same(DVec2::splat(1000.0)) {
+            return Some(false);
+        }
+        let (low, high) = (ground.corner(), ground.corner() + ground.size());
+        let room = 1e-6 * ground.size();
+        let is_on = |place: DVec2| place.cmpge(low - room).all() && place.cmple(high + room).all();
+        let places = || rows.iter().map(|row| row.position.truncate());
+        let local = places().filter(|place| is_on(*place)).count();
+        let mapped = places().filter(|place| is_on(map.apply(*place))).count();
+        let (message, help) = match (local > 0, mapped > 0) {
+            (true, false) => return Some(false),
+            (false, true) => {
+                let note = "the coordinates are those of the map, less `frame.origin_m`";
+                self.notes.push(format!("{file}: {note} (write `coordinates: Map`)"));
+                return Some(true);
+            }
+            (true, true) => (
+                format!(
+                    "{file}: {local} of {} rows lie on the terrain as they are written, {mapped} if \
+                     `frame.origin_m` is subtracted",
+                    rows.len()
+                ),
+                "write `coordinates: Local` if they are those of the scene, `coordinates: Map` if they \
+                 are those of the map",
+            ),
+            (false, false) => {
+                let first = places().next().unwrap_or_default();
+                let other = map.apply(first);
+                (
+                    format!(
+                        "{file}: no row lies on the terrain: the first is at ({}, {}) m as it is \
+                         written, at ({}, {}) m less `frame.origin_m`, and the terrain reaches from \
+                         ({}, {}) to ({}, {}) m",
+                        first.x, first.y, other.x, other.y, low.x, low.y, high.x, high.y
+                    ),
+                    "correct `frame.origin_m`, or write `coordinates: Local` or `coordinates: Map`",
+                )
+            }
+        };
+        self.problems.push(Diagnostic::error(path, message).help(help));
+        None
+    }
+
+    /// How coordinates of the map become those of the scene.
+    fn map(&self) -> Georeference {
+        let (x, y, _) = self.scene.frame.origin_m;
+        self.georeference.unwrap_or(Georeference {
+            from: DVec2::new(x, y),
+            to: DVec2::ZERO,
+            scale: DVec2::ONE,
+            is_of_degrees: false,
+        })
+    }
+
+    fn bring_from_map(&self, rows: &mut [Row], on_terrain: bool) {
+        let (map, (.., height)) = (self.map(), self.scene.frame.origin_m);
+        for row in rows {
+            let z = if on_terrain { row.position.z } else { row.position.z - height };
+            row.position = map.apply(row.position.truncate()).extend(z);
+        }
+    }
+}
+
+impl Georeference {
+    /// Place in the scene of a place on the map, m.
+    fn apply(&self, place: DVec2) -> DVec2 {
+        self.to + (place - self.from) * self.scale
+    }
+}
+
+/// Scales a row so that its mesh gets the size that the row says.
+fn scale(row: &mut Row, kind: &Kind, is_of_crown: bool, file: &str) -> Result<(), SizeProblem> {
+    let vertical = row.height.filter(|_| kind.top > 0.0).map(|height| height / kind.top);
+    let horizontal = row.diameter.filter(|_| kind.width > 0.0).map(|width| width / kind.width);
+    let (Some(vertical), Some(horizontal)) = (vertical.or(horizontal), horizontal.or(vertical))
+    else {
+        return Ok(());
+    };
+    (row.scale_vertical, row.scale_horizontal) = (vertical, horizontal);
+    let Some(diameter) = row.diameter.filter(|_| !is_of_crown) else { return Ok(()) };
+    let is_of_stem = match row.height {
+        Some(height) => diameter < STEM_TO_HEIGHT * height,
+        None => horizontal < SMALLEST,
+    };
+    if !is_of_stem {
+        return Ok(());
+    }
+    let height = vertical * kind.top;
+    Err(SizeProblem(format!(
+        "{file}:{}: a diameter of {diameter} m of a plant that is {height:.2} m high looks like that of \
+         its stem, but `diameter_m` is that of its crown",
+        row.line
+    )))
+}
+
+/// A size that cannot be meant.
+struct SizeProblem(String);
+
+impl SizeProblem {
+    fn with_path(self, path: &str) -> Diagnostic {
+        let help = "call the column of stems `dbh_m`, which is let be, or that of crowns \
+                    `crown_diameter_m`";
+        Diagnostic::error(path, self.0).help(help)
+    }
+}
