@@ -22,6 +22,7 @@ fn crown(leaves: f64, leaf: LeafShape, leaf_area: f64) -> Mesh {
         clumps: None,
         leaf_angle: LeafAngle::Spherical,
         leaf,
+        overlap: true,
         trunk: None,
         branches: None,
         seed: 1,

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::format::{self, Reader};
 use super::import::coarse;
 use super::table::{Column, Content, Table, known_columns, missing};
 use super::{AssetError, Loaded};
@@ -23,8 +24,9 @@ const MOST_DISCS: usize = 100_000_000;
 /// need not have unit length.
 ///
 /// # Errors
-/// A file that cannot be read, is not text or holds no disc; a row that is not a disc.
+/// A file that cannot be read, is of another format, is not text or holds no disc; a row that is not a disc.
 pub fn read_discs(path: &Path) -> Result<Loaded<Mesh>, AssetError> {
+    format::check(path, Reader::Discs)?;
     let mut table = Table::open(path)?;
     let columns = columns(&mut table)?;
     let mut discs = Vec::new();

@@ -16,10 +16,18 @@ pub enum AssetError {
     #[error("{}: is a directory or a device; name a file", .file.display())]
     NotAFile { file: PathBuf },
     #[error(
-        "{}:{line}: is not UTF-8 text (binary, or UTF-16, say); save the file as UTF-8 text",
+        "{}:{line}: is not UTF-8 text ({guess}); save the file as UTF-8 text",
         .file.display()
     )]
-    NotText { file: PathBuf, line: usize },
+    NotText { file: PathBuf, line: usize, guess: &'static str },
+    #[error("{}: is {found}, and `{reader}` reads {wanted}; {remedy}", .file.display())]
+    OtherFormat {
+        file: PathBuf,
+        found: String,
+        reader: &'static str,
+        wanted: &'static str,
+        remedy: String,
+    },
     #[error("{}:{line}: is longer than {most} bytes; this is no text table or OBJ file", .file.display())]
     LineTooLong { file: PathBuf, line: usize, most: usize },
     #[error("{}:{line}: {what} is {found:?}; write a finite number such as 1.5 or 2e-3", .file.display())]
@@ -54,6 +62,11 @@ pub enum AssetError {
         .file.display()
     )]
     LongFace { file: PathBuf, line: usize, found: usize, most: usize },
+    #[error(
+        "{}:{line}: the outline of this face crosses itself too often; split it into triangles",
+        .file.display()
+    )]
+    TangledFace { file: PathBuf, line: usize },
     #[error(
         "{}:{line}: {found:?} is no corner; write a vertex index as 7, 7/1, 7//3, 7/1/3 or -1",
         .file.display()
@@ -173,6 +186,8 @@ pub enum AssetError {
     Raster { file: PathBuf, problem: RasterError },
     #[error("face {face} has no area; its corners must not lie on a line")]
     FlatFace { face: usize },
+    #[error("the outline of face {face} crosses itself too often; split it into triangles")]
+    CrossedFace { face: usize },
     #[error("a corner of face {face} lies too far away to keep")]
     FarFace { face: usize },
     #[error(transparent)]

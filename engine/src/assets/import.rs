@@ -1,5 +1,6 @@
 //! From a file's axes, unit and origin to a mesh in metres, z up.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3};
@@ -20,6 +21,9 @@ const UNUSED: u32 = u32::MAX;
 
 /// From 2^10 m on, f32 coordinates lie more than 0.1 mm apart.
 const COARSE: f32 = 1024.0;
+
+/// Most parts to name in a warning.
+const MOST_SHOWN: usize = 5;
 
 /// How a file's coordinates become those of a prototype.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +64,8 @@ pub(super) struct Collector {
     /// Part of each triangle, in the caller's numbers.
     parts: Vec<u32>,
     pub(super) warnings: Vec<String>,
+    /// Parts, in the caller's numbers, that their material makes transparent, and how.
+    pub(super) transparent: BTreeMap<u32, String>,
 }
 
 impl Collector {
@@ -70,6 +76,7 @@ impl Collector {
             triangles: Vec::new(),
             parts: Vec::new(),
             warnings: Vec::new(),
+            transparent: BTreeMap::new(),
         }
     }
 
@@ -128,11 +135,44 @@ impl Collector {
         if dropped > 0 {
             self.warn(&format!("{dropped} triangles without area were dropped"));
         }
+        self.warn_transparent(&vertices, names);
         let mesh = self.mesh(&vertices, names);
         if let Some(warning) = coarse(&self.file, &mesh, &import.origin) {
             self.warnings.push(warning);
         }
         Ok(Loaded { value: mesh, warnings: self.warnings })
+    }
+
+    /// Warns of parts that are opaque here and transparent in their file.
+    fn warn_transparent(&mut self, vertices: &[Vec3], names: &[String]) {
+        if self.transparent.is_empty() {
+            return;
+        }
+        let (mut whole, mut opaque) = (0.0, 0.0);
+        let mut parts: IndexMap<&str, &str> = IndexMap::new();
+        for (corners, part) in self.triangles.iter().zip(&self.parts) {
+            let [a, b, c] = corners.map(|corner| vertices[corner as usize].as_dvec3());
+            let area = 0.5 * (b - a).cross(c - a).length();
+            whole += area;
+            if let Some(how) = self.transparent.get(part) {
+                opaque += area;
+                parts.insert(&names[*part as usize], how);
+            }
+        }
+        if parts.is_empty() {
+            return;
+        }
+        let shown = parts.iter().take(MOST_SHOWN).map(|(name, how)| format!("`{name}` ({how})"));
+        let mut shown = shown.collect::<Vec<_>>().join(", ");
+        if parts.len() > MOST_SHOWN {
+            shown = format!("{shown} and {} more", parts.len() - MOST_SHOWN);
+        }
+        let share = 100.0 * opaque / whole;
+        self.warn(&format!(
+            "transparency is not read: {shown} of this file are taken as opaque, {opaque:.4} m² of \
+             {whole:.4} m² ({share:.1} %); model the outlines of leaves, or make their cards smaller so \
+             that these have the area of the leaves"
+        ));
     }
 
     fn keep_triangles(&mut self, keep: impl Fn(&[DVec3], [u32; 3]) -> bool) {
@@ -170,15 +210,24 @@ impl Collector {
         let mut parts = Vec::new();
         let mut next = Vec::new();
         let mut end = 0;
+        let mut empty = Vec::new();
         for (&name, &count) in &merged {
             next.push(end);
             end += count;
             if count == 0 {
-                let what = format!("part {name:?} has no triangle and was left out");
-                self.warnings.push(format!("{}: {what}", self.file.display()));
+                empty.push(name);
                 continue;
             }
             parts.push(Part { name: name.to_owned(), triangles: end - count..end, discs: 0..0 });
+        }
+        if let Some(first) = empty.first() {
+            let what = match empty.len() {
+                1 => format!("part {first:?} has no triangle and was left out"),
+                count => {
+                    format!("{count} parts have no triangle and were left out, first {first:?}")
+                }
+            };
+            self.warnings.push(format!("{}: {what}", self.file.display()));
         }
 
         let mut new_of = vec![UNUSED; vertices.len()];

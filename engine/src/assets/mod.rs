@@ -16,6 +16,7 @@ mod crown;
 mod discs;
 mod error;
 mod faces;
+mod format;
 mod gltf;
 mod import;
 mod instances;

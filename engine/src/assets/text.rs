@@ -1,7 +1,7 @@
 //! Text files line by line, each line with its number.
 
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 
 use super::AssetError;
@@ -17,6 +17,8 @@ pub(super) struct Lines {
     bytes: Vec<u8>,
     number: usize,
     held: bool,
+    /// True if the last line ended in `\r`, which a `\n` may follow.
+    is_after_return: bool,
 }
 
 /// A regular file, open for reading.
@@ -67,6 +69,7 @@ impl Lines {
             bytes: Vec::new(),
             number: 0,
             held: false,
+            is_after_return: false,
         })
     }
 
@@ -81,56 +84,105 @@ impl Lines {
 
     /// The next line without the white space around it, and its number from 1.
     pub(super) fn next(&mut self) -> Result<Option<(usize, &str)>, AssetError> {
+        if !self.advance()? {
+            return Ok(None);
+        }
+        let number = self.number;
+        decode(self.bytes.trim_ascii(), &self.file, number).map(|text| Some((number, text.trim())))
+    }
+
+    /// The next line as [`Lines::next`] returns it, in whatever encoding it is.
+    pub(super) fn next_bytes(&mut self) -> Result<Option<(usize, &[u8])>, AssetError> {
+        Ok(if self.advance()? { Some((self.number, self.bytes.trim_ascii())) } else { None })
+    }
+
+    /// The line right after the last one, be it blank or a comment; empty at the end of the file.
+    pub(super) fn continuation(&mut self) -> Result<&[u8], AssetError> {
+        if !self.fill()? {
+            self.bytes.clear();
+        }
+        Ok(self.bytes.trim_ascii())
+    }
+
+    /// Goes on to the next line that is neither blank nor a comment.
+    fn advance(&mut self) -> Result<bool, AssetError> {
         while !self.held {
             if !self.fill()? {
-                return Ok(None);
+                return Ok(false);
             }
             let first = self.bytes.iter().find(|byte| !byte.is_ascii_whitespace());
             // Comments may be in any encoding: nothing is made of them.
             self.held = !matches!(first, None | Some(b'#'));
         }
         self.held = false;
-        let number = self.number;
-        self.text().map(|text| Some((number, text)))
+        Ok(true)
     }
 
-    /// The line right after the last one, be it blank or a comment; empty at the end of the file.
-    pub(super) fn continuation(&mut self) -> Result<&str, AssetError> {
-        if !self.fill()? {
-            self.bytes.clear();
-        }
-        self.text()
-    }
-
+    /// Reads the next line without its end, which is `\n`, `\r\n` or `\r`.
     fn fill(&mut self) -> Result<bool, AssetError> {
         self.bytes.clear();
-        let mut limited = self.reader.by_ref().take(LONGEST_LINE as u64 + 1);
-        let count = limited
-            .read_until(b'\n', &mut self.bytes)
-            .map_err(|cause| AssetError::Unreadable { file: self.file.clone(), cause })?;
-        self.number += usize::from(count > 0);
+        let unreadable = |cause| AssetError::Unreadable { file: self.file.clone(), cause };
+        let mut is_after_return = std::mem::take(&mut self.is_after_return);
+        let mut is_line = false;
+        loop {
+            let available = self.reader.fill_buf().map_err(unreadable)?;
+            if is_after_return && available.first() == Some(&b'\n') {
+                is_after_return = false;
+                self.reader.consume(1);
+                continue;
+            }
+            is_after_return = false;
+            if available.is_empty() {
+                break;
+            }
+            is_line = true;
+            let end = available.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            self.bytes.extend_from_slice(&available[..end.unwrap_or(available.len())]);
+            self.is_after_return = end.is_some_and(|end| available[end] == b'\r');
+            let used = end.map_or(available.len(), |end| end + 1);
+            self.reader.consume(used);
+            if end.is_some() || self.bytes.len() > LONGEST_LINE {
+                break;
+            }
+        }
+        self.number += usize::from(is_line);
         // The mark that some editors write before UTF-8 text.
         if self.number == 1 && self.bytes.starts_with(b"\xef\xbb\xbf") {
             self.bytes.drain(..3);
         }
-        if count > LONGEST_LINE {
-            let most = LONGEST_LINE;
-            return Err(AssetError::LineTooLong {
-                file: self.file.clone(),
-                line: self.number,
-                most,
-            });
+        if self.bytes.len() > LONGEST_LINE {
+            let (file, line) = (self.file.clone(), self.number);
+            return Err(AssetError::LineTooLong { file, line, most: LONGEST_LINE });
         }
-        Ok(count > 0)
+        Ok(is_line)
     }
+}
 
-    fn text(&self) -> Result<&str, AssetError> {
-        let not_text = || AssetError::NotText { file: self.file.clone(), line: self.number };
-        // A zero byte is lawful UTF-8, but what it tells is UTF-16 or a binary file.
-        if self.bytes.contains(&0) {
-            return Err(not_text());
-        }
-        let text = std::str::from_utf8(&self.bytes).map_err(|_invalid| not_text())?;
-        Ok(text.trim())
+/// The text that bytes are in UTF-8.
+pub(super) fn decode<'b>(bytes: &'b [u8], file: &Path, line: usize) -> Result<&'b str, AssetError> {
+    let not_text =
+        || AssetError::NotText { file: file.to_owned(), line, guess: guess_encoding(bytes) };
+    // A zero byte is lawful UTF-8, but what it tells is UTF-16 or a binary file.
+    if bytes.contains(&0) {
+        return Err(not_text());
+    }
+    std::str::from_utf8(bytes).map_err(|_invalid| not_text())
+}
+
+/// What bytes that are not UTF-8 look like, and how to convert them.
+fn guess_encoding(bytes: &[u8]) -> &'static str {
+    if bytes.contains(&0) || bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return "a binary file, or UTF-16: `iconv -f UTF-16 -t UTF-8`";
+    }
+    // Lengths of the stretches beyond ASCII: letters of European words stand alone, those of Chinese are two
+    // bytes each (GBK keeps both above 0xA0 for common characters).
+    let stretches = bytes.split(u8::is_ascii).filter(|stretch| !stretch.is_empty());
+    let mut lengths = stretches.map(<[u8]>::len);
+    if lengths.clone().all(|length| length == 1) {
+        "Latin-1 or Windows-1252, it seems: `iconv -f WINDOWS-1252 -t UTF-8`"
+    } else if lengths.all(|length| length % 2 == 0) {
+        "GBK, it seems: `iconv -f GBK -t UTF-8`"
+    } else {
+        "GBK, Big5, Shift-JIS or another encoding: `iconv -f GBK -t UTF-8`, for example"
     }
 }

@@ -40,6 +40,7 @@ use uniform::uniform;
 
 pub use error::PlacementError;
 pub use pattern::Pattern;
+pub(crate) use pattern::is_like;
 pub use region::Region;
 pub use stand::{Habit, Species, stand};
 

@@ -26,7 +26,7 @@ impl<'a> Pattern<'a> {
 }
 
 /// Whether a name is a pattern with its stars filled in.
-fn is_like(pattern: &str, name: &str) -> bool {
+pub(crate) fn is_like(pattern: &str, name: &str) -> bool {
     let mut parts = pattern.split('*');
     let first = parts.next().unwrap_or_default();
     let Some(mut rest) = name.strip_prefix(first) else { return false };

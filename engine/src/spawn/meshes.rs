@@ -6,7 +6,7 @@ use super::Spawner;
 use super::instances::needed_meshes;
 use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
 use crate::components::{MaterialId, Mesh, Name, PartMaterials, Placement};
-use crate::document::{self, Diagnostic, Map, Scene, Terrain, unknown_name};
+use crate::document::{self, Diagnostic, Scene, Terrain};
 
 /// A mesh with the materials of its parts.
 pub(super) struct Prototype {
@@ -84,53 +84,7 @@ impl Spawner<'_> {
         }
     }
 
-    /// Material of each part; where one is missing a problem is noted and the first one stands in.
-    pub(super) fn part_materials(
-        &mut self,
-        mesh: &document::Mesh,
-        loaded: &Mesh,
-        path: &str,
-    ) -> Vec<MaterialId> {
-        let none = Map::new();
-        let (named, rest) = match mesh {
-            document::Mesh::Obj { parts, material, .. }
-            | document::Mesh::Gltf { parts, material, .. } => (parts, material.as_ref()),
-            document::Mesh::Discs { material, .. } | document::Mesh::Faces { material, .. } => {
-                (&none, Some(material))
-            }
-            document::Mesh::Crown { leaf_material, wood_material, .. } => {
-                return self.crown_materials(leaf_material, wood_material.as_deref(), loaded, path);
-            }
-        };
-        let known = || loaded.parts.iter().map(|part| part.name.as_str());
-        for name in named.keys().filter(|name| !known().any(|part| part == *name)) {
-            let at = format!("{path}.parts.{name}");
-            self.problems.push(unknown_name(at, "part", name, known()));
-        }
-        let mut materials = Vec::new();
-        for part in &loaded.parts {
-            let (material, at) = match (named.get(&part.name), rest) {
-                (Some(material), _) => (material, format!("{path}.parts.{}", part.name)),
-                (None, Some(material)) => (material, format!("{path}.material")),
-                (None, None) => {
-                    let parts: Vec<_> = known().map(|name| format!("{name:?}: ..")).collect();
-                    self.problems.push(
-                        Diagnostic::error(path, format!("part `{}` has no material", part.name))
-                            .help(format!(
-                                "write parts: {{ {} }}, or material: \"..\" for all others",
-                                parts.join(", ")
-                            )),
-                    );
-                    continue;
-                }
-            };
-            materials.extend(self.known_material(material, &at));
-        }
-        materials.resize(loaded.parts.len(), MaterialId(0));
-        materials
-    }
-
-    fn crown_materials(
+    pub(super) fn crown_materials(
         &mut self,
         leaf: &str,
         wood: Option<&str>,
@@ -159,9 +113,10 @@ pub(super) fn load(
     folder: &std::path::Path,
 ) -> Result<Loaded<Mesh>, AssetError> {
     match mesh {
-        document::Mesh::Obj { file, up, unit_m, origin, .. } => assets::read_obj(
+        document::Mesh::Obj { file, up, unit_m, origin, parts_by, .. } => assets::read_obj(
             &folder.join(file),
             &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
+            parts_by,
         ),
         document::Mesh::Gltf { file, up, unit_m, origin, .. } => assets::read_gltf(
             &folder.join(file),

@@ -11,6 +11,7 @@ mod lay;
 mod light;
 mod materials;
 mod meshes;
+mod parts;
 mod plausible;
 mod raster;
 mod reach;

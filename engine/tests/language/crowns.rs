@@ -85,12 +85,14 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
             on_branches,
         },
     );
-    let leaves = (number(), number(), profile(), option(clumps), angle(), leaf(), text());
+    let leaves =
+        (number(), number(), profile(), option(clumps), angle(), (leaf(), any::<bool>()), text());
     let wood = (option(trunk), option(branches), option(text()));
     (shape(), leaves, wood, any::<u64>())
         .prop_map(|(shape, leaves, (trunk, branches, wood_material), seed)| {
             let (base_m, leaf_area_m2, leaf_profile, clumps, leaf_angle, leaf, leaf_material) =
                 leaves;
+            let (leaf, overlap) = leaf;
             Mesh::Crown {
                 shape,
                 base_m,
@@ -99,6 +101,7 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
                 clumps,
                 leaf_angle,
                 leaf,
+                overlap,
                 leaf_material,
                 trunk,
                 branches,

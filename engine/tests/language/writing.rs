@@ -4,10 +4,10 @@ use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
     Area, Axis, Band, BandSource, Boundary, Cover, Distribution, Ends, FisheyeProjection, Frame,
-    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, Param, Per,
-    PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky, SpeciesMeshes, Spectrum, Stems,
-    Sun, SunPosition, Sweep, System, TableCoordinates, Temperature, Terrain, ThermalSky, Transport,
-    Until, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_text,
+    ImageMeasure, Instances, Layers, Look, Map, Material, Mesh, Options, Origin, Param, PartsBy,
+    Per, PhotonMeasure, Picture, Roulette, Rule, Scene, Sensor, Sky, SpeciesMeshes, Spectrum,
+    Stems, Sun, SunPosition, Sweep, System, TableCoordinates, Temperature, Terrain, ThermalSky,
+    Transport, Until, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_text,
 };
 
 use crate::crowns::crown;
@@ -121,13 +121,12 @@ fn thermal_sky() -> BoxedStrategy<ThermalSky> {
 fn from_file() -> BoxedStrategy<Mesh> {
     let axis = prop_oneof![Just(Axis::X), Just(Axis::Y), Just(Axis::Z)];
     let origin = prop_oneof![Just(Origin::File), Just(Origin::BaseCenter)];
-    (any::<bool>(), text(), axis, number(), map(text()), option(text()), origin)
-        .prop_map(|(obj, file, up, unit_m, parts, material, origin)| {
-            if obj {
-                Mesh::Obj { file, up, unit_m, parts, material, origin }
-            } else {
-                Mesh::Gltf { file, up, unit_m, parts, material, origin }
-            }
+    let parts_by = prop_oneof![Just(PartsBy::Group), Just(PartsBy::Material)];
+    // An OBJ file where there is a kind of parts, else glTF.
+    (option(parts_by), text(), axis, number(), map(text()), option(text()), origin)
+        .prop_map(|(parts_by, file, up, unit_m, parts, material, origin)| match parts_by {
+            Some(parts_by) => Mesh::Obj { file, up, unit_m, parts, parts_by, material, origin },
+            None => Mesh::Gltf { file, up, unit_m, parts, material, origin },
         })
         .boxed()
 }

@@ -7,7 +7,7 @@ use sunfleck::assets::{
     read_geojson, read_gltf, read_instances, read_obj, read_polygons, read_raster, read_spectrum,
 };
 use sunfleck::components::Mesh;
-use sunfleck::document::{self, Axis, Options, Origin, Reading};
+use sunfleck::document::{self, Axis, Options, Origin, PartsBy, Reading};
 
 use super::pipeline::pipeline;
 
@@ -153,7 +153,7 @@ fn same(a: &document::Scene, b: &document::Scene) -> bool {
 const AS_IS: Import = Import { up: Axis::Y, unit_m: 1.0, origin: Origin::BaseCenter };
 
 fn obj(path: &Path) -> Said {
-    mesh(read_obj(path, &AS_IS))
+    mesh(read_obj(path, &AS_IS, &PartsBy::Group))
 }
 
 fn gltf(path: &Path) -> Said {

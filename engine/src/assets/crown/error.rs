@@ -23,6 +23,11 @@ pub enum CrownError {
     NoMemory { count: f64, lack: Lack },
     #[error("leaf_area_m2 is {area}, less than half of one leaf of {leaf} m²; use smaller leaves")]
     LessThanALeaf { area: f64, leaf: f64 },
+    #[error(
+        "overlap is false, and only {placed} of {count} leaves find a place where they intersect no other; \
+         use smaller leaves, less leaf_area_m2, a larger crown or larger clumps, or leave out overlap"
+    )]
+    NoRoom { placed: u64, count: u64 },
     #[error("the crown has neither leaves nor a trunk; give leaf_area_m2 above 0 or a trunk")]
     Nothing,
     #[error("trunk.tip_diameter_m is {tip}; write 0 up to trunk.diameter_m = {foot}")]

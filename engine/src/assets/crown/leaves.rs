@@ -5,11 +5,11 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::CrownSpec;
 use super::angles::Normals;
 use super::places::Places;
 use super::stream::{Purpose, Stream};
 use super::wood::golden_angle;
+use super::{CrownError, CrownSpec, apart};
 use crate::components::{Disc, Mesh};
 use crate::document::LeafShape;
 
@@ -50,12 +50,15 @@ pub(super) fn pieces(leaf: &LeafShape) -> u32 {
 }
 
 /// `count` leaves of the crown.
+///
+/// # Errors
+/// Leaves that do not fit without overlap where they are asked not to.
 pub(super) fn grow(
     crown: &CrownSpec,
     count: usize,
     places: &Places<'_>,
     normals: &Normals,
-) -> Mesh {
+) -> Result<Mesh, CrownError> {
     // All leaves change alike, by the root of what the count's rounding left over.
     let scale = (crown.leaf_area_m2 / (count as f64 * area(&crown.leaf))).sqrt();
     let leaves = (0..count as u64).into_par_iter();
@@ -69,28 +72,40 @@ pub(super) fn grow(
         let along = right * turn.cos() + up * turn.sin();
         (normal, along, normal.cross(along))
     };
-    let rhombi = |[length, width]: [f64; 2]| {
+    let rhombi = |[length, width]: [f64; 2]| -> Result<Vec<[Vec3; 4]>, CrownError> {
         let (half_length, half_width) = (0.5 * scale * length, 0.5 * scale * width);
-        let corners = |leaf| -> [Vec3; 4] {
-            let (center, (_, along, across)) = (center(leaf), frame(leaf));
+        let rhombus = |leaf| {
+            let (_, along, across) = frame(leaf);
             let (long, wide) = (half_length * along, half_width * across);
-            [center + long, center + wide, center - long, center - wide].map(DVec3::as_vec3)
+            move |center: DVec3| {
+                let corners = [center + long, center + wide, center - long, center - wide];
+                [corners.map(DVec3::as_vec3)]
+            }
         };
-        leaves.clone().map(corners).collect::<Vec<_>>().into_flattened()
+        if !crown.overlap {
+            return apart::place(crown, count, places, rhombus);
+        }
+        let rhombi = leaves.clone().map(|leaf| rhombus(leaf)(center(leaf)));
+        Ok(rhombi.collect::<Vec<_>>().into_flattened())
     };
     match crown.leaf {
         LeafShape::Disc { radius_m } => {
             let radius = (scale * radius_m) as f32;
-            let disc = |leaf| Disc {
-                center: center(leaf).as_vec3(),
-                normal: normal(leaf).as_vec3(),
-                radius,
+            let disc = |leaf| {
+                let normal = normal(leaf).as_vec3();
+                move |center: DVec3| [Disc { center: center.as_vec3(), normal, radius }]
             };
-            Mesh { discs: leaves.map(disc).collect(), ..Mesh::default() }
+            let discs = if crown.overlap {
+                let discs = leaves.map(|leaf| disc(leaf)(center(leaf)));
+                discs.collect::<Vec<_>>().into_flattened()
+            } else {
+                apart::place(crown, count, places, disc)?
+            };
+            Ok(Mesh { discs, ..Mesh::default() })
         }
         // A square is the rhombus of equal diagonals.
-        LeafShape::Square { side_m } => quads(rhombi([side_m * 2_f64.sqrt(); 2])),
-        LeafShape::Rhombus { length_m, width_m } => quads(rhombi([length_m, width_m])),
+        LeafShape::Square { side_m } => Ok(quads(rhombi([side_m * 2_f64.sqrt(); 2])?)),
+        LeafShape::Rhombus { length_m, width_m } => Ok(quads(rhombi([length_m, width_m])?)),
         LeafShape::Shoot {
             length_m,
             needles,
@@ -101,24 +116,31 @@ pub(super) fn grow(
             let (sin, cos) = needle_angle_deg.to_radians().sin_cos();
             let half_width = 0.5 * scale * needle_width_m;
             let shoot = |leaf| {
-                let (center, (normal, along, across)) = (center(leaf), frame(leaf));
-                (0..needles).flat_map(move |needle| -> [Vec3; 4] {
-                    let part = (f64::from(needle) + 0.5) / f64::from(needles) - 0.5;
-                    let (sin_turn, cos_turn) = (golden_angle() * f64::from(needle)).sin_cos();
-                    let outwards = cos_turn * normal + sin_turn * across;
-                    let base = center + scale * length_m * part * along;
-                    let tip = base + scale * needle_length_m * (cos * along + sin * outwards);
-                    let wide = half_width * along.cross(outwards);
-                    [base + wide, base - wide, tip - wide, tip + wide].map(DVec3::as_vec3)
-                })
+                let (normal, along, across) = frame(leaf);
+                move |center: DVec3| {
+                    (0..needles).map(move |needle| -> [Vec3; 4] {
+                        let part = (f64::from(needle) + 0.5) / f64::from(needles) - 0.5;
+                        let (sin_turn, cos_turn) = (golden_angle() * f64::from(needle)).sin_cos();
+                        let outwards = cos_turn * normal + sin_turn * across;
+                        let base = center + scale * length_m * part * along;
+                        let tip = base + scale * needle_length_m * (cos * along + sin * outwards);
+                        let wide = half_width * along.cross(outwards);
+                        [base + wide, base - wide, tip - wide, tip + wide].map(DVec3::as_vec3)
+                    })
+                }
             };
-            quads(leaves.flat_map_iter(shoot).collect())
+            Ok(quads(if crown.overlap {
+                leaves.flat_map_iter(|leaf| shoot(leaf)(center(leaf))).collect()
+            } else {
+                apart::place(crown, count, places, shoot)?
+            }))
         }
     }
 }
 
-/// Parallelograms, four corners each.
-fn quads(vertices: Vec<Vec3>) -> Mesh {
+/// Parallelograms by their corners.
+fn quads(corners: Vec<[Vec3; 4]>) -> Mesh {
+    let vertices = corners.into_flattened();
     // Two triangles that share a diagonal: what a ray engine can take as one parallelogram.
     let triangles = (0..vertices.len() as u32 / 4).into_par_iter().map(|quad| {
         let first = 4 * quad;

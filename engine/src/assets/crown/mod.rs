@@ -1,6 +1,7 @@
 //! Trees and shrubs generated leaf by leaf.
 
 mod angles;
+mod apart;
 mod error;
 mod heights;
 mod leaves;
@@ -55,6 +56,8 @@ pub struct CrownSpec {
     pub leaf_angle: LeafAngle,
     /// Shape and size of a leaf.
     pub leaf: LeafShape,
+    /// False if no leaf intersects another one.
+    pub overlap: bool,
     /// Trunk from the ground up, if any.
     pub trunk: Option<Trunk>,
     /// Branches from the trunk into the crown, if any.
@@ -75,6 +78,7 @@ impl CrownSpec {
             clumps,
             leaf_angle,
             leaf,
+            overlap,
             trunk,
             branches,
             seed,
@@ -91,6 +95,7 @@ impl CrownSpec {
             clumps: clumps.clone(),
             leaf_angle: leaf_angle.clone(),
             leaf: leaf.clone(),
+            overlap: *overlap,
             trunk: trunk.clone(),
             branches: branches.clone(),
             seed: *seed,
@@ -105,7 +110,8 @@ impl CrownSpec {
 /// uniform in what a clump shares with the outline. Normals follow the leaf angle distribution with
 /// uniform azimuths, and half of the fronts face down. There are `round(leaf area / area of a leaf)`
 /// leaves, of a size adjusted so that their total area is `leaf_area_m2` (to f32 rounding). Squares,
-/// rhombi and needles are two triangles each. Trunk and branches
+/// rhombi and needles are two triangles each. Without `overlap`, leaves that would intersect an earlier one
+/// get another place, and keep their normal. Trunk and branches
 /// are tapered, closed prisms, their corners on the circles of the given diameters; branches start
 /// on the trunk's axis and end near the outline.
 ///
@@ -116,7 +122,7 @@ impl CrownSpec {
 pub fn grow_crown(crown: &CrownSpec) -> Result<Mesh, AssetError> {
     let count = check(crown)?;
     let (places, normals) = (Places::new(crown)?, Normals::new(&crown.leaf_angle)?);
-    let mut mesh = leaves::grow(crown, count, &places, &normals);
+    let mut mesh = leaves::grow(crown, count, &places, &normals)?;
     let (leaf_triangles, leaf_discs) = (mesh.triangles.len() as u32, mesh.discs.len() as u32);
     wood::grow(crown, &mut mesh);
     let triangles = mesh.triangles.len() as u32;

@@ -66,7 +66,11 @@ impl<'a> Places<'a> {
 
     /// The middle of a leaf.
     pub(super) fn of(&self, leaf: u64) -> DVec3 {
-        let random = &mut Stream::new(self.crown.seed, Purpose::Position, leaf);
+        self.draw(leaf, &mut Stream::new(self.crown.seed, Purpose::Position, leaf))
+    }
+
+    /// The next place for the middle of a leaf, from its stream of positions.
+    pub(super) fn draw(&self, leaf: u64, random: &mut Stream) -> DVec3 {
         let Some((clumps, middles)) = &self.clumps else { return self.anywhere(random) };
         let middle = middles[(leaf % middles.len() as u64) as usize];
         let half_height = clumps.height_m.map_or(clumps.radius_m, |height| 0.5 * height);

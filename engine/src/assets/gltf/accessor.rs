@@ -4,28 +4,31 @@ use ::gltf::Accessor;
 use ::gltf::accessor::sparse::IndexType;
 use ::gltf::accessor::{DataType, Dimensions};
 use ::gltf::buffer::View;
-use glam::DVec3;
 
 use super::GltfError;
 use super::buffers::Buffers;
 
-/// Positions, in the file's unit; integers as `KHR_mesh_quantization` has them.
-pub(super) fn positions(
+/// Vectors of three or four numbers, such as positions in the file's unit; integers as
+/// `KHR_mesh_quantization` has them.
+pub(super) fn vectors<const N: usize>(
     accessor: &Accessor<'_>,
     buffers: &Buffers,
-) -> Result<Vec<DVec3>, GltfError> {
+) -> Result<Vec<[f64; N]>, GltfError> {
     let index = accessor.index();
-    if accessor.dimensions() != Dimensions::Vec3 || accessor.data_type() == DataType::U32 {
-        return Err(GltfError::WrongType { accessor: index, wanted: "positions (VEC3)" });
+    let (dimensions, wanted) = match N {
+        4 => (Dimensions::Vec4, "rotations (VEC4)"),
+        _ => (Dimensions::Vec3, "positions (VEC3)"),
+    };
+    if accessor.dimensions() != dimensions || accessor.data_type() == DataType::U32 {
+        return Err(GltfError::WrongType { accessor: index, wanted });
     }
     let (kind, normalized) = (accessor.data_type(), accessor.normalized());
     let component = kind.size();
-    let point = |item: &[u8]| {
-        let at = |axis: usize| value(kind, normalized, &item[axis * component..]);
-        DVec3::new(at(0), at(1), at(2))
+    let vector = |item: &[u8]| -> [f64; N] {
+        std::array::from_fn(|axis| value(kind, normalized, &item[axis * component..]))
     };
-    let mut positions: Vec<DVec3> = items(accessor, buffers)?.map(point).collect();
-    let Some(sparse) = accessor.sparse() else { return Ok(positions) };
+    let mut vectors: Vec<[f64; N]> = items(accessor, buffers)?.map(vector).collect();
+    let Some(sparse) = accessor.sparse() else { return Ok(vectors) };
     let beyond = GltfError::BeyondBuffer { accessor: index };
     let (places, values) = (sparse.indices(), sparse.values());
     let place_size = match places.index_type() {
@@ -35,15 +38,15 @@ pub(super) fn positions(
     };
     let count = sparse.count();
     let places = strided(&places.view(), places.offset(), count, place_size, buffers);
-    let values = strided(&values.view(), values.offset(), count, 3 * component, buffers);
+    let values = strided(&values.view(), values.offset(), count, N * component, buffers);
     let (Some(places), Some(values)) = (places, values) else { return Err(beyond) };
     for (place, item) in places.zip(values) {
-        match positions.get_mut(unsigned(place) as usize) {
-            Some(position) => *position = point(item),
+        match vectors.get_mut(unsigned(place) as usize) {
+            Some(replaced) => *replaced = vector(item),
             None => return Err(beyond),
         }
     }
-    Ok(positions)
+    Ok(vectors)
 }
 
 /// Vertex indices.

@@ -17,6 +17,10 @@ pub enum GltfError {
     Invalid { place: String, problem: String },
     #[error("needs the extension {name:?}, which is not read; export the file without it")]
     Extension { name: String },
+    #[error("is glTF {found}; export it again as glTF 2.0")]
+    Version { found: String },
+    #[error("node {node}: {problem} of EXT_mesh_gpu_instancing; export the file again")]
+    Instances { node: usize, problem: &'static str },
     #[error("buffer {buffer}: cannot read {uri:?}: {cause}; put that file beside the glTF file")]
     BufferUnreadable { buffer: usize, uri: String, cause: io::Error },
     #[error("buffer {buffer}: {uri:?} is not a relative path or a base64 data URI; write one")]

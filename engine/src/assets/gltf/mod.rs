@@ -6,42 +6,43 @@
 mod accessor;
 mod buffers;
 mod error;
+mod extensions;
 
 pub use error::GltfError;
 
 use std::path::Path;
 
+use ::gltf::accessor::Dimensions;
+use ::gltf::material::AlphaMode;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Gltf, Node, Primitive, Semantic};
 use glam::{DMat4, DVec3};
 use indexmap::IndexSet;
 
 use self::buffers::Buffers;
+use super::format::{self, Reader};
 use super::import::{Collector, Import};
 use super::{AssetError, Loaded, text};
 use crate::components::Mesh;
-
-/// Extensions that a file may require and that change no shape: beginnings of their names.
-///
-/// `KHR_mesh_quantization` does, and is read.
-const HARMLESS: [&str; 5] =
-    ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization"];
 
 /// A mesh from a glTF 2.0 file (`.gltf` or `.glb`): all nodes of the default scene.
 ///
 /// A part is a material: it is called after it, `default` where there is none and `material_3`
 /// where the material with index 3 has no name. Buffers may lie in the GLB file, in `data:` URIs
 /// and in files beside it. Triangles, strips and fans are read; nodes that mirror keep their fronts
-/// outside. Skins, morph targets, points and lines are left out with a warning; images are not read.
+/// outside. Instances (`EXT_mesh_gpu_instancing`) are read, hidden nodes (`KHR_node_visibility`) left
+/// out. Skins, morph targets, points and lines are left out with a warning; images are not read, and of
+/// materials with transparency a warning says how much area they have.
 ///
 /// # Errors
-/// A file that cannot be read or is cut, JSON that is not lawful glTF 2.0, accessors or indices
+/// A file that cannot be read, is cut or of another format, JSON that is not lawful glTF 2.0, accessors or indices
 /// that reach beyond their data, a mesh without area.
 pub fn read_gltf(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetError> {
     import.check(path)?;
+    format::check(path, Reader::Gltf)?;
     let bytes = text::read(path)?;
     let wrong = |problem| AssetError::Gltf { file: path.to_owned(), problem };
-    let Gltf { document, blob } = parse(&bytes).map_err(wrong)?;
+    let (Gltf { document, blob }, unread) = parse(&bytes).map_err(wrong)?;
     drop(bytes);
     let buffers = Buffers::load(&document, blob, path).map_err(wrong)?;
     let mut model = Model {
@@ -52,16 +53,24 @@ pub fn read_gltf(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetErro
         left_out: IndexSet::new(),
     };
     model.scene(&document)?;
-    let names: Vec<String> = model.parts.into_iter().collect();
+    let names: Vec<String> = model.parts.into_iter().map(|(_, name)| name).collect();
     for what in model.left_out {
         model.mesh.warn(what);
+    }
+    for sentence in unread {
+        model.mesh.warn(&sentence);
     }
     model.mesh.finish(&names, import)
 }
 
-/// The validated document.
-fn parse(mut bytes: &[u8]) -> Result<Gltf, GltfError> {
+/// The validated document, and sentences about what of it is not read.
+fn parse(mut bytes: &[u8]) -> Result<(Gltf, Vec<String>), GltfError> {
     if bytes.starts_with(b"glTF") {
+        let version = bytes.get(4..8).and_then(|field| field.try_into().ok());
+        let version = version.map_or(2, u32::from_le_bytes);
+        if version != 2 {
+            return Err(GltfError::Version { found: version.to_string() });
+        }
         // The crate takes the length of the header off this one without asking.
         let field = bytes.get(8..12).and_then(|field| field.try_into().ok());
         let claimed = field.map_or(0, u32::from_le_bytes) as usize;
@@ -70,13 +79,18 @@ fn parse(mut bytes: &[u8]) -> Result<Gltf, GltfError> {
         }
         bytes = &bytes[..claimed];
     }
-    let Gltf { document, blob } =
-        Gltf::from_slice_without_validation(bytes).map_err(GltfError::from_crate)?;
+    bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let parsed = Gltf::from_slice_without_validation(bytes);
+    let Gltf { document, blob } = parsed.map_err(|error| match other_version(bytes) {
+        Some(found) => GltfError::Version { found },
+        None => GltfError::from_crate(error),
+    })?;
     let mut json = document.into_json();
-    json.extensions_required.retain(|name| !HARMLESS.iter().any(|start| name.starts_with(start)));
-    if let Some(name) = json.extensions_required.first() {
-        return Err(GltfError::Extension { name: name.clone() });
+    if !is_two(&json.asset.version) {
+        return Err(GltfError::Version { found: json.asset.version });
     }
+    extensions::require_none(&mut json)?;
+    let unread = extensions::unread(&json);
     // The crate's own check takes these indices for granted.
     let count = json.accessors.len();
     let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -85,14 +99,33 @@ fn parse(mut bytes: &[u8]) -> Result<Gltf, GltfError> {
         return Err(GltfError::NoSuchAccessor { accessor: accessor.value(), count });
     }
     let document = Document::from_json(json).map_err(GltfError::from_crate)?;
-    Ok(Gltf { document, blob })
+    Ok((Gltf { document, blob }, unread))
+}
+
+fn is_two(version: &str) -> bool {
+    version.split('.').next() == Some("2")
+}
+
+/// The version of a file that is glTF, but not 2.
+fn other_version(json: &[u8]) -> Option<String> {
+    #[derive(serde::Deserialize)]
+    struct Root {
+        asset: Asset,
+    }
+    #[derive(serde::Deserialize)]
+    struct Asset {
+        version: String,
+    }
+    let Root { asset: Asset { version } } = serde_json::from_slice(json).ok()?;
+    (!is_two(&version)).then_some(version)
 }
 
 struct Model<'a> {
     import: &'a Import,
     buffers: Buffers,
     mesh: Collector,
-    parts: IndexSet<String>,
+    /// Index and name of each part's material.
+    parts: IndexSet<(Option<usize>, String)>,
     left_out: IndexSet<&'static str>,
 }
 
@@ -121,7 +154,11 @@ impl Model<'_> {
             }
             let columns = node.transform().matrix().map(|column| column.map(f64::from));
             let scene_from_node = scene_from_parent * DMat4::from_cols_array_2d(&columns);
-            self.node(&node, scene_from_node)?;
+            if extensions::is_hidden(&node) {
+                self.left_out.insert("hidden nodes (KHR_node_visibility) are left out");
+                continue;
+            }
+            self.node(&node, document, scene_from_node)?;
             let first_child = open.len();
             open.extend(node.children().map(|child| (child, scene_from_node)));
             open[first_child..].reverse();
@@ -129,24 +166,34 @@ impl Model<'_> {
         Ok(())
     }
 
-    fn node(&mut self, node: &Node<'_>, scene_from_node: DMat4) -> Result<(), AssetError> {
+    fn node(
+        &mut self,
+        node: &Node<'_>,
+        document: &Document,
+        scene_from_node: DMat4,
+    ) -> Result<(), AssetError> {
         let Some(mesh) = node.mesh() else { return Ok(()) };
         if node.skin().is_some() {
             self.left_out.insert("skins are left out: skinned meshes stand as they were modelled");
         }
+        let instances = extensions::instances(node, document, &self.buffers);
+        let instances = instances.map_err(|problem| self.wrong(problem))?;
+        let scene_from_mesh: Vec<DMat4> =
+            instances.into_iter().map(|node_from_mesh| scene_from_node * node_from_mesh).collect();
         for primitive in mesh.primitives() {
             if primitive.morph_targets().next().is_some() {
                 self.left_out.insert("morph targets are left out");
             }
-            self.primitive(&primitive, scene_from_node)?;
+            self.primitive(&primitive, &scene_from_mesh)?;
         }
         Ok(())
     }
 
+    /// Adds a primitive wherever it stands.
     fn primitive(
         &mut self,
         primitive: &Primitive<'_>,
-        scene_from_node: DMat4,
+        scene_from_mesh: &[DMat4],
     ) -> Result<(), AssetError> {
         if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
             self.left_out.insert("points and lines are left out");
@@ -156,13 +203,8 @@ impl Model<'_> {
             self.left_out.insert("primitives without positions are left out");
             return Ok(());
         };
-        let positions = accessor::positions(&accessor, &self.buffers).map_err(|e| self.wrong(e))?;
-        let first = self.mesh.reserve(positions.len())?;
-        for position in &positions {
-            let vertex = self.import.point(scene_from_node.transform_point3(*position));
-            let added = self.mesh.add_vertex(vertex);
-            added.map_err(|value| self.wrong(GltfError::TooFar { value }))?;
-        }
+        let positions = accessor::vectors(&accessor, &self.buffers).map_err(|e| self.wrong(e))?;
+        self.mesh.reserve(positions.len().saturating_mul(scene_from_mesh.len()))?;
         let indices = match primitive.indices() {
             Some(accessor) => {
                 accessor::indices(&accessor, &self.buffers).map_err(|e| self.wrong(e))?
@@ -173,14 +215,47 @@ impl Model<'_> {
             let count = positions.len();
             return Err(self.wrong(GltfError::NoSuchVertex { index, count }));
         }
-        let part = self.parts.insert_full(part_name(primitive)).0 as u32;
-        let mirrored = is_mirror(scene_from_node);
-        for [a, b, c] in triangles(primitive.mode(), &indices) {
-            let corners = if mirrored { [a, c, b] } else { [a, b, c] };
-            self.mesh.add_triangle(corners.map(|corner| first + corner), part)?;
+        let material = primitive.material().index();
+        let part = self.parts.insert_full((material, part_name(primitive))).0 as u32;
+        if let Some(how) = transparency(primitive) {
+            self.mesh.transparent.insert(part, how);
+        }
+        let triangles = triangles(primitive.mode(), &indices);
+        for transform in scene_from_mesh {
+            let first = self.mesh.reserve(positions.len())?;
+            for position in &positions {
+                let vertex = self.import.point(transform.transform_point3((*position).into()));
+                let added = self.mesh.add_vertex(vertex);
+                added.map_err(|value| self.wrong(GltfError::TooFar { value }))?;
+            }
+            let mirrored = is_mirror(*transform);
+            for &[a, b, c] in &triangles {
+                let corners = if mirrored { [a, c, b] } else { [a, b, c] };
+                self.mesh.add_triangle(corners.map(|corner| first + corner), part)?;
+            }
         }
         Ok(())
     }
+}
+
+/// The words of the file that make a primitive transparent, if anything can be seen through it.
+fn transparency(primitive: &Primitive<'_>) -> Option<String> {
+    let material = primitive.material();
+    let mode = match material.alpha_mode() {
+        AlphaMode::Opaque => return None,
+        AlphaMode::Mask => "MASK",
+        AlphaMode::Blend => "BLEND",
+    };
+    let base = material.pbr_metallic_roughness();
+    let factor = base.base_color_factor()[3];
+    let has_texture = base.base_color_texture().is_some()
+        || material.extension_value("KHR_materials_pbrSpecularGlossiness").is_some();
+    let colors = primitive.get(&Semantic::Colors(0));
+    let has_vertex_alpha = colors.is_some_and(|colors| colors.dimensions() == Dimensions::Vec4);
+    if has_texture || has_vertex_alpha {
+        return Some(format!("alphaMode {mode}"));
+    }
+    (factor < 1.0).then(|| format!("alphaMode {mode}, alpha {factor}"))
 }
 
 fn part_name(primitive: &Primitive<'_>) -> String {

@@ -17,7 +17,7 @@ const TELLING: &[u8] = b"0123456789-+.eE/ ,;\n\\{}[]\"naif";
 type Reader = fn(&Path) -> bool;
 
 fn obj(path: &Path) -> bool {
-    read_obj(path, &AS_IS).inspect(|loaded| assert_lawful(&loaded.value)).is_ok()
+    read_obj(path, &AS_IS, &PartsBy::Group).inspect(|loaded| assert_lawful(&loaded.value)).is_ok()
 }
 
 fn gltf(path: &Path) -> bool {
@@ -76,7 +76,7 @@ fn what_is_no_file_is_an_error() {
         assert!(!read(&folder.path().join("gone.obj")), "nothing");
         assert!(!read(Path::new("")), "no name");
     }
-    let error = read_obj(folder.path(), &AS_IS).unwrap_err();
+    let error = read_obj(folder.path(), &AS_IS, &PartsBy::Group).unwrap_err();
     assert!(matches!(error, AssetError::NotAFile { .. }), "{error}");
     #[cfg(unix)]
     assert!(!obj(Path::new("/dev/zero")), "a device without end");

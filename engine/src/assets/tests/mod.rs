@@ -15,7 +15,7 @@ use tempfile::NamedTempFile;
 
 use super::{AssetError, Import};
 use crate::components::Mesh;
-use crate::document::{Axis, Origin};
+use crate::document::{Axis, Origin, PartsBy};
 
 /// A file with this content, as long as the value lives.
 fn file(content: impl AsRef<[u8]>) -> NamedTempFile {

@@ -8,7 +8,7 @@ use crate::assets::{Loaded, read_obj};
 use crate::components::Part;
 
 fn read(text: &str) -> Result<Loaded<Mesh>, AssetError> {
-    read_obj(file(text).path(), &AS_IS)
+    read_obj(file(text).path(), &AS_IS, &PartsBy::Group)
 }
 
 fn mesh(text: &str) -> Mesh {
@@ -43,7 +43,10 @@ fn comments_may_be_in_any_encoding() {
     let mut text = b"# caf\xe9\n".to_vec();
     text.extend_from_slice(SQUARE.as_bytes());
     text.extend_from_slice(b"f 1 2 3\n");
-    assert_eq!(read_obj(file(text).path(), &AS_IS).unwrap().value.triangles.len(), 1);
+    assert_eq!(
+        read_obj(file(text).path(), &AS_IS, &PartsBy::Group).unwrap().value.triangles.len(),
+        1
+    );
 }
 
 #[test]
@@ -92,7 +95,7 @@ fn polygons_are_cut_into_triangles_that_cover_them() {
 fn axes_turn_and_units_scale() {
     let import = Import { up: Axis::Y, unit_m: 0.01, origin: Origin::File };
     let text = "v 100 200 300\nv 0 0 0\nv 100 0 0\nf 1 2 3\n";
-    let mesh = read_obj(file(text).path(), &import).unwrap().value;
+    let mesh = read_obj(file(text).path(), &import, &PartsBy::Group).unwrap().value;
     assert_eq!(mesh.vertices, [Vec3::new(1.0, -3.0, 2.0), Vec3::ZERO, Vec3::X]);
 }
 
@@ -102,7 +105,7 @@ fn a_model_at_map_coordinates_keeps_its_millimetres() {
     let text = "v 500000.000 5400000.000 310.000\nv 500000.003 5400000.000 310.000\n\
                 v 500000.000 5400000.001 310.002\nv 1 1 1\nf 1 2 3\n";
     let import = Import { origin: Origin::BaseCenter, ..AS_IS };
-    let loaded = read_obj(file(text).path(), &import).unwrap();
+    let loaded = read_obj(file(text).path(), &import, &PartsBy::Group).unwrap();
     let expected = [[-0.0015, -0.0005, 0.0], [0.0015, -0.0005, 0.0], [-0.0015, 0.0005, 0.002]];
     for (vertex, expected) in loaded.value.vertices.iter().zip(expected) {
         // f64 keeps 1e-9 m at these coordinates.
@@ -121,7 +124,7 @@ fn a_model_at_map_coordinates_keeps_its_millimetres() {
 fn the_base_is_that_of_the_faces_not_of_stray_vertices() {
     let text = format!("v -9 -9 -9\n{SQUARE}f 2 3 4\n");
     let import = Import { origin: Origin::BaseCenter, ..AS_IS };
-    let mesh = read_obj(file(text).path(), &import).unwrap().value;
+    let mesh = read_obj(file(text).path(), &import, &PartsBy::Group).unwrap().value;
     assert_lawful(&mesh);
     assert_eq!(mesh.bounds(), Some((Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, 0.5, 0.0))));
 }
@@ -196,7 +199,7 @@ fn errors_name_the_line_and_say_what_to_write() {
     let extreme = format!("v 0 0 0\nf {} {} 1\n", i64::MIN, i64::MAX);
     assert!(matches!(read(&extreme).unwrap_err(), AssetError::NoSuchVertex { line: 2, .. }));
     let bad_unit = Import { unit_m: 0.0, ..AS_IS };
-    let error = read_obj(file(SQUARE).path(), &bad_unit).unwrap_err();
+    let error = read_obj(file(SQUARE).path(), &bad_unit, &PartsBy::Group).unwrap_err();
     assert!(matches!(error, AssetError::BadUnit { unit_m: 0.0, .. }), "{error}");
 }
 

@@ -31,7 +31,7 @@ fn every_tree_of_the_collection_loads_at_a_plausible_size() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             let loaded = match path.extension().and_then(|extension| extension.to_str()) {
-                Some("obj") => read_obj(&path, &import).unwrap(),
+                Some("obj") => read_obj(&path, &import, &PartsBy::Group).unwrap(),
                 Some("glb") => read_gltf(&path, &import).unwrap(),
                 _ => continue,
             };
@@ -62,7 +62,7 @@ fn the_standard_solar_spectrum_is_read_as_it_is_published() {
 #[test]
 fn the_stand_loads_whole() {
     let Some(folder) = data("stand") else { return };
-    let loaded = read_obj(&folder.join("tree.obj"), &AS_IS).unwrap();
+    let loaded = read_obj(&folder.join("tree.obj"), &AS_IS, &PartsBy::Group).unwrap();
     assert_lawful(&loaded.value);
     assert_eq!(loaded.warnings, [""; 0]);
     assert_eq!(part_names(&loaded.value), ["leaf", "trunk"]);

@@ -21,6 +21,7 @@ pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut 
         branches,
         wood_material,
         leaf_angle,
+        overlap: _,
         seed: _,
     } = crown
     else {

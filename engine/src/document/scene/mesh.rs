@@ -11,7 +11,7 @@ use super::crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafSha
 choice! {
     /// A mesh prototype.
     pub enum Mesh ("a mesh") {
-        /// Wavefront OBJ; groups, and within them materials, are the parts.
+        /// Wavefront OBJ; `parts_by` says what the parts are.
         Obj {
             /// Path, relative to the scene file.
             file: String => r#""assets/tree.obj""#,
@@ -19,8 +19,11 @@ choice! {
             up: Axis => "Z",
             /// Length of the file's unit, m.
             unit_m: f64 => "1.0",
-            /// Material of each part.
+            /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
+            /// counts before patterns, of these the one with most other letters, then the first.
             parts: Map<String> = Map::new(),
+            /// What the parts are.
+            parts_by: PartsBy = PartsBy::Group,
             /// Material of the parts that `parts` does not name.
             material: Option<String> = None,
             /// What becomes the origin.
@@ -34,7 +37,8 @@ choice! {
             up: Axis => "Y",
             /// Length of the file's unit, m.
             unit_m: f64 => "1.0",
-            /// Material of each part.
+            /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
+            /// counts before patterns, of these the one with most other letters, then the first.
             parts: Map<String> = Map::new(),
             /// Material of the parts that `parts` does not name.
             material: Option<String> = None,
@@ -72,6 +76,10 @@ choice! {
             leaf_angle: LeafAngle = LeafAngle::Spherical,
             /// Shape and size of a leaf.
             leaf: LeafShape => "Disc(radius_m: 0.05)",
+            /// False: no leaf intersects another leaf of the crown, as in the scenes of RAMI. Leaves keep
+            /// their number and inclinations; those that would overlap stand elsewhere in the crown, or in
+            /// their clump. The needles of one shoot may cross each other, and so may leaves of two instances.
+            overlap: bool = true,
             /// Material of the leaves.
             leaf_material: String => r#""leaf""#,
             /// Trunk, if any.
@@ -95,6 +103,17 @@ choice! {
         Y,
         /// z points up: the frame of sunfleck.
         Z,
+    }
+}
+
+choice! {
+    /// What the parts of an OBJ file are.
+    pub enum PartsBy ("a kind of part") {
+        /// Groups (`g`, `o`), and within them materials: `crown`, or `crown/green` and `crown/brown` if
+        /// the group has several materials.
+        Group,
+        /// Materials (`usemtl`), whatever their groups.
+        Material,
     }
 }
 

@@ -30,7 +30,7 @@ pub use instances::{
     meant_column,
 };
 pub use light::{Sky, Sun, SunPosition};
-pub use mesh::{Axis, Mesh, Origin};
+pub use mesh::{Axis, Mesh, Origin, PartsBy};
 pub use param::Param;
 pub use program::{Include, Sweep};
 pub use sensor::{ImageMeasure, Layers, Per, PhotonMeasure, Sensor, System, Views, VirtualPlane};

@@ -1,4 +1,5 @@
 mod angles;
+mod apart;
 mod gaps;
 mod places;
 
@@ -20,6 +21,7 @@ fn spec(shape: CrownShape, leaf: LeafShape) -> CrownSpec {
         clumps: None,
         leaf_angle: LeafAngle::Spherical,
         leaf,
+        overlap: true,
         trunk: None,
         branches: None,
         seed: SEED,
@@ -356,6 +358,7 @@ fn the_scene_language_describes_the_same_crown() {
         clumps,
         leaf_angle,
         leaf,
+        overlap,
         trunk,
         branches,
         seed,
@@ -368,6 +371,7 @@ fn the_scene_language_describes_the_same_crown() {
         clumps,
         leaf_angle,
         leaf,
+        overlap,
         leaf_material: "leaf".to_owned(),
         trunk,
         branches,

@@ -1,16 +1,22 @@
 //! Wavefront OBJ: vertices, faces, groups and material names; the rest of the format is left out.
 
+mod line;
+mod materials;
+
 use std::path::Path;
 
 use glam::DVec3;
 use indexmap::{IndexMap, IndexSet};
 
+use self::line::{comment, is_name, without_comment};
 use super::error::excerpt;
+use super::format::{self, Reader};
 use super::import::{Collector, Import};
-use super::polygon::triangulate;
-use super::text::{Lines, number};
+use super::polygon::{Pieces, Tangled, triangulate};
+use super::text::{Lines, decode, number};
 use super::{AssetError, Loaded};
 use crate::components::Mesh;
+use crate::document::PartsBy;
 
 /// Most corners of a face: cutting a concave polygon takes the square of them.
 const MOST_CORNERS: usize = 2048;
@@ -18,49 +24,67 @@ const MOST_CORNERS: usize = 2048;
 /// Most unknown keywords to speak of.
 const MOST_UNKNOWN: usize = 5;
 
+/// Most material libraries to look into.
+const MOST_LIBRARIES: usize = 64;
+
 /// Keywords that say nothing about the shape, or nothing that light can meet.
-const IGNORED: [&str; 15] = [
-    "vt",
-    "vn",
-    "vp",
-    "s",
-    "mtllib",
-    "l",
-    "p",
-    "lod",
-    "bevel",
-    "c_interp",
-    "d_interp",
-    "usemap",
-    "maplib",
-    "shadow_obj",
-    "trace_obj",
+const IGNORED: [&[u8]; 14] = [
+    b"vt",
+    b"vn",
+    b"vp",
+    b"s",
+    b"l",
+    b"p",
+    b"lod",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"usemap",
+    b"maplib",
+    b"shadow_obj",
+    b"trace_obj",
 ];
 
 /// A mesh from a Wavefront OBJ file.
 ///
-/// A part is a group (`g` or `o`, the later one counts) and within it a material (`usemtl`). It is
-/// called after its group if the group has one material or the material has the same name, else
-/// `group/material`; without a group after its material; without both `default`. Polygons, concave
-/// ones too, are cut into triangles; triangles without area are dropped with a warning.
+/// By [`PartsBy::Group`], a part is a group (`g` or `o`, the later one counts) and within it a material
+/// (`usemtl`). It is called after its group if the group has one material or the material has the same
+/// name, else `group/material`; without a group after its material; without both `default`. By
+/// [`PartsBy::Material`], a part is a material, whatever its groups.
+///
+/// Polygons, concave ones too, are cut into triangles; triangles without area are dropped with a
+/// warning. A comment (`#`) may end any line; in names it follows a space. Material libraries are read for
+/// transparency alone, of which a warning says how much area it concerns.
 ///
 /// Coordinates are read and moved in f64, so `Origin::BaseCenter` loses nothing of a model that
 /// stands at map coordinates.
 ///
 /// # Errors
-/// A file that cannot be read, is not text, has a malformed vertex or face, or no face with an area.
-pub fn read_obj(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetError> {
+/// A file that cannot be read, is of another format, has a name that is not UTF-8, a malformed vertex or
+/// face, or no face with an area.
+pub fn read_obj(
+    path: &Path,
+    import: &Import,
+    parts_by: &PartsBy,
+) -> Result<Loaded<Mesh>, AssetError> {
     import.check(path)?;
+    format::check(path, Reader::Obj)?;
     let mut lines = Lines::open(path)?;
-    let mut model = Model::new(path, import);
-    let mut joined = String::new();
-    while let Some((number, line)) = lines.next()? {
-        if line.ends_with('\\') {
+    let mut model = Model::new(path, import, parts_by);
+    let mut joined = Vec::new();
+    while let Some((number, line)) = lines.next_bytes()? {
+        let line = without_comment(line);
+        if line.ends_with(b"\\") {
             joined.clear();
-            joined.push_str(line);
-            while joined.ends_with('\\') {
+            joined.extend_from_slice(line);
+            let is_name = is_name(line);
+            while joined.ends_with(b"\\") {
                 joined.pop();
-                joined.push_str(lines.continuation()?);
+                // The joint separates words.
+                joined.push(b' ');
+                let more = lines.continuation()?;
+                joined.extend_from_slice(&more[..comment(more, is_name)]);
+                joined.truncate(joined.trim_ascii_end().len());
             }
             model.statement(number, &joined)?;
         } else {
@@ -80,6 +104,7 @@ struct Deferred {
 /// What was read so far.
 struct Model<'a> {
     import: &'a Import,
+    parts_by: &'a PartsBy,
     mesh: Collector,
     /// (group, material) of each part, in first-appearance order; an empty name is none.
     parts: IndexSet<(String, String)>,
@@ -88,49 +113,68 @@ struct Model<'a> {
     /// Part of the next face; `None` after a change of group or material.
     part: Option<u32>,
     deferred: Vec<Deferred>,
+    /// True once all vertices of the file are read: more may then follow them.
+    is_read: bool,
+    /// Number of faces that cross themselves, and the first one's line.
+    crossed: (usize, usize),
+    /// What follows `mtllib`.
+    libraries: IndexSet<String>,
     /// First line of each unknown keyword.
     unknown: IndexMap<String, usize>,
     // Kept from face to face, for their memory.
     corners: Vec<i64>,
     polygon: Vec<u32>,
     points: Vec<DVec3>,
-    pieces: Vec<[usize; 3]>,
+    pieces: Pieces,
 }
 
 impl<'a> Model<'a> {
-    fn new(path: &Path, import: &'a Import) -> Self {
+    fn new(path: &Path, import: &'a Import, parts_by: &'a PartsBy) -> Self {
         Self {
             import,
+            parts_by,
             mesh: Collector::new(path),
             parts: IndexSet::new(),
             group: String::new(),
             material: String::new(),
             part: None,
             deferred: Vec::new(),
+            is_read: false,
+            crossed: (0, 0),
+            libraries: IndexSet::new(),
             unknown: IndexMap::new(),
             corners: Vec::new(),
             polygon: Vec::new(),
             points: Vec::new(),
-            pieces: Vec::new(),
+            pieces: Pieces::default(),
         }
     }
 
-    fn statement(&mut self, line: usize, text: &str) -> Result<(), AssetError> {
-        let (keyword, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    fn statement(&mut self, line: usize, text: &[u8]) -> Result<(), AssetError> {
+        let end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
+        let (keyword, rest) = text.split_at(end);
+        let decoded = decode(rest, &self.mesh.file, line);
         match keyword {
-            "v" => self.vertex(line, rest)?,
-            "f" | "fo" => self.face(line, rest)?,
-            "g" | "o" => {
-                self.group = words(rest);
+            b"v" => self.vertex(line, decoded?)?,
+            b"f" | b"fo" => self.face(line, decoded?)?,
+            b"g" | b"o" => {
+                self.group = words(decoded?);
                 self.part = None;
             }
-            "usemtl" => {
-                self.material = words(rest);
+            b"usemtl" => {
+                self.material = words(decoded?);
                 self.part = None;
             }
+            // Nothing but warnings comes of it, so its name may be in any encoding.
+            b"mtllib" if self.libraries.len() < MOST_LIBRARIES => {
+                self.libraries.extend(decoded.ok().map(|names| names.trim().to_owned()));
+            }
+            b"mtllib" => {}
+            _ if text.contains(&0) => drop(decode(text, &self.mesh.file, line)?),
             _ if IGNORED.contains(&keyword) => {}
             _ if self.unknown.len() < MOST_UNKNOWN => {
-                self.unknown.entry(excerpt(keyword)).or_insert(line);
+                let keyword = excerpt(&String::from_utf8_lossy(keyword));
+                self.unknown.entry(keyword).or_insert(line);
             }
             _ => {}
         }
@@ -182,24 +226,29 @@ impl<'a> Model<'a> {
             return Err(AssetError::LongFace { file, line, found, most: MOST_CORNERS });
         }
         let part = self.current_part();
-        if forward {
+        if forward || !self.cut(line, part, &corners)? {
             self.deferred.push(Deferred { line, part, corners });
             return Ok(());
         }
-        self.cut(line, part, &corners)?;
         self.corners = corners;
         Ok(())
     }
 
     fn current_part(&mut self) -> u32 {
-        let (parts, names) = (&mut self.parts, (&self.group, &self.material));
+        let parts = &mut self.parts;
+        let group = match self.parts_by {
+            PartsBy::Group => self.group.as_str(),
+            PartsBy::Material => "",
+        };
+        let material = &self.material;
         *self
             .part
-            .get_or_insert_with(|| parts.insert_full((names.0.clone(), names.1.clone())).0 as u32)
+            .get_or_insert_with(|| parts.insert_full((group.to_owned(), material.clone())).0 as u32)
     }
 
-    /// Adds the triangles of a face whose corners count from 1.
-    fn cut(&mut self, line: usize, part: u32, corners: &[i64]) -> Result<(), AssetError> {
+    /// Adds the triangles of a face whose corners count from 1. Returns false if that takes new vertices
+    /// while some of the file's are still to come.
+    fn cut(&mut self, line: usize, part: u32, corners: &[i64]) -> Result<bool, AssetError> {
         self.polygon.clear();
         for &corner in corners {
             let index = (corner - 1) as usize;
@@ -214,16 +263,34 @@ impl<'a> Model<'a> {
         let vertices = &self.mesh.vertices;
         self.points.clear();
         self.points.extend(self.polygon.iter().map(|&index| vertices[index as usize]));
-        if self.polygon.len() < 3 {
-            // A face with repeated corners; as a triangle without area it is dropped and counted.
-            let index = self.polygon[0];
-            return self.mesh.add_triangle([index; 3], part);
+        let tangled = |Tangled| AssetError::TangledFace { file: self.mesh.file.clone(), line };
+        triangulate(&self.points, &mut self.pieces).map_err(tangled)?;
+        let crossings = self.pieces.crossings.len();
+        if crossings > 0 && !self.is_read {
+            return Ok(false);
         }
-        triangulate(&self.points, &mut self.pieces);
-        for piece in &self.pieces {
+        if self.pieces.is_crossed {
+            let (count, first) = self.crossed;
+            // Faces that need new vertices come last.
+            let first = if count == 0 { line } else { first.min(line) };
+            self.crossed = (count + 1, first);
+        }
+        if self.pieces.triangles.is_empty() {
+            // A face without area, such as one of repeated corners: as a triangle it is dropped and counted.
+            let index = self.polygon[0];
+            self.mesh.add_triangle([index; 3], part)?;
+        }
+        let first = self.mesh.reserve(crossings)?;
+        for &crossing in &self.pieces.crossings {
+            let added = self.mesh.add_vertex(crossing);
+            let file = &self.mesh.file;
+            added.map_err(|value| AssetError::TooFar { file: file.clone(), line, value })?;
+        }
+        self.polygon.extend((0..crossings as u32).map(|crossing| first + crossing));
+        for piece in &self.pieces.triangles {
             self.mesh.add_triangle(piece.map(|place| self.polygon[place]), part)?;
         }
-        Ok(())
+        Ok(true)
     }
 
     fn no_such_vertex(&self, line: usize, index: i64) -> AssetError {
@@ -232,11 +299,27 @@ impl<'a> Model<'a> {
     }
 
     fn finish(mut self) -> Result<Loaded<Mesh>, AssetError> {
+        self.is_read = true;
         for Deferred { line, part, corners } in std::mem::take(&mut self.deferred) {
             self.cut(line, part, &corners)?;
         }
         for (keyword, line) in &self.unknown {
             self.mesh.warn(&format!("lines with {keyword:?} were left out (first: line {line})"));
+        }
+        let (crossed, first) = self.crossed;
+        if crossed > 0 {
+            self.mesh.warn(&format!(
+                "the outlines of {crossed} faces cross themselves (first: line {first}); what they \
+                 enclose counts once: check the order of their corners"
+            ));
+        }
+        let transparent = materials::transparent(&self.mesh.file, &self.libraries);
+        if !transparent.is_empty() {
+            let parts = self.parts.iter().enumerate();
+            let parts = parts.filter_map(|(part, (_, material))| {
+                Some((part as u32, transparent.get(material)?.clone()))
+            });
+            self.mesh.transparent.extend(parts);
         }
         self.mesh.finish(&part_names(&self.parts), self.import)
     }
