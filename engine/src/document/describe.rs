@@ -110,8 +110,18 @@ mod tests {
     use super::super::include;
 
     /// Keys whose strings are what they say: no names of definitions, no paths.
-    const PLAIN: [&str; 9] =
-        ["blue", "columns", "green", "name", "red", "title", "value", "variant", "wavelength"];
+    const PLAIN: [&str; 10] = [
+        "blue",
+        "columns",
+        "crs",
+        "green",
+        "name",
+        "red",
+        "title",
+        "value",
+        "variant",
+        "wavelength",
+    ];
 
     fn holds_text(schema: &Value) -> bool {
         match schema {

@@ -66,7 +66,7 @@ impl Spawner<'_> {
             }
         }
         if source.quantity == Quantity::Heights {
-            self.to_metres(&mut raster, source)?;
+            self.convert_heights(&mut raster, source)?;
         }
         self.warn_assumed(&raster, source);
         Some(raster)
@@ -119,7 +119,7 @@ impl Spawner<'_> {
     }
 
     /// Makes metres of heights.
-    fn to_metres(&mut self, raster: &mut Raster, source: &RasterSource<'_>) -> Option<()> {
+    fn convert_heights(&mut self, raster: &mut Raster, source: &RasterSource<'_>) -> Option<()> {
         let path = source.path;
         if let Some(heights) = raster.heights.as_ref().filter(|heights| heights.is_depth) {
             let message =

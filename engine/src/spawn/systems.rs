@@ -26,11 +26,10 @@ impl Spawner<'_> {
             return;
         };
         let problem = match &crs.axes {
-            Axes::Metres => None,
             Axes::Unknown if crs.heights.is_some() => {
                 Some("is a system of heights alone".to_owned())
             }
-            Axes::Unknown => None,
+            Axes::Metres | Axes::Unknown => None,
             Axes::Degrees => Some("is in degrees, but a scene is in metres".to_owned()),
             Axes::Length(unit) => {
                 Some(format!("is in the unit {}, but a scene is in metres", unit.name))

@@ -204,8 +204,10 @@ fn raster(path: &Path) -> Said {
         assert!((place.corner + place.cell * raster.size_in_cells()).is_finite(), "{place:?}");
     }
     let missing = raster.missing();
+    let told =
+        place.as_ref().map(|place| (place.corner, place.cell, &place.crs.name, &place.crs.axes));
     let text =
-        format!("{columns} x {rows} cells, {missing} without data, {class_names:?}, {place:?}");
+        format!("{columns} x {rows} cells, {missing} without data, {class_names:?}, {told:?}");
     let unit = place.as_ref().map(|place| (&place.crs.axes, place.projection.is_some()));
     let kind = format!("{} {} {} {unit:?}", bits(*columns), bits(*rows), missing > 0);
     (text, vec![kind])

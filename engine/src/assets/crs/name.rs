@@ -12,6 +12,13 @@ pub(crate) fn from_name(text: &str) -> Option<Crs> {
     if text.contains('[') {
         return from_wkt(text);
     }
+    // `urn:ogc:def:crs,crs:EPSG::26910,crs:EPSG::5703`.
+    if let Some((first, second)) =
+        text.strip_prefix("urn:ogc:def:crs,").and_then(|t| t.split_once(','))
+    {
+        let heights: Option<Heights> = from_name(second)?.heights;
+        return Some(Crs { heights, ..from_name(first)? });
+    }
     // `EPSG:4326`, `EPSG::4326`, `EPSG/0/4326`: the last item is the code.
     let last = text.rsplit([':', '/', '#', ' ']).next()?;
     let upper = last.to_ascii_uppercase();
@@ -28,8 +35,5 @@ pub(crate) fn from_name(text: &str) -> Option<Crs> {
         }
         return Some(crs);
     }
-    // `urn:ogc:def:crs,crs:EPSG::26910,crs:EPSG::5703`.
-    let (first, second) = text.strip_prefix("urn:ogc:def:crs,")?.split_once(',')?;
-    let heights: Option<Heights> = from_name(second)?.heights;
-    Some(Crs { heights, ..from_name(first)? })
+    None
 }

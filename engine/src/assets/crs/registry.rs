@@ -52,8 +52,7 @@ pub(crate) fn from_code(code: u32) -> Option<Crs> {
                 "projected" if crs.axes == Axes::Unknown => crs.axes = Axes::Metres,
                 "world" => crs.axes = Axes::World,
                 "vertical" => {
-                    let heights = crs.heights.get_or_insert(Heights::metres());
-                    heights.is_depth |= false;
+                    crs.heights.get_or_insert(Heights::metres());
                 }
                 "depth" => crs.heights.get_or_insert(Heights::metres()).is_depth = true,
                 "compound" => return compound(code, entry),

@@ -16,7 +16,7 @@ struct Node {
     name: String,
     /// Texts and numbers in order.
     values: Vec<String>,
-    children: Vec<Node>,
+    children: Vec<Self>,
 }
 
 impl Node {

@@ -171,11 +171,8 @@ impl Header {
             return crs;
         };
         // Where both say something, the unit of `map info` is that of its own numbers.
-        let axes = match (&crs.axes, &text.axes) {
-            (Axes::Unknown, axes) => axes.clone(),
-            (Axes::Metres, Axes::World) => Axes::World,
-            (axes, _) => axes.clone(),
-        };
+        let is_of_text = crs.axes == Axes::Unknown || text.axes == Axes::World;
+        let axes = if is_of_text { text.axes.clone() } else { crs.axes.clone() };
         let is_bare = crs.name.is_empty() || crs.utm.is_none();
         let (utm, datum) = (crs.utm.or(text.utm), crs.datum.clone().or(text.datum.clone()));
         let named =
@@ -213,6 +210,7 @@ pub(super) fn read(
 
 impl Header {
     fn layout(&self) -> Result<Layout, RasterError> {
+        let (columns, rows) = (self.whole("samples", None)?, self.whole("lines", None)?);
         let (kind, size) = match self.whole("data type", None)? {
             1 => (Kind::Unsigned, 1),
             2 => (Kind::Signed, 2),
@@ -251,8 +249,8 @@ impl Header {
             return Err(self.error(problem.to_owned()));
         }
         Ok(Layout {
-            columns: self.whole("samples", None)?,
-            rows: self.whole("lines", None)?,
+            columns,
+            rows,
             bands: self.whole("bands", Some(1))?.max(1),
             offset: self.whole("header offset", Some(0))?,
             interleave,

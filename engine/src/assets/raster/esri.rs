@@ -1,5 +1,5 @@
 //! Esri's binary rasters: values in `.bil`, `.bip`, `.bsq` or `.flt` beside a text header.
-//! Source: Esri, "BIL, BIP, and BSQ raster files" and "Float to raster" (ArcGIS documentation).
+//! Source: Esri, "BIL, BIP, and BSQ raster files" and "Float to raster" (`ArcGIS` documentation).
 
 use std::fs::File;
 use std::io::Read;

@@ -68,14 +68,12 @@ impl GeoKeys {
         let code = |key| self.number(key).filter(|code| *code != USER_DEFINED);
         let projected = code(PROJECTED_CRS).and_then(|code| from_code(code.into()));
         let geodetic = code(GEODETIC_CRS).and_then(|code| from_code(code.into()));
-        let mut crs = match (self.number(MODEL_TYPE), projected, geodetic) {
-            (Some(2), _, Some(crs)) => crs,
-            (Some(2), _, None) => Crs { axes: Axes::Degrees, ..self.named(GEODETIC_CITATION) },
-            (Some(3), ..) => Crs { axes: Axes::Geocentric, ..self.named(GEODETIC_CITATION) },
-            (_, Some(crs), _) => crs,
-            (Some(1), None, geodetic) => self.user_defined(geodetic.as_ref()),
-            (None, None, Some(crs)) => crs,
-            _ => self.named(CITATION),
+        let geographic = || Crs { axes: Axes::Degrees, ..self.named(GEODETIC_CITATION) };
+        let mut crs = match self.number(MODEL_TYPE) {
+            Some(2) => geodetic.unwrap_or_else(geographic),
+            Some(3) => Crs { axes: Axes::Geocentric, ..self.named(GEODETIC_CITATION) },
+            Some(1) => projected.unwrap_or_else(|| self.user_defined(geodetic.as_ref())),
+            _ => projected.or(geodetic).unwrap_or_else(|| self.named(CITATION)),
         };
         self.set_unit(&mut crs);
         self.set_heights(&mut crs);

@@ -20,7 +20,6 @@ type Tiff = Decoder<BufReader<Shown<File>>>;
 /// Samples beside those that are shown: 1 and 2 are opacities.
 const EXTRA_SAMPLES: Tag = Tag::ExtraSamples;
 
-#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` hands over")]
 fn wrong(error: TiffError) -> RasterError {
     match error {
         TiffError::UnsupportedError(problem) => RasterError::Unsupported(problem.to_string()),
@@ -156,8 +155,7 @@ impl Picture {
     /// Refuses what holds no one band; returns whether its second sample is a mask.
     fn check(&self) -> Result<bool, RasterError> {
         match (self.samples, self.has_mask) {
-            (1, _) => {}
-            (2, true) => {}
+            (1, _) | (2, true) => {}
             (samples, true) => return Err(RasterError::BandsWithMask(samples)),
             (samples, false) => return Err(RasterError::Bands(samples)),
         }

@@ -9,6 +9,7 @@ use super::Map;
 
 choice! {
     /// The ground.
+    #[expect(clippy::large_enum_variant, reason = "a scene has one")]
     pub enum Terrain ("a terrain") {
         /// Horizontal rectangle.
         Plane {
