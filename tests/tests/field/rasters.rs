@@ -28,46 +28,46 @@ pub(super) fn stand(scene: &str) -> Stood {
 /// Scenes in which instances stand on the ground at heights that are known, m; with what is told, if
 /// anything should be.
 fn stands_at(cases: &[(&str, &[f64], &str)]) {
-    let mut faults = String::new();
+    let mut faults: Vec<String> = Vec::new();
     for (scene, heights, told) in cases {
         match stand(scene) {
-            Err(problem) => faults += &format!("{scene} is refused: {problem}\n"),
+            Err(problem) => faults.push(format!("{scene} is refused: {problem}")),
             Ok((all, warnings)) => {
                 let found: Vec<f64> = all.iter().map(|placement| placement.position.z).collect();
                 // The ground is kept in f32 over its range.
                 let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 2e-4 * b.abs().max(1.0);
                 if found.len() != heights.len() || !found.iter().zip(*heights).all(is_near) {
-                    faults += &format!("{scene}: {found:?}, not {heights:?}\n");
+                    faults.push(format!("{scene}: {found:?}, not {heights:?}"));
                 }
                 if !warnings.contains(told) {
-                    faults += &format!("{scene} does not say {told:?}: {warnings}\n");
+                    faults.push(format!("{scene} does not say {told:?}: {warnings}"));
                 }
                 let is_quiet = told.is_empty();
                 if is_quiet
                     && warnings.matches("warning:").count() != warnings.matches("float").count()
                 {
-                    faults += &format!("{scene} warns: {warnings}\n");
+                    faults.push(format!("{scene} warns: {warnings}"));
                 }
             }
         }
     }
-    assert!(faults.is_empty(), "\n{faults}");
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
 /// Scenes that are refused, with parts of the message.
 pub(super) fn refused(cases: &[(&str, &[&str])]) {
-    let mut faults = String::new();
+    let mut faults: Vec<String> = Vec::new();
     for (scene, parts) in cases {
         match stand(scene) {
-            Ok((all, _)) => faults += &format!("{scene} is accepted: {} instances\n", all.len()),
+            Ok((all, _)) => faults.push(format!("{scene} is accepted: {} instances", all.len())),
             Err(problem) => {
                 for part in parts.iter().filter(|part| !problem.contains(**part)) {
-                    faults += &format!("{scene} does not say {part:?}: {problem}\n");
+                    faults.push(format!("{scene} does not say {part:?}: {problem}"));
                 }
             }
         }
     }
-    assert!(faults.is_empty(), "\n{faults}");
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
 #[test]
