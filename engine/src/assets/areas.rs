@@ -6,6 +6,7 @@ use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, Json
 use glam::DVec2;
 
 use super::AssetError;
+use super::crs::{Axes, Crs, from_name};
 use super::table::{Table, known_columns, missing};
 use super::text;
 use crate::geometry::Polygon;
@@ -20,19 +21,34 @@ const COLUMNS: [&str; 4] = ["x_m", "y_m", "ring", "hole"];
 /// 2 m are no stand.
 const NARROWEST: f64 = 2.0;
 
+/// Polygons and the coordinate reference system of their corners.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Areas {
+    /// The polygons in the file's order.
+    pub polygons: Vec<Polygon>,
+    /// The system, if the file names it.
+    pub crs: Option<Crs>,
+}
+
 /// All polygons of a GeoJSON file in metres, in its order; the third coordinate is left out.
 ///
 /// # Errors
 /// A file that cannot be read, is no GeoJSON, holds no polygon or anything without an area; a ring of
 /// less than three corners; coordinates in degrees, by the file's `crs` or, without one, by their
-/// range.
-pub fn read_geojson(path: &Path) -> Result<Vec<Polygon>, AssetError> {
+/// range; coordinates in another unit than metres.
+pub fn read_geojson(path: &Path) -> Result<Areas, AssetError> {
     let file = || path.to_owned();
     let bytes = text::size(path)?;
     if bytes > MOST_BYTES {
         return Err(AssetError::TooLarge { file: file(), bytes, most: MOST_BYTES });
     }
-    let read = GeoJson::from_reader(text::open(path)?)
+    let bytes = text::read(path)?;
+    // The mark that some programs write before UTF-8 text.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") || bytes.contains(&0) {
+        return Err(AssetError::NotText { file: file(), line: 1, guess: "it looks like UTF-16" });
+    }
+    let read = GeoJson::from_reader(bytes)
         .map_err(|error| AssetError::NotGeoJson { file: file(), reason: error.to_string() })?;
     let mut found = Found { path, polygons: Vec::new() };
     let crs = match read {
@@ -54,8 +70,14 @@ pub fn read_geojson(path: &Path) -> Result<Vec<Polygon>, AssetError> {
 
 /// The coordinate reference system that GeoJSON had until 2008's version became RFC 7946.
 fn crs(members: Option<&JsonObject>) -> Option<String> {
-    let name = members?.get("crs")?.get("properties")?.get("name")?.as_str()?;
-    Some(name.to_owned())
+    let crs = members?.get("crs")?;
+    let properties = crs.get("properties");
+    let name =
+        properties.and_then(|properties| properties.get("name")).and_then(|name| name.as_str());
+    // Before 2008 it was the number itself: `{"type": "EPSG", "properties": {"code": 4326}}`.
+    let code = properties.and_then(|properties| properties.get("code"));
+    let code = code.map(|code| code.to_string().trim_matches('"').to_owned());
+    name.map(str::to_owned).or(code).or_else(|| crs.as_str().map(str::to_owned))
 }
 
 struct Found<'a> {
@@ -103,23 +125,38 @@ impl Found<'_> {
     }
 
     /// The polygons, if they are what they should be.
-    fn finish(self, crs: Option<&str>) -> Result<Vec<Polygon>, AssetError> {
+    fn finish(self, name: Option<&str>) -> Result<Areas, AssetError> {
         let polygons = checked(self.path, self.polygons)?;
         let corners = || polygons.iter().flat_map(|polygon| &polygon.rings).flatten();
         let low = corners().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = corners().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let in_degrees = if let Some(name) = crs {
-            ["CRS84", "4326", "4258", "4269"].iter().any(|of| name.ends_with(of))
-        } else {
-            let globe = DVec2::new(180.0, 90.0);
-            low.cmpge(-globe).all()
-                && high.cmple(globe).all()
-                && (high - low).max_element() < NARROWEST
-        };
-        if in_degrees {
-            return Err(AssetError::InDegrees { file: self.path.to_owned(), x: low.x, y: low.y });
+        let file = || self.path.to_owned();
+        let crs = name.map(|name| from_name(name).unwrap_or_else(|| Crs::named(name)));
+        match crs.as_ref().map(|crs| &crs.axes) {
+            Some(Axes::Degrees) => {
+                return Err(AssetError::InDegrees { file: file(), x: low.x, y: low.y });
+            }
+            Some(Axes::Metres | Axes::Unknown) => {}
+            Some(axes) => {
+                let system = name.unwrap_or_default().to_owned();
+                let what = match axes {
+                    Axes::Length(unit) => format!("the unit {}", unit.name),
+                    Axes::World => "metres of a map of the world".to_owned(),
+                    _ => "distances from the centre of the Earth".to_owned(),
+                };
+                return Err(AssetError::NotInMetres { file: file(), what, system });
+            }
+            None => {
+                let globe = DVec2::new(180.0, 90.0);
+                let in_degrees = low.cmpge(-globe).all()
+                    && high.cmple(globe).all()
+                    && (high - low).max_element() < NARROWEST;
+                if in_degrees {
+                    return Err(AssetError::InDegrees { file: file(), x: low.x, y: low.y });
+                }
+            }
         }
-        Ok(polygons)
+        Ok(Areas { polygons, crs })
     }
 }
 

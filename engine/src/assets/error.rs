@@ -179,6 +179,12 @@ pub enum AssetError {
         .file.display(), .file.display()
     )]
     InDegrees { file: PathBuf, x: f64, y: f64 },
+    #[error(
+        "{}: is in {what} ({system}), but a scene is in metres on the ground; convert it: `ogr2ogr \
+         -t_srs EPSG:32633 metres.geojson {}` (UTM zone 33 north, for example)",
+        .file.display(), .file.display()
+    )]
+    NotInMetres { file: PathBuf, what: String, system: String },
 
     #[error("{}: {problem}", .file.display())]
     Gltf { file: PathBuf, problem: GltfError },

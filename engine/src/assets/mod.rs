@@ -13,6 +13,7 @@
 
 mod areas;
 mod crown;
+pub(crate) mod crs;
 mod discs;
 mod error;
 mod faces;
@@ -28,8 +29,9 @@ mod spectrum;
 mod table;
 mod text;
 
-pub use areas::{read_geojson, read_polygons};
+pub use areas::{Areas, read_geojson, read_polygons};
 pub use crown::{CrownError, CrownSpec, grow_crown};
+pub use crs::{Axes, Crs, Heights, Length, UtmZone};
 pub use discs::read_discs;
 pub use error::AssetError;
 pub use faces::mesh_of_faces;
@@ -37,8 +39,8 @@ pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
 pub use instances::{Row, StemTable, read_instances};
 pub use obj::read_obj;
-pub(crate) use raster::companion;
-pub use raster::{Place, Projection, Raster, RasterError, Unit, read_raster};
+pub(crate) use raster::companions;
+pub use raster::{Assumed, Extent, Place, Projection, Raster, RasterError, read_raster};
 pub use spectrum::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
 
 /// What was read, and what about it the author of the scene should know.

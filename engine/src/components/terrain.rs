@@ -9,6 +9,8 @@ pub struct Projection {
     pub name: String,
     /// Items between the size of a cell and the units, such as `13, North, WGS-84`.
     pub rest: String,
+    /// Well-known text of the system, if it is known.
+    pub wkt: Option<String>,
 }
 
 /// The ground over a rectangle, which is also the tile of a periodic scene and the reference area on

@@ -112,11 +112,12 @@ mod tests {
 
     /// Keys whose strings are what they say: no names of definitions, no paths. Those of parameters are
     /// qualified where formulas use them.
-    const PLAIN: [&str; 13] = [
+    const PLAIN: [&str; 14] = [
         "Grid",
         "Zip",
         "blue",
         "columns",
+        "crs",
         "green",
         "name",
         "params",

@@ -97,7 +97,7 @@ pub(super) fn write_header(
     }
     if let Some(place) = image.georeference {
         let (name, rest) = match &source.report.projection {
-            Some(Projection { name, rest }) => {
+            Some(Projection { name, rest, .. }) => {
                 (item(name), rest.split(',').map(item).collect::<Vec<_>>().join(", "))
             }
             None => ("Arbitrary".to_owned(), "0, North".to_owned()),
@@ -108,8 +108,18 @@ pub(super) fn write_header(
             "map info = {{{name}, 1, 1, {}, {}, {}, {}, {rest}, units=Meters}}",
             place.west, place.north, place.pixel_width, place.pixel_height
         )?;
+        let text = source.report.projection.as_ref().and_then(|projection| projection.wkt.as_ref());
+        if let Some(text) = text {
+            writeln!(file, "coordinate system string = {{{}}}", braceless(text))?;
+        }
     }
     Ok(())
+}
+
+/// `text` in one line and without braces, which would end a value in a header.
+fn braceless(text: &str) -> String {
+    let words: Vec<_> = text.split_whitespace().collect();
+    words.join(" ").replace(['{', '}'], "_")
 }
 
 /// `text` without the letters that end an item or a list in a header.

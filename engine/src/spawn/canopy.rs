@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::Spawner;
+use super::georaster::{Quantity, RasterSource};
 use super::meshes::Prototype;
 use crate::components::Placement;
 use crate::document::{Diagnostic, Instances};
@@ -8,8 +9,11 @@ use crate::geometry::Rectangle;
 use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
 use crate::terrain::Ground;
 
-/// Heights beyond this are no trees, m: a value for no data that the file does not name.
-const HIGHEST: f64 = 150.0;
+/// Heights beyond this are no trees, m: the tallest on Earth is 116 m high.
+const HIGHEST: f64 = 118.0;
+
+/// Few trees are higher than this, m.
+const TALL: f64 = 70.0;
 
 impl Spawner<'_> {
     /// Trees of a canopy height model; where that cannot be, a problem is noted.
@@ -20,7 +24,15 @@ impl Spawner<'_> {
         meshes: &BTreeMap<u32, Prototype>,
         ground: &Ground,
     ) -> Option<Vec<Placement>> {
-        let Instances::CanopyHeights { file, of, min_height_m, window, sink_m, name } = canopy
+        let Instances::CanopyHeights {
+            file,
+            of,
+            height_unit_m,
+            min_height_m,
+            window,
+            sink_m,
+            name,
+        } = canopy
         else {
             return None;
         };
@@ -29,13 +41,27 @@ impl Spawner<'_> {
         let terrain = Rectangle { min: corner, max: corner + ground.size() };
         let models = self.models(of, meshes, &path)?;
         let at = format!("{path}.file");
-        let model = self.cells(file, terrain, &at)?;
+        let source = RasterSource {
+            height_unit_m: *height_unit_m,
+            ..RasterSource::new(file, &at, Quantity::Heights)
+        };
+        let model = self.cells(&source, terrain)?;
         let beyond = |height: &&f64| height.abs() > HIGHEST;
         if let Some(height) = model.values.iter().find(beyond) {
             let message = format!("a tree of {height} m is not of this Earth");
-            let help = "if it stands for no data, name it in the file's header";
+            let help = "heights of a canopy are those above the ground: if these are above sea level (a \
+                        surface model), subtract the terrain (`gdal_calc.py -A surface.tif -B \
+                        terrain.tif --calc=A-B`); if they are in centimetres, write `height_unit_m: \
+                        0.01`; if it stands for no data, name it in the file's header";
             self.problems.push(Diagnostic::error(at, message).help(help));
             return None;
+        }
+        let highest = model.values.iter().copied().fold(0.0, f64::max);
+        if highest > TALL {
+            let message = format!("its highest tree is {highest} m high");
+            let help = "few trees on Earth are: if the heights are in decimetres, write `height_unit_m: 0.1`, \
+                        in feet `height_unit_m: 0.3048`; if they are above sea level, subtract the terrain";
+            self.problems.push(Diagnostic::warning(at.clone(), message).help(help));
         }
         let window = Window { a: window.0, b: window.1 };
         let found = crowns(&model, window, *min_height_m);

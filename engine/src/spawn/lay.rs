@@ -1,6 +1,7 @@
 use glam::DVec2;
 
 use super::Spawner;
+use super::georaster::RasterSource;
 use crate::assets::Raster;
 use crate::document::Diagnostic;
 use crate::geometry::Rectangle;
@@ -13,6 +14,8 @@ pub(super) struct Georeference {
     pub(super) to: DVec2,
     pub(super) scale: DVec2,
     pub(super) is_of_degrees: bool,
+    /// Whether the scene says what the coordinates of the terrain's file are.
+    pub(super) is_given: bool,
 }
 
 impl Spawner<'_> {
@@ -46,11 +49,11 @@ impl Spawner<'_> {
     /// A raster on the terrain, of which it covers at least a part.
     pub(super) fn cells(
         &mut self,
-        file: &str,
+        source: &RasterSource<'_>,
         terrain: Rectangle,
-        path: &str,
     ) -> Option<Cells<f64>> {
-        let raster = self.read(file, path)?;
+        let path = source.path;
+        let raster = self.georaster(source)?;
         let (corner, size) = self.lay(&raster, terrain, path)?;
         let end = corner + size;
         if !(corner.cmplt(terrain.max).all() && end.cmpgt(terrain.min).all()) {

@@ -4,9 +4,12 @@ mod canopy;
 mod crossing;
 mod doubts;
 mod files;
+mod fill;
+mod georaster;
 mod heights;
 mod images;
 mod instances;
+mod land_cover;
 mod lay;
 mod light;
 mod materials;
@@ -15,12 +18,14 @@ mod parts;
 mod plausible;
 mod raster;
 mod reach;
+mod relief;
 mod scatter;
 mod sensors;
 mod spectra;
 mod spectrum_table;
 mod standing;
 mod stems;
+mod systems;
 mod terrain;
 mod thermal;
 
@@ -30,10 +35,12 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 use hecs::{Entity, Or, World};
 
+use crate::assets::Axes;
 use crate::components::{MaterialId, Mesh, PartMaterials, Placement, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, Scene};
 use crate::terrain::Ground;
 use lay::Georeference;
+use systems::System;
 
 pub use files::missing_files;
 pub(crate) use files::named_files;
@@ -93,6 +100,10 @@ pub(crate) struct Spawner<'a> {
     rectangle: (DVec2, DVec2),
     /// Where rasters lie; `None` if that of the terrain does not say.
     georeference: Option<Georeference>,
+    /// What the coordinates of the terrain's raster are by its file.
+    terrain_axes: Axes,
+    /// Coordinate reference system of the scene, as soon as something says it.
+    system: Option<System>,
 }
 
 /// Makes the world of a scene; paths in it are relative to `folder`.
@@ -108,11 +119,13 @@ pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
     }
     let mut spawner = Spawner::new(scene, folder, Notes::default());
     let mut world = World::new();
+    spawner.frame_system();
     let patch = spawner.terrain();
     let ground = patch.as_ref().map(Ground::of);
     if let (Some(patch), Some(ground)) = (&patch, &ground) {
         spawner.doubt_overhangs(patch, ground);
         spawner.warn_flat_raster(patch);
+        spawner.doubt_seams(ground);
     }
     let meshes = spawner.meshes();
     let placements = spawner.instances(&meshes, ground.as_ref());
@@ -170,8 +183,10 @@ impl<'a> Spawner<'a> {
             to: DVec2::ZERO,
             scale: DVec2::ONE,
             is_of_degrees: false,
+            is_given: false,
         });
         let rectangle = (DVec2::ZERO, DVec2::ONE);
+        let (terrain_axes, system) = (Axes::Unknown, None);
         Self {
             scene,
             folder,
@@ -183,6 +198,8 @@ impl<'a> Spawner<'a> {
             origins,
             rectangle,
             georeference,
+            terrain_axes,
+            system,
         }
     }
 

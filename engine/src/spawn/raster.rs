@@ -1,14 +1,14 @@
-use std::collections::BTreeMap;
-
 use glam::DVec2;
 
 use super::Spawner;
+use super::georaster::{Quantity, RasterSource};
 use super::lay::Georeference;
-use crate::assets::{Projection, Raster, Unit, read_raster};
+use super::systems::projection_of;
+use crate::assets::{Extent, Projection, Raster};
 use crate::components::TerrainPatch;
-use crate::document::{Coordinates, Diagnostic, LandCover, NoData, Terrain, unknown_name};
+use crate::document::{Coordinates, Diagnostic, Terrain};
 use crate::geometry::Rectangle;
-use crate::terrain::{self, Cells, Parts};
+use crate::terrain::{self, Cells};
 
 /// Heights beyond this are no heights on Earth, m: a value for no data that the file does not name.
 const HIGHEST: f64 = 12_000.0;
@@ -28,30 +28,51 @@ impl Spawner<'_> {
             coordinates,
             no_data,
             lowest_m,
+            window,
+            height_unit_m,
+            size_m,
             ..
         } = &scene.terrain
         else {
             return None;
         };
-        let mut raster = self.read(file, "terrain.file")?;
+        let (east, north, up) = scene.frame.origin_m;
+        let extent = window.as_ref().map(|window| {
+            let corner = DVec2::from(window.corner_m) + DVec2::new(east, north);
+            Extent { min: corner, max: corner + DVec2::from(window.size_m) }
+        });
+        let source = RasterSource {
+            coordinates: coordinates.clone(),
+            has_size: size_m.is_some(),
+            height_unit_m: *height_unit_m,
+            extent,
+            ..RasterSource::new(file, "terrain.file", Quantity::Heights)
+        };
+        let mut raster = self.georaster(&source)?;
+        if let Some(place) = &raster.place {
+            self.terrain_axes = place.crs.axes.clone();
+        }
         let (corner, size) = self.rectangle_of(&raster)?;
         self.georeference = raster.place.as_ref().map(|place| Georeference {
             from: place.corner,
             to: corner,
             scale: size / (place.cell * raster.size_in_cells()),
             is_of_degrees: *coordinates != Some(Coordinates::Metres) && raster.is_in_degrees(),
+            is_given: source.has_size || coordinates.is_some(),
         });
         self.fill(&mut raster, no_data)?;
         let known = || raster.values.iter().filter(|height| !height.is_nan());
         let beyond = known().find(|height| height.abs() > HIGHEST);
         if let Some(height) = beyond {
             let message = format!("a height of {height} m is not of this Earth");
-            let help = "if it stands for no data, name it in the file's header";
+            let help = "if the heights are in centimetres, write `height_unit_m: 0.01` (0.1 for decimetres, \
+                        0.3048 for feet); if it stands for no data, name it in the file's header \
+                        (`gdal_edit.py -a_nodata`)";
             self.problems.push(Diagnostic::error("terrain.file", message).help(help));
             return None;
         }
         let lowest = known().copied().reduce(f64::min).unwrap_or(0.0);
-        let shift = lowest_m.map_or(-scene.frame.origin_m.2, |height| height - lowest);
+        let shift = lowest_m.map_or(-up, |height| height - lowest);
         let heights = Cells {
             columns: raster.columns,
             rows: raster.rows,
@@ -59,6 +80,7 @@ impl Spawner<'_> {
             corner,
             size,
         };
+        self.doubt_steepness(&heights);
         let (cover, parts) = match (material, land_cover) {
             (Some(name), _) => {
                 (None, vec![(name.clone(), self.known_material(name, "terrain.material")?)])
@@ -73,7 +95,7 @@ impl Spawner<'_> {
         let periodic = self.is_periodic();
         let mut patch = terrain::raster(&heights, *tolerance_m, cover.as_ref(), parts, periodic);
         if let Some(patch) = &mut patch {
-            patch.projection = self.projection(&raster);
+            patch.projection = self.frame_projection().or_else(|| self.projection(&raster));
         }
         if patch.is_none() {
             let message = "none of its cells has data".to_owned();
@@ -85,22 +107,10 @@ impl Spawner<'_> {
     /// Projection of the raster's coordinates, if they are those of the scene beyond its anchor.
     fn projection(&self, raster: &Raster) -> Option<Projection> {
         let place = raster.place.as_ref()?;
-        let Georeference { from, to, scale, is_of_degrees } = self.georeference?;
+        let Georeference { from, to, scale, is_of_degrees, .. } = self.georeference?;
         let (x, y, _) = self.scene.frame.origin_m;
         let is_kept = to == from - DVec2::new(x, y) && scale == DVec2::ONE && !is_of_degrees;
-        place.projection.clone().filter(|_| is_kept)
-    }
-
-    pub(super) fn read(&mut self, file: &str, path: &str) -> Option<Raster> {
-        let file = self.file(file);
-        self.files.extend(crate::assets::companion(&file));
-        match read_raster(&file) {
-            Ok(raster) => Some(raster),
-            Err(error) => {
-                self.problems.push(Diagnostic::error(path, error.to_string()));
-                None
-            }
-        }
+        place.projection.clone().or_else(|| projection_of(&place.crs)).filter(|_| is_kept)
     }
 
     /// South-west corner and extent of a raster, m, local frame.
@@ -119,8 +129,8 @@ impl Spawner<'_> {
             return Some((corner.unwrap_or(DVec2::ZERO), size?));
         };
         let extent = place.cell * raster.size_in_cells();
-        let problem = match (coordinates, &place.unit) {
-            (Some(Coordinates::Degrees), _) => {
+        let problem = match coordinates {
+            Some(Coordinates::Degrees) => {
                 let latitude = place.corner.y + 0.5 * extent.y;
                 let narrowing = latitude.to_radians().tan().abs() * 0.5 * extent.y.to_radians();
                 if narrowing < NARROWING && latitude.abs() < 89.0 {
@@ -131,11 +141,10 @@ impl Spawner<'_> {
                 format!("its rows differ in length by {narrowing:.1} % from its middle's")
             }
             _ if size.is_some() => String::new(),
-            (None, _) if raster.is_in_degrees() => {
+            None if raster.is_in_degrees() => {
                 let DVec2 { x, y } = place.corner;
                 format!("its coordinates are degrees: ({x}, {y}), in cells of {}", place.cell.x)
             }
-            (None, Unit::Other(name)) => format!("its coordinates are in {name}"),
             _ => String::new(),
         };
         if !problem.is_empty() {
@@ -158,112 +167,6 @@ impl Spawner<'_> {
         let (x, y, _) = scene.frame.origin_m;
         Some((corner.unwrap_or(place.corner - DVec2::new(x, y)), size.unwrap_or(extent)))
     }
-
-    /// Deals with cells without data.
-    fn fill(&mut self, raster: &mut Raster, no_data: &NoData) -> Option<()> {
-        let missing = raster.missing();
-        if missing == 0 {
-            return Some(());
-        }
-        match no_data {
-            NoData::Refuse => {
-                let (all, help) = (
-                    raster.values.len(),
-                    "write `no_data: Neighbours` to fill them from around, `Height(0.0)` to level \
-                     them, or `Hole` to leave them out",
-                );
-                let message = format!("{missing} of its {all} cells have no data");
-                self.problems.push(Diagnostic::error("terrain.file", message).help(help));
-                return None;
-            }
-            NoData::Neighbours => grow(raster),
-            NoData::Height(height) => {
-                raster.values.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = *height);
-            }
-            NoData::Hole => {}
-        }
-        Some(())
-    }
-
-    /// The part of each cell of a land cover, and the parts.
-    fn land_cover(&mut self, cover: &LandCover, terrain: Rectangle) -> Option<(Cells<u16>, Parts)> {
-        let raster = self.read(&cover.file, "terrain.land_cover.file")?;
-        for name in cover.classes.keys().filter(|name| name.parse::<f64>().is_err()) {
-            if !raster.class_names.contains(name) {
-                let known = raster.class_names.iter().map(String::as_str);
-                let path = format!("terrain.land_cover.classes.{name}");
-                self.problems.push(unknown_name(path, "class", name, known));
-            }
-        }
-        let (low, size) = self.lay(&raster, terrain, "terrain.land_cover.file")?;
-        let (high, room) = (low + size, 1e-6 * terrain.size());
-        if !(low.cmple(terrain.min + room).all() && high.cmpge(terrain.max - room).all()) {
-            let Rectangle { min, max } = terrain;
-            let message = format!(
-                "the land cover reaches from ({}, {}) to ({}, {}) m, the heights from ({}, {}) to \
-                 ({}, {}) m",
-                low.x, low.y, high.x, high.y, min.x, min.y, max.x, max.y
-            );
-            let help = "give every place a class, or cut the heights";
-            self.problems.push(Diagnostic::error("terrain.land_cover.file", message).help(help));
-            return None;
-        }
-        let mut parts: Parts = Vec::new();
-        let mut known: BTreeMap<i64, Option<u16>> = BTreeMap::new();
-        let mut values = Vec::with_capacity(raster.values.len());
-        for &class in &raster.values {
-            // Classes are whole numbers; what has no data is a class without a number.
-            let key = if class.is_nan() { i64::MIN } else { class as i64 };
-            let part =
-                known.entry(key).or_insert_with(|| self.class(class, cover, &raster, &mut parts));
-            values.push(part.unwrap_or(0));
-        }
-        if known.values().any(Option::is_none) {
-            return None;
-        }
-        let (columns, rows) = (raster.columns, raster.rows);
-        Some((Cells { columns, rows, values, corner: low, size }, parts))
-    }
-
-    /// The part of a class; a note if it has no material.
-    fn class(
-        &mut self,
-        class: f64,
-        cover: &LandCover,
-        raster: &Raster,
-        parts: &mut Parts,
-    ) -> Option<u16> {
-        let path = "terrain.land_cover.classes";
-        let number = class.to_string();
-        let name = raster.class_names.get(class as usize).filter(|_| class >= 0.0);
-        let written = |text: &str| text.parse::<f64>().ok() == Some(class);
-        let material = cover
-            .classes
-            .iter()
-            .find(|(key, _)| written(key) || Some(*key) == name)
-            .map(|(_, material)| material);
-        let Some(material) = material else {
-            let message = match name {
-                _ if class.is_nan() => "the land cover has cells without data".to_owned(),
-                Some(name) => format!("class {number} (`{name}`) has no material"),
-                None => format!("class {number} has no material"),
-            };
-            let help = if class.is_nan() {
-                "give them a class".to_owned()
-            } else {
-                format!("add `\"{number}\": \"..\"` with the name of a material")
-            };
-            self.problems.push(Diagnostic::error(path, message).help(help));
-            return None;
-        };
-        let id = self.known_material(material, &format!("{path}.{number}"))?;
-        // Classes of one material need no border between them.
-        let part = parts.iter().position(|(_, known)| *known == id).unwrap_or_else(|| {
-            parts.push((material.clone(), id));
-            parts.len() - 1
-        });
-        Some(part as u16)
-    }
 }
 
 /// Length of a degree of longitude and latitude, m, on the WGS 84 ellipsoid.
@@ -279,38 +182,6 @@ fn metres_of_degree(latitude: f64) -> DVec2 {
     DVec2::new(SEMI_MAJOR / root * cos, meridian) * 1_f64.to_radians()
 }
 
-/// Gives cells without data the mean of their eight neighbours that have any, ring by ring.
-fn grow(raster: &mut Raster) {
-    let (columns, rows) = (raster.columns, raster.rows);
-    let around = |cell: usize| {
-        let (x, y) = (cell % columns, cell / columns);
-        let (xs, ys) =
-            (x.saturating_sub(1)..(x + 2).min(columns), y.saturating_sub(1)..(y + 2).min(rows));
-        ys.flat_map(move |y| xs.clone().map(move |x| y * columns + x))
-    };
-    let mut candidates: Vec<usize> =
-        (0..raster.values.len()).filter(|&cell| raster.values[cell].is_nan()).collect();
-    while !candidates.is_empty() {
-        let mut ring = Vec::new();
-        for &cell in &candidates {
-            let known = around(cell).map(|c| raster.values[c]).filter(|height| !height.is_nan());
-            let (sum, count) =
-                known.fold((0.0, 0), |(sum, count), height| (sum + height, count + 1));
-            if count > 0 {
-                ring.push((cell, sum / f64::from(count)));
-            }
-        }
-        for &(cell, height) in &ring {
-            raster.values[cell] = height;
-        }
-        // The next ring lies around this one: to ask all cells each time would never end.
-        let next = ring.iter().flat_map(|&(cell, _)| around(cell));
-        candidates = next.filter(|&cell| raster.values[cell].is_nan()).collect();
-        candidates.sort_unstable();
-        candidates.dedup();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -320,27 +191,5 @@ mod tests {
         // 78.847 km and 111.132 km on WGS 84, as any geodesy table says.
         let DVec2 { x, y } = metres_of_degree(45.0);
         assert!((x - 78_847.0).abs() < 1.0 && (y - 111_132.0).abs() < 1.0, "{x} {y}");
-    }
-
-    #[test]
-    fn cells_without_data_are_filled_ring_by_ring() {
-        let nan = f64::NAN;
-        let values = vec![1.0, nan, nan, 4.0];
-        let mut raster =
-            Raster { columns: 4, rows: 1, values, place: None, class_names: Vec::new() };
-        grow(&mut raster);
-        assert_eq!(raster.values, [1.0, 1.0, 4.0, 4.0]);
-        // Of one known cell among 2^20, a thousand rings: in no time.
-        let mut values = vec![nan; 1 << 20];
-        values[0] = 7.0;
-        let mut raster = Raster {
-            columns: 1 << 10,
-            rows: 1 << 10,
-            values,
-            place: None,
-            class_names: Vec::new(),
-        };
-        grow(&mut raster);
-        assert!(raster.values.iter().all(|&height| (height - 7.0).abs() < 1e-12));
     }
 }

@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::Spawner;
+use super::georaster::{Quantity, RasterSource};
 use super::meshes::Prototype;
 use crate::assets;
 use crate::components::Placement;
@@ -135,7 +136,7 @@ impl Spawner<'_> {
         path: &str,
     ) -> Option<Cells<f64>> {
         let path = format!("{path}.file");
-        let mut cells = self.cells(file, terrain, &path)?;
+        let mut cells = self.cells(&RasterSource::new(file, &path, Quantity::Density), terrain)?;
         if let Some(value) = cells.values.iter().find(|value| **value < 0.0) {
             let message = format!("a density of {value} stems per hectare");
             let help = "if it stands for no data, name it in the file's header";
@@ -175,6 +176,7 @@ impl Spawner<'_> {
             for (index, area) in areas.iter().enumerate() {
                 let path = format!("{path}.{key}[{index}]");
                 let found = spawner.polygons(area, &path)?;
+                spawner.doubt_area(&found, terrain, &path);
                 owners.extend(found.iter().map(|_| path.clone()));
                 polygons.extend(found);
             }
@@ -208,6 +210,7 @@ impl Spawner<'_> {
 
     /// Polygons of an area in the local frame.
     fn polygons(&mut self, area: &Area, path: &str) -> Option<Vec<Polygon>> {
+        let crs;
         let (read, is_georeferenced) = match area {
             Area::Polygon { outline_m, holes_m } => {
                 let ring = |ring: &Vec<(f64, f64)>| ring.iter().copied().map(DVec2::from).collect();
@@ -215,15 +218,24 @@ impl Spawner<'_> {
                 return Some(vec![Polygon { rings }]);
             }
             Area::GeoJson { file, georeferenced } => {
-                (assets::read_geojson(&self.file(file)), *georeferenced)
+                let (areas, named) = match assets::read_geojson(&self.file(file)) {
+                    Ok(areas) => (Ok(areas.polygons), areas.crs),
+                    Err(error) => (Err(error), None),
+                };
+                crs = named.map(|crs| (crs, file));
+                (areas, *georeferenced)
             }
             Area::Table { file, georeferenced } => {
+                crs = None;
                 (assets::read_polygons(&self.file(file)), *georeferenced)
             }
         };
         match read {
             Ok(mut polygons) => {
                 if is_georeferenced {
+                    if let Some((crs, file)) = &crs {
+                        self.check_system(crs, file, &format!("{path}.file"))?;
+                    }
                     let (x, y, _) = self.scene.frame.origin_m;
                     let corners =
                         polygons.iter_mut().flat_map(|polygon| &mut polygon.rings).flatten();

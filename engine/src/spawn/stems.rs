@@ -234,6 +234,7 @@ impl Spawner<'_> {
             to: DVec2::ZERO,
             scale: DVec2::ONE,
             is_of_degrees: false,
+            is_given: false,
         })
     }
 

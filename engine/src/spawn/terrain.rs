@@ -10,14 +10,16 @@ impl Spawner<'_> {
     /// The terrain, unless something is wrong with it.
     pub(super) fn terrain(&mut self) -> Option<TerrainPatch> {
         let scene = self.scene;
-        Some(match &scene.terrain {
+        let projection = self.frame_projection();
+        let patch = match &scene.terrain {
             Terrain::Plane { size_m, material, corner_m, height_m } => {
                 let material = self.known_material(material, "terrain.material")?;
                 plane(DVec2::from(*corner_m), DVec2::from(*size_m), *height_m, material)
             }
-            Terrain::Raster { .. } => self.raster()?,
+            Terrain::Raster { .. } => return self.raster(),
             Terrain::Mesh { mesh, at_m } => self.terrain_mesh(mesh, DVec3::from(*at_m))?,
-        })
+        };
+        Some(TerrainPatch { projection, ..patch })
     }
 
     pub(super) fn is_periodic(&self) -> bool {

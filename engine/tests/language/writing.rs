@@ -505,7 +505,8 @@ fn light() -> BoxedStrategy<(Option<Sun>, Sky)> {
 }
 
 fn ground() -> BoxedStrategy<(Frame, Terrain, Boundary)> {
-    let frame = (number(), number(), number()).prop_map(|origin_m| Frame { origin_m });
+    let frame = ((number(), number(), number()), option(text()))
+        .prop_map(|(origin_m, crs)| Frame { origin_m, crs });
     let terrain = ((number(), number()), text(), (number(), number()), number()).prop_map(
         |(size_m, material, corner_m, height_m)| Terrain::Plane {
             size_m,

@@ -192,11 +192,11 @@ fn raster(path: &Path) -> Said {
             std::fs::write(values_path, values).expect("a file of values");
         }
     }
-    let raster = match read_raster(path) {
+    let raster = match read_raster(path, None) {
         Ok(raster) => raster,
         Err(error) => return said(&error),
     };
-    let Raster { columns, rows, values, place, class_names } = &raster;
+    let Raster { columns, rows, values, place, class_names, .. } = &raster;
     assert_eq!(values.len(), columns * rows, "a value a cell");
     assert!(values.iter().all(|value| !value.is_infinite()), "no value is infinite");
     if let Some(place) = place {
@@ -204,15 +204,17 @@ fn raster(path: &Path) -> Said {
         assert!((place.corner + place.cell * raster.size_in_cells()).is_finite(), "{place:?}");
     }
     let missing = raster.missing();
+    let told =
+        place.as_ref().map(|place| (place.corner, place.cell, &place.crs.name, &place.crs.axes));
     let text =
-        format!("{columns} x {rows} cells, {missing} without data, {class_names:?}, {place:?}");
-    let unit = place.as_ref().map(|place| (&place.unit, place.projection.is_some()));
+        format!("{columns} x {rows} cells, {missing} without data, {class_names:?}, {told:?}");
+    let unit = place.as_ref().map(|place| (&place.crs.axes, place.projection.is_some()));
     let kind = format!("{} {} {} {unit:?}", bits(*columns), bits(*rows), missing > 0);
     (text, vec![kind])
 }
 
 fn geojson(path: &Path) -> Said {
-    areas(read_geojson(path))
+    areas(read_geojson(path).map(|areas| areas.polygons))
 }
 
 fn polygons(path: &Path) -> Said {

@@ -1,14 +1,21 @@
 //! ESRI ASCII grids: a few keys, then the values row by row from the north.
 
+use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use glam::DVec2;
 
 use super::super::AssetError;
+use super::super::crs::Crs;
 use super::super::error::excerpt;
 use super::super::text::open;
-use super::{Place, Raster, RasterError, Unit, cells, is_no_data, length};
+use super::metadata::Band;
+use super::window::Window;
+use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
+
+/// Stands for no data where a grid does not say what does. Source: Esri, "ESRI ASCII raster format".
+const DEFAULT_NO_DATA: f64 = -9999.0;
 
 /// Longest word, bytes: a number has far fewer.
 const LONGEST_WORD: usize = 64;
@@ -77,7 +84,8 @@ impl Header {
         let Some(index) = KEYS.iter().position(|(known, _)| *known == name) else {
             return Err(RasterError::AsciiKey { line, found: excerpt(key) });
         };
-        let number = value.parse::<f64>().ok().filter(|&number| match KEYS[index].1 {
+        let number = if name == "nodata_value" { parse_no_data(value) } else { value.parse().ok() };
+        let number = number.filter(|&number: &f64| match KEYS[index].1 {
             "a whole number above 0" => number >= 1.0 && number.fract() == 0.0 && number < 1e15,
             "a number above 0" => number > 0.0 && number.is_finite(),
             // No data may be NaN.
@@ -117,19 +125,17 @@ impl Header {
     }
 }
 
-pub(super) fn read(path: &Path) -> Result<Raster, AssetError> {
-    let file = open(path)?;
-    let bytes = length(&file);
-    let mut words =
-        Words { reader: BufReader::with_capacity(1 << 16, file), line: 1, word: Vec::new() };
+/// The header and the first value, if there is any.
+fn read_header(
+    words: &mut Words<BufReader<File>>,
+    path: &Path,
+) -> Result<(Header, Option<String>), AssetError> {
     let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
     let mut header = Header::default();
-    let mut first = None;
     while let Some((line, word)) = words.next().map_err(unreadable)? {
-        if word.parse::<f64>().is_ok() {
-            first = Some(word.to_owned());
-            break;
+        if is_number(word) {
+            return Ok((header, Some(word.to_owned())));
         }
         let key = word.to_owned();
         if !key.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_') {
@@ -142,29 +148,60 @@ pub(super) fn read(path: &Path) -> Result<Raster, AssetError> {
         let value = words.next().map_err(unreadable)?.map_or_else(String::new, |w| w.1.to_owned());
         header.set(line, &key, &value).map_err(wrong)?;
     }
+    Ok((header, None))
+}
+
+fn is_number(word: &str) -> bool {
+    word.parse::<f64>().is_ok() || word.contains('#') && parse_no_data(word).is_some()
+}
+
+pub(super) fn read(path: &Path, extent: Option<&Extent>) -> Result<Raster, AssetError> {
+    let file = open(path)?;
+    let bytes = length(&file);
+    let mut words =
+        Words { reader: BufReader::with_capacity(1 << 16, file), line: 1, word: Vec::new() };
+    let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
+    let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
+    let (header, first) = read_header(&mut words, path)?;
     let columns = header.needed("ncols", "ncols 100").map_err(wrong)? as u64;
     let rows = header.needed("nrows", "nrows 100").map_err(wrong)? as u64;
     let cell = header.cell().map_err(wrong)?;
     let corner = |axis| header.corner(axis, cell[axis]);
     let corner = DVec2::new(corner(0).map_err(wrong)?, corner(1).map_err(wrong)?);
-    let count = cells(columns, rows).map_err(wrong)?;
+    let (auxiliary, of_auxiliary) = sidecar::auxiliary(path).map_err(wrong)?;
+    let crs = sidecar::projection(path).map_err(wrong)?.or(of_auxiliary);
+    let crs = crs.unwrap_or_else(|| Crs::named(""));
+    let place = Place { corner, cell, crs, projection: None };
+    let (window, place) = Window::new(columns, rows, Some(&place), extent).map_err(wrong)?;
+    let count = columns.saturating_mul(rows);
+    if count > MOST_CELLS * MOST_CELLS {
+        return Err(wrong(RasterError::TooMany { columns, rows, most: MOST_CELLS }));
+    }
     // A value takes a digit and a space; the last one needs no space.
-    let needed = 2 * count as u64 - 1;
+    let needed = 2 * count - 1;
     if bytes < needed {
         let problem = RasterError::TooShort { columns, rows, needed, found: bytes };
         return Err(wrong(problem));
     }
     let no_data = header.get("nodata_value");
+    let band = Band { no_data, ..Band::default() }.or(auxiliary);
+    let no_data = band.no_data.or(Some(DEFAULT_NO_DATA));
+    let band = Band { no_data, ..band };
+    let count = count as usize;
     let (columns, rows) = (columns as usize, rows as usize);
-    let mut values = Vec::with_capacity(count);
+    let mut values = Vec::with_capacity(window.len());
+    let mut read = 0;
     let mut take = |line: usize, word: &str| {
-        let value: f64 = word
-            .parse()
-            .map_err(|_invalid| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
-        if values.len() == count {
+        let value = if word.contains('#') { parse_no_data(word) } else { word.parse().ok() };
+        let value: f64 =
+            value.ok_or_else(|| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
+        if read == count {
             return Err(wrong(RasterError::Long { line, columns, rows }));
         }
-        values.push(if is_no_data(value, no_data) { f64::NAN } else { value });
+        if window.columns.contains(&(read % columns)) && window.rows.contains(&(read / columns)) {
+            values.push(value);
+        }
+        read += 1;
         Ok(())
     };
     if let Some(first) = first {
@@ -173,10 +210,14 @@ pub(super) fn read(path: &Path) -> Result<Raster, AssetError> {
     while let Some((line, word)) = words.next().map_err(unreadable)? {
         take(line, word)?;
     }
-    if values.len() < count {
-        let found = values.len();
-        return Err(wrong(RasterError::Short { columns, rows, found }));
+    if read < count {
+        return Err(wrong(RasterError::Short { columns, rows, found: read }));
     }
-    let place = Some(Place { corner, cell, unit: Unit::Unknown, projection: None });
-    Raster { columns, rows, values, place, class_names: Vec::new() }.checked().map_err(wrong)
+    let assumed = band.apply(&mut values);
+    let of_crs = place.as_ref().and_then(|place| place.crs.heights.as_ref());
+    let heights = band.heights(of_crs).map_err(wrong)?;
+    let (columns, rows) = (window.columns.len(), window.rows.len());
+    Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed }
+        .checked()
+        .map_err(wrong)
 }

@@ -1,5 +1,5 @@
-//! What a TIFF says about its sizes, held against the length of the file before any reader asks for
-//! memory. Source: TIFF 6.0, section 2; `BigTIFF` has wider fields and is otherwise alike.
+//! The directories of a TIFF: their sizes, held against the length of the file before any reader asks
+//! for memory, and how their values are shown. Source: TIFF 6.0, section 2; `BigTIFF` has wider fields and is otherwise alike.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -8,7 +8,12 @@ use super::RasterError;
 /// Most tags of a directory: classic TIFF counts them in 16 bits.
 const MOST_TAGS: u64 = u16::MAX as u64;
 
+/// Most directories that are looked at: overviews and masks of one picture are a few dozen.
+const MOST_DIRECTORIES: usize = 64;
+
 /// Tags by their numbers.
+const SUBFILE: u16 = 254;
+const PHOTOMETRIC: u16 = 262;
 const WIDTH: u16 = 256;
 const HEIGHT: u16 = 257;
 const BITS: u16 = 258;
@@ -34,14 +39,37 @@ fn expansion(compression: u64) -> u64 {
 /// Bytes of a value of each type, from type 1.
 const SIZES: [u64; 18] = [1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8];
 
-/// The tags that say how large something is.
-struct Sizes {
-    width: u64,
-    height: u64,
+/// Tags of a directory that are needed before it is decoded.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Directory {
+    pub(super) width: u64,
+    pub(super) height: u64,
     bits: u64,
     compression: u64,
     tile_width: u64,
     tile_height: u64,
+    /// What the picture is to others in the file, in bits.
+    subfile: u64,
+    /// How values are shown, and the byte of the file where that is written.
+    pub(super) photometric: Option<Written>,
+    next: u64,
+}
+
+/// A number of 16 bits in a file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Written {
+    pub(super) value: u64,
+    pub(super) at: u64,
+}
+
+impl Directory {
+    /// Whether it is the mask of a picture of the full size.
+    pub(super) fn is_mask_of(&self, other: &Self) -> bool {
+        const MASK: u64 = 4;
+        const REDUCED: u64 = 1;
+        self.subfile & (MASK | REDUCED) == MASK
+            && (self.width, self.height) == (other.width, other.height)
+    }
 }
 
 /// Whole numbers in the file's order of bytes.
@@ -61,11 +89,32 @@ impl<R: Read + Seek> Numbers<R> {
     }
 }
 
-/// Refuses a file that is too short for what its first directory says.
-pub(super) fn check(reader: impl Read + Seek, length: u64) -> Result<(), RasterError> {
+/// Directories of a file, of which the first is one of a picture that the file is long enough for.
+pub(super) fn read(reader: impl Read + Seek, length: u64) -> Result<Vec<Directory>, RasterError> {
     let cut = |_cut| RasterError::Tiff("its list of tags is cut off".to_owned());
-    let sizes = sizes(reader, length).map_err(cut)??;
-    let Sizes { width, height, bits, compression, tile_width, tile_height } = sizes;
+    let mut numbers = Numbers { reader, is_big: false };
+    let (wide, mut start) = head(&mut numbers).map_err(cut)?;
+    let mut directories = Vec::new();
+    while start != 0 && directories.len() < MOST_DIRECTORIES {
+        let directory = match directory(&mut numbers, start, wide, length) {
+            Ok(directory) => directory?,
+            // What lies behind the first picture is not needed to read it.
+            Err(_cut) if !directories.is_empty() => break,
+            Err(error) => return Err(cut(error)),
+        };
+        check(&directory, length)?;
+        start = directory.next;
+        directories.push(directory);
+    }
+    if directories.is_empty() {
+        return Err(RasterError::Tiff("it holds no picture".to_owned()));
+    }
+    Ok(directories)
+}
+
+/// Refuses a file that is too short for what a directory says.
+fn check(directory: &Directory, length: u64) -> Result<(), RasterError> {
+    let &Directory { width, height, bits, compression, tile_width, tile_height, .. } = directory;
     for (columns, rows) in [(width, height), (tile_width, tile_height)] {
         let cells = u128::from(columns) * u128::from(rows);
         let needed = (cells * u128::from(bits)).div_ceil(u128::from(8 * expansion(compression)));
@@ -77,21 +126,28 @@ pub(super) fn check(reader: impl Read + Seek, length: u64) -> Result<(), RasterE
     Ok(())
 }
 
-fn sizes(reader: impl Read + Seek, length: u64) -> io::Result<Result<Sizes, RasterError>> {
-    let mut numbers = Numbers { reader, is_big: false };
+/// Bytes of an offset, and where the first directory starts.
+fn head(numbers: &mut Numbers<impl Read + Seek>) -> io::Result<(usize, u64)> {
     numbers.is_big = numbers.next(2)? == u64::from(u16::from_le_bytes(*b"MM"));
-    let (wide, count) = match numbers.next(2)? {
+    let wide = match numbers.next(2)? {
         43 => {
             numbers.next(4)?;
-            (8, 8)
+            8
         }
-        _ => (4, 2),
+        _ => 4,
     };
-    let start = numbers.next(wide)?;
+    Ok((wide, numbers.next(wide)?))
+}
+
+fn directory(
+    numbers: &mut Numbers<impl Read + Seek>,
+    start: u64,
+    wide: usize,
+    length: u64,
+) -> io::Result<Result<Directory, RasterError>> {
     numbers.reader.seek(SeekFrom::Start(start))?;
-    let tags = numbers.next(count)?;
-    let mut sizes =
-        Sizes { width: 0, height: 0, bits: 1, compression: 1, tile_width: 0, tile_height: 0 };
+    let tags = numbers.next(if wide == 8 { 8 } else { 2 })?;
+    let mut found = Directory { bits: 1, compression: 1, ..Directory::default() };
     for _ in 0..tags.min(MOST_TAGS) {
         let tag = numbers.next(2)? as u16;
         let kind = numbers.next(2)? as usize;
@@ -109,21 +165,82 @@ fn sizes(reader: impl Read + Seek, length: u64) -> io::Result<Result<Sizes, Rast
         }
         // A value that fits stands right there, from the first byte on.
         let is_here = count == 1 && (1..=wide as u64).contains(&size);
+        let at = numbers.reader.stream_position()?;
         let value = numbers.next(if is_here { size as usize } else { wide })?;
         let rest = if is_here { wide - size as usize } else { 0 };
         numbers.next(rest)?;
         let place = match tag {
-            WIDTH => &mut sizes.width,
-            HEIGHT => &mut sizes.height,
-            BITS => &mut sizes.bits,
-            COMPRESSION => &mut sizes.compression,
-            TILE_WIDTH => &mut sizes.tile_width,
-            TILE_HEIGHT => &mut sizes.tile_height,
+            SUBFILE => &mut found.subfile,
+            WIDTH => &mut found.width,
+            HEIGHT => &mut found.height,
+            BITS => &mut found.bits,
+            COMPRESSION => &mut found.compression,
+            TILE_WIDTH => &mut found.tile_width,
+            TILE_HEIGHT => &mut found.tile_height,
+            PHOTOMETRIC if is_here && size == 2 => {
+                found.photometric = Some(Written { value, at });
+                continue;
+            }
             _ => continue,
         };
         if is_here {
             *place = value;
         }
     }
-    Ok(Ok(sizes))
+    found.next = numbers.next(wide)?;
+    Ok(Ok(found))
+}
+
+/// A file that reads as another one where some numbers of 16 bits are concerned.
+///
+/// The library inverts values whose photometric interpretation is "white is zero", and decodes no
+/// palettes and masks; what is stored are numbers all the same, so all are read as "black is zero".
+pub(super) struct Shown<R> {
+    inner: R,
+    /// Bytes that are read as others.
+    bytes: Vec<(u64, u8)>,
+}
+
+impl<R: Read + Seek> Shown<R> {
+    /// Reads the photometric interpretation of numbers, palettes and masks as "black is zero".
+    pub(super) fn new(mut inner: R, directories: &[Directory]) -> io::Result<Self> {
+        const WHITE_IS_ZERO: u64 = 0;
+        const BLACK_IS_ZERO: u8 = 1;
+        const PALETTE: u64 = 3;
+        const MASK: u64 = 4;
+        inner.rewind()?;
+        let mut order = [0; 2];
+        inner.read_exact(&mut order)?;
+        let is_big = order == *b"MM";
+        inner.rewind()?;
+        let bytes = directories
+            .iter()
+            .filter_map(|directory| directory.photometric)
+            .filter(|written| matches!(written.value, WHITE_IS_ZERO | PALETTE | MASK))
+            .flat_map(|Written { at, .. }| {
+                let low = u64::from(is_big);
+                [(at + low, BLACK_IS_ZERO), (at + 1 - low, 0)]
+            })
+            .collect();
+        Ok(Self { inner, bytes })
+    }
+}
+
+impl<R: Read + Seek> Read for Shown<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let start = self.inner.stream_position()?;
+        let count = self.inner.read(buffer)?;
+        for &(at, byte) in &self.bytes {
+            if let Some(offset) = at.checked_sub(start).filter(|offset| *offset < count as u64) {
+                buffer[offset as usize] = byte;
+            }
+        }
+        Ok(count)
+    }
+}
+
+impl<R: Seek> Seek for Shown<R> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.inner.seek(to)
+    }
 }

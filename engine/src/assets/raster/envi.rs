@@ -1,44 +1,53 @@
 //! ENVI rasters: raw values beside a text header.
 
-use std::fs::{self, File};
-use std::io::{Read, Seek, SeekFrom};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use super::super::crs::{Axes, Crs, Length, UtmZone, from_wkt};
 use super::super::error::excerpt;
-use super::{Place, Projection, Raster, RasterError, Unit, cells, is_no_data, length};
+use super::metadata::Band;
+use super::names::{headers, values};
+use super::raw::{Interleave, Kind, Layout};
+use super::window::Window;
+use super::{Extent, Place, Projection, Raster, RasterError, parse_no_data, sidecar};
 
 /// Longest header, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 
 /// The header of an ENVI raster, which may be the named file itself.
 pub(super) fn header_of(path: &Path, start: &[u8]) -> Option<PathBuf> {
-    if start.starts_with(b"ENVI") {
+    if is_envi(start) {
         return Some(path.to_owned());
     }
-    let mut appended = path.as_os_str().to_owned();
-    appended.push(".hdr");
-    [PathBuf::from(appended), path.with_extension("hdr")]
-        .into_iter()
-        .find(|header| header.is_file() && header != path && is_header(header))
+    headers(path).into_iter().find(|header| header != path && is_header(header))
+}
+
+/// Whether a file starts as an ENVI header does, be it with the mark of UTF-8 text.
+fn is_envi(start: &[u8]) -> bool {
+    start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).starts_with(b"ENVI")
 }
 
 fn is_header(path: &Path) -> bool {
-    let mut start = [0; 4];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *b"ENVI"
+    let mut start = Vec::new();
+    File::open(path).and_then(|file| file.take(7).read_to_end(&mut start)).is_ok()
+        && is_envi(&start)
 }
 
 /// The values that belong to a header which was named itself.
-fn values_of(header: &Path) -> Result<PathBuf, RasterError> {
-    let bare = header.with_extension("");
-    let mut tried = vec![bare.clone()];
-    tried.extend(["img", "dat", "raw", "bsq", "bil", "bip", "bin"].map(|e| bare.with_extension(e)));
-    let found = tried.iter().find(|path| path.is_file() && *path != header).cloned();
-    found.ok_or_else(|| {
-        let names = tried.iter().filter_map(|path| path.file_name()).map(|n| n.to_string_lossy());
-        RasterError::NoValues(names.collect::<Vec<_>>().join(", "))
-    })
+pub(super) fn values_of(header: &Path) -> Result<PathBuf, RasterError> {
+    let (mut found, tried) = values(header);
+    match found.len() {
+        0 => Err(RasterError::NoValues(tried.join(", "))),
+        1 => Ok(found.remove(0)),
+        _ => {
+            let names = found.iter().filter_map(|path| path.file_name());
+            let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
+            Err(RasterError::ManyValues(names.join(", ")))
+        }
+    }
 }
 
 /// `key = value` entries of a header; values in braces may go over several lines.
@@ -54,6 +63,9 @@ impl Header {
         let read = File::open(path).and_then(|f| f.take(LONGEST_HEADER).read_to_end(&mut bytes));
         read.map_err(|_unreadable| RasterError::NoHeader(name.clone()))?;
         let text = String::from_utf8_lossy(&bytes);
+        if text.contains('\0') {
+            return Err(RasterError::Utf16);
+        }
         let mut entries = Vec::new();
         let mut lines = text.lines().skip(1);
         while let Some(line) = lines.next() {
@@ -110,125 +122,165 @@ impl Header {
         if rotated {
             return Err(RasterError::Rotated);
         }
-        let unit = rest.iter().find_map(|item| item.split_once('=')).map(|(_, unit)| unit.trim());
+        let units = rest.iter().find_map(|item| item.split_once('='));
+        let units = units.map(|(_, unit)| unit.trim().to_lowercase());
         let is_geographic = items[0].to_lowercase().starts_with("geographic");
-        let unit = match unit.map(str::to_lowercase).as_deref() {
-            Some("degrees") => Unit::Degrees,
-            _ if is_geographic => Unit::Degrees,
-            Some("meters" | "metres") => Unit::Metres,
-            Some(other) => Unit::Other(other.to_owned()),
-            None if items[0] == "UTM" => Unit::Metres,
-            None => Unit::Unknown,
+        let axes = match units.as_deref() {
+            Some("degrees") => Axes::Degrees,
+            _ if is_geographic => Axes::Degrees,
+            Some(unit) => match Length::from_name(unit) {
+                Some(unit) if unit.is_metre() => Axes::Metres,
+                Some(unit) => Axes::Length(unit),
+                None => Axes::Length(Length { name: unit.to_owned(), metres: f64::NAN }),
+            },
+            None if items[0].eq_ignore_ascii_case("UTM") => Axes::Metres,
+            None => Axes::Unknown,
         };
-        let named = rest.iter().take_while(|item| !item.contains('='));
-        let projection = (!is_geographic && items[0] != "Arbitrary").then(|| Projection {
+        let named: Vec<&str> =
+            rest.iter().take_while(|item| !item.contains('=')).copied().collect();
+        let is_named = !is_geographic && !items[0].eq_ignore_ascii_case("arbitrary");
+        let projection = is_named.then(|| Projection {
             name: items[0].to_owned(),
-            rest: named.copied().collect::<Vec<_>>().join(", "),
+            rest: named.join(", "),
+            wkt: self.get("coordinate system string").map(str::to_owned),
         });
+        let crs = self.crs(items[0], &named, axes);
         // Pixel (1, 1) is the outer corner of the first pixel, (1.5, 1.5) its centre.
         let corner = DVec2::new(
             east - (column - 1.0) * width,
             north + (row - 1.0) * height - rows as f64 * height,
         );
-        Ok(Some(Place { corner, cell: DVec2::new(width, height), unit, projection }))
+        Ok(Some(Place { corner, cell: DVec2::new(width, height), crs, projection }))
+    }
+
+    /// The system that a `map info` and the well-known text beside it name.
+    fn crs(&self, name: &str, rest: &[&str], axes: Axes) -> Crs {
+        let is_south = |text: &&str| text.eq_ignore_ascii_case("south");
+        let zone = rest.first().and_then(|zone| zone.parse::<u8>().ok());
+        let zone = zone.filter(|zone| (1..=60).contains(zone));
+        let mut crs = match zone {
+            Some(number) if name.eq_ignore_ascii_case("UTM") => {
+                let zone = UtmZone { number, is_south: rest.iter().any(is_south) };
+                Crs::of_utm(zone, rest.get(2).copied())
+            }
+            _ if name.eq_ignore_ascii_case("arbitrary") => Crs::named(""),
+            _ => Crs::named(name),
+        };
+        crs.axes = axes;
+        let Some(text) = self.get("coordinate system string").and_then(from_wkt) else {
+            return crs;
+        };
+        // Where both say something, the unit of `map info` is that of its own numbers.
+        let is_of_text = crs.axes == Axes::Unknown || text.axes == Axes::World;
+        let axes = if is_of_text { text.axes.clone() } else { crs.axes.clone() };
+        let is_bare = crs.name.is_empty() || crs.utm.is_none();
+        let (utm, datum) = (crs.utm.or(text.utm), crs.datum.clone().or(text.datum.clone()));
+        let named =
+            if is_bare { text } else { Crs { heights: text.heights, wkt: text.wkt, ..crs } };
+        Crs { axes, utm, datum, ..named }
     }
 }
 
-pub(super) fn read(named: &Path, header_path: &Path) -> Result<Raster, RasterError> {
+/// Reads the first band.
+pub(super) fn read(
+    named: &Path,
+    header_path: &Path,
+    extent: Option<&Extent>,
+) -> Result<Raster, RasterError> {
     let header = Header::read(header_path)?;
     let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
-    let columns = header.whole("samples", None)?;
-    let rows = header.whole("lines", None)?;
-    let bands = header.whole("bands", Some(1))?.max(1);
-    let offset = header.whole("header offset", Some(0))?;
-    let data_type = header.whole("data type", None)?;
-    let size: u64 = match data_type {
-        1 => 1,
-        2 | 12 => 2,
-        3 | 4 | 13 => 4,
-        5 | 14 | 15 => 8,
-        other => {
-            return Err(header.error(format!(
-                "says `data type = {other}`; use 1 to 5 or 12 to 15, whole or real numbers"
-            )));
-        }
-    };
-    let is_big = match header.whole("byte order", Some(0))? {
-        0 => false,
-        1 => true,
-        other => return Err(header.error(format!("says `byte order = {other}`; write 0 or 1"))),
-    };
-    let count = cells(columns, rows)? as u64;
-    let needed = count
-        .checked_mul(size)
-        .and_then(|bytes| bytes.checked_mul(bands))
-        .and_then(|bytes| bytes.checked_add(offset));
-    let mut values_file = File::open(&file)
-        .map_err(|_unreadable| RasterError::NoValues(file.display().to_string()))?;
-    let found = length(&values_file);
-    if needed.is_none_or(|needed| needed > found) {
-        let needed = needed.unwrap_or(u64::MAX);
-        return Err(RasterError::TooShort { columns, rows, needed, found });
-    }
-    // Of each row (or the whole), the first band stands first; how far it is to the next piece?
-    let (piece, stride) = match header.get("interleave").unwrap_or("bsq").to_lowercase().as_str() {
-        "bsq" => (count, count),
-        "bil" => (columns, columns * bands),
-        "bip" => (1, bands),
-        other => {
-            let found = excerpt(other);
-            let problem = format!("says `interleave = {found}`; write bsq, bil or bip");
-            return Err(header.error(problem));
-        }
-    };
-    let no_data = match header.get("data ignore value") {
-        None => None,
-        Some(text) => Some(text.parse::<f64>().map_err(|_invalid| {
-            let found = excerpt(text);
-            header.error(format!("says `data ignore value = {found}`; write a number"))
-        })?),
-    };
-    let unreadable = |cause: std::io::Error| header.error(format!("is fine, but: {cause}"));
-    values_file.seek(SeekFrom::Start(offset)).map_err(unreadable)?;
-    // Up to the last value of the first band.
-    let mut bytes = vec![0; (((count / piece - 1) * stride + piece) * size) as usize];
-    values_file.read_exact(&mut bytes).map_err(unreadable)?;
-    let values = bytes
-        .chunks((stride * size) as usize)
-        .flat_map(|chunk| chunk[..(piece * size) as usize].chunks_exact(size as usize))
-        .map(|raw| number(raw, data_type, is_big))
-        .map(|value| if is_no_data(value, no_data) { f64::NAN } else { value })
-        .collect();
+    let layout = header.layout()?;
+    let place = header.place(layout.rows)?;
+    let (auxiliary, crs) = sidecar::auxiliary(&file)?;
+    let place = place.map(|place| match crs {
+        Some(crs) if place.crs.name.is_empty() => Place { crs, ..place },
+        _ => place,
+    });
+    let band = header.band()?.or(auxiliary);
+    let (window, place) = Window::new(layout.columns, layout.rows, place.as_ref(), extent)?;
+    let mut values = layout.read(&file, &window)?;
+    let assumed = band.apply(&mut values);
     let class_names = header.get("class names").map_or_else(Vec::new, |names| {
         names.split(',').map(|name| name.trim().to_owned()).collect()
     });
-    let place = header.place(rows)?;
-    Ok(Raster { columns: columns as usize, rows: rows as usize, values, place, class_names })
+    let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
+    let (columns, rows) = (window.columns.len(), window.rows.len());
+    Ok(Raster { columns, rows, values, place, class_names, heights, assumed })
 }
 
-fn number(raw: &[u8], data_type: u64, is_big: bool) -> f64 {
-    // The bytes in little-endian order, the least first.
-    let mut bytes = [0; 8];
-    for (index, &byte) in raw.iter().enumerate() {
-        bytes[if is_big { raw.len() - 1 - index } else { index }] = byte;
+impl Header {
+    fn layout(&self) -> Result<Layout, RasterError> {
+        let (columns, rows) = (self.whole("samples", None)?, self.whole("lines", None)?);
+        let (kind, size) = match self.whole("data type", None)? {
+            1 => (Kind::Unsigned, 1),
+            2 => (Kind::Signed, 2),
+            3 => (Kind::Signed, 4),
+            4 => (Kind::Real, 4),
+            5 => (Kind::Real, 8),
+            12 => (Kind::Unsigned, 2),
+            13 => (Kind::Unsigned, 4),
+            14 => (Kind::Signed, 8),
+            15 => (Kind::Unsigned, 8),
+            other => {
+                return Err(self.error(format!(
+                    "says `data type = {other}`; use 1 to 5 or 12 to 15, whole or real numbers"
+                )));
+            }
+        };
+        let is_big = match self.whole("byte order", Some(0))? {
+            0 => false,
+            1 => true,
+            other => return Err(self.error(format!("says `byte order = {other}`; write 0 or 1"))),
+        };
+        let interleave = self.get("interleave").unwrap_or("bsq").to_lowercase();
+        let interleave = match interleave.as_str() {
+            "bsq" => Interleave::Bands,
+            "bil" => Interleave::Lines,
+            "bip" => Interleave::Pixels,
+            other => {
+                let found = excerpt(other);
+                let problem = format!("says `interleave = {found}`; write bsq, bil or bip");
+                return Err(self.error(problem));
+            }
+        };
+        if self.whole("file compression", Some(0))? != 0 {
+            let problem = "says that the values are compressed; write them plainly \
+                           (gdal_translate -of ENVI)";
+            return Err(self.error(problem.to_owned()));
+        }
+        Ok(Layout {
+            columns,
+            rows,
+            bands: self.whole("bands", Some(1))?.max(1),
+            offset: self.whole("header offset", Some(0))?,
+            interleave,
+            kind,
+            size,
+            is_big,
+        })
     }
-    let whole = u64::from_le_bytes(bytes);
-    match data_type {
-        2 => f64::from(whole as u16 as i16),
-        3 => f64::from(whole as u32 as i32),
-        4 => f64::from(f32::from_bits(whole as u32)),
-        5 => f64::from_bits(whole),
-        14 => whole as i64 as f64,
-        _ => whole as f64,
-    }
-}
 
-/// Whether a path is the header of an ENVI raster or has one; for lists of the files of a scene.
-#[must_use]
-pub(crate) fn companion(path: &Path) -> Option<PathBuf> {
-    if is_header(path) {
-        return values_of(path).ok();
+    /// Scale, offset and value for no data of the first band.
+    fn band(&self) -> Result<Band, RasterError> {
+        let wrong = |key: &str, text: &str| {
+            let found = excerpt(text);
+            self.error(format!("says `{key} = {found}`; write a number"))
+        };
+        let no_data = match self.get("data ignore value") {
+            None => None,
+            Some(text) => {
+                let value = parse_no_data(text);
+                Some(value.ok_or_else(|| wrong("data ignore value", text))?)
+            }
+        };
+        let first = |key: &str| {
+            let Some(text) = self.get(key) else { return Ok(None) };
+            let item = text.split(',').next().unwrap_or_default().trim();
+            let number: Option<f64> = item.parse().ok().filter(|number: &f64| number.is_finite());
+            number.map(Some).ok_or_else(|| wrong(key, text))
+        };
+        let (scale, offset) = (first("data gain values")?, first("data offset values")?);
+        let unit = self.get("data units").or_else(|| self.get("z units")).map(str::to_owned);
+        Ok(Band { no_data, scale, offset, unit })
     }
-    fs::metadata(path).ok()?;
-    header_of(path, b"")
 }

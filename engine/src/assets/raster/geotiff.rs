@@ -2,66 +2,228 @@
 
 use std::fs::File;
 use std::io::{BufReader, Seek};
+use std::path::Path;
 
 use glam::DVec2;
 use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::tags::Tag;
+use tiff::tags::{PlanarConfiguration, Tag};
 
-use super::{
-    MOST_CELLS, Place, Projection, Raster, RasterError, Unit, cells, directory, is_no_data, length,
-};
+use super::directory::{self, Shown};
+use super::geokeys::GeoKeys;
+use super::metadata::Band;
+use super::window::Window;
+use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
 
-type Tiff = Decoder<BufReader<File>>;
+type Tiff = Decoder<BufReader<Shown<File>>>;
 
-/// `GeoKeys`, by their numbers.
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
-const PROJECTED_CRS: u16 = 3072;
-const LINEAR_UNIT: u16 = 3076;
+/// Samples beside those that are shown: 1 and 2 are opacities.
+const EXTRA_SAMPLES: Tag = Tag::ExtraSamples;
 
-#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` hands over")]
 fn wrong(error: TiffError) -> RasterError {
-    RasterError::Tiff(error.to_string())
+    match error {
+        TiffError::UnsupportedError(problem) => RasterError::Unsupported(problem.to_string()),
+        error => RasterError::Tiff(error.to_string()),
+    }
 }
 
-pub(super) fn read(file: File) -> Result<Raster, RasterError> {
-    let bytes = length(&file);
-    let mut file = BufReader::new(file);
-    directory::check(&mut file, bytes)?;
-    file.rewind().map_err(|cause| RasterError::Tiff(cause.to_string()))?;
+/// A file that can be decoded, and which of its pictures is the mask of the first.
+struct Opened {
+    tiff: Tiff,
+    length: u64,
+    mask: Option<usize>,
+}
+
+fn open(mut file: File) -> Result<Opened, RasterError> {
+    let length = length(&file);
+    let unreadable = |cause: std::io::Error| RasterError::Tiff(cause.to_string());
+    let directories = directory::read(BufReader::new(&mut file), length)?;
+    file.rewind().map_err(unreadable)?;
+    let first = directories[0];
+    let mask = directories.iter().position(|directory| directory.is_mask_of(&first));
+    let shown = Shown::new(file, &directories).map_err(unreadable)?;
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MOST_CELLS as usize;
-    let mut tiff = Tiff::new(file).map_err(wrong)?.with_limits(limits);
+    let tiff = Tiff::new(BufReader::new(shown)).map_err(wrong)?.with_limits(limits);
+    Ok(Opened { tiff, length, mask })
+}
+
+pub(super) fn read(
+    path: &Path,
+    file: File,
+    extent: Option<&Extent>,
+) -> Result<Raster, RasterError> {
+    let Opened { mut tiff, length, mask } = open(file)?;
     let (columns, rows) = tiff.dimensions().map_err(wrong)?;
     let (columns, rows) = (u64::from(columns), u64::from(rows));
-    let count = cells(columns, rows)?;
-    let samples = tiff.find_tag_unsigned::<u16>(Tag::SamplesPerPixel).map_err(wrong)?.unwrap_or(1);
-    if samples != 1 {
-        return Err(RasterError::Bands(samples));
+    let picture = Picture::new(&mut tiff)?;
+    let is_masked = picture.check()?;
+    claimed_bytes(&mut tiff, columns, rows, length)?;
+    let place = match place(&mut tiff, columns as f64, rows as f64)? {
+        None => sidecar::world(path, rows as f64)?,
+        place => place,
+    };
+    let (auxiliary, crs) = sidecar::auxiliary(path)?;
+    let place = place.map(|place| match crs {
+        Some(crs) if place.crs.name.is_empty() => Place { crs, ..place },
+        _ => place,
+    });
+    let band = band(&mut tiff)?.or(auxiliary);
+    let (window, place) = Window::new(columns, rows, place.as_ref(), extent)?;
+    let mut values = picture.read(&mut tiff, &window, 0)?;
+    let assumed = band.apply(&mut values);
+    if is_masked {
+        hide(&mut values, &picture.read(&mut tiff, &window, 1)?);
     }
-    let bits = tiff.find_tag_unsigned::<u16>(Tag::BitsPerSample).map_err(wrong)?.unwrap_or(1);
-    if bits < 8 {
-        return Err(RasterError::Bits(bits));
+    if let Some(index) = mask {
+        tiff.seek_to_image(index).map_err(wrong)?;
+        hide(&mut values, &Picture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
     }
-    claimed_bytes(&mut tiff, columns, rows, bytes)?;
-    let place = place(&mut tiff, columns as f64, rows as f64)?;
-    let no_data = tiff
-        .find_tag(Tag::GdalNodata)
-        .map_err(wrong)?
-        .and_then(|value| value.into_string().ok())
-        .and_then(|text| text.trim_matches(['\0', ' ']).parse::<f64>().ok());
-    let values = numbers(tiff.read_image().map_err(wrong)?);
-    if values.len() < count {
-        let (columns, rows) = (columns as usize, rows as usize);
-        return Err(RasterError::Short { columns, rows, found: values.len() });
+    if let Some(file) = sidecar::mask(path) {
+        let bad = || RasterError::BadMask { columns, rows };
+        let Opened { mut tiff, .. } = open(File::open(file).map_err(|_unreadable| bad())?)?;
+        let (width, height) = tiff.dimensions().map_err(wrong)?;
+        if (u64::from(width), u64::from(height)) != (columns, rows) {
+            return Err(bad());
+        }
+        hide(&mut values, &Picture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
     }
-    let values = values
-        .into_iter()
-        .map(|value| if is_no_data(value, no_data) { f64::NAN } else { value })
-        .collect();
-    let (columns, rows) = (columns as usize, rows as usize);
-    Ok(Raster { columns, rows, values, place, class_names: Vec::new() })
+    let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
+    let (columns, rows) = (window.columns.len(), window.rows.len());
+    Ok(Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed })
+}
+
+/// Leaves out the cells whose mask is 0.
+fn hide(values: &mut [f64], mask: &[f64]) {
+    for (value, mask) in values.iter_mut().zip(mask) {
+        if mask.abs() == 0.0 {
+            *value = f64::NAN;
+        }
+    }
+}
+
+/// What is said about the first band.
+fn band(tiff: &mut Tiff) -> Result<Band, RasterError> {
+    // GDAL's own description of bands.
+    const METADATA: Tag = Tag::Unknown(42112);
+    let mut text = |tag: Tag| {
+        let value = tiff.find_tag(tag).map_err(wrong)?;
+        Ok::<_, RasterError>(value.and_then(|value| value.into_string().ok()))
+    };
+    let band = Band::from_tag(&text(METADATA)?.unwrap_or_default())?;
+    let no_data = text(Tag::GdalNodata)?.filter(|text| !text.trim_matches(['\0', ' ']).is_empty());
+    let no_data = no_data.map(|text| {
+        parse_no_data(&text).ok_or(RasterError::BadMetadata { what: "NODATA", found: text })
+    });
+    Ok(Band { no_data: no_data.transpose()?, ..band })
+}
+
+/// How the samples of a picture lie in its strips or tiles.
+struct Picture {
+    bits: u16,
+    samples: u16,
+    is_planar: bool,
+    /// Whether the last sample is a mask.
+    has_mask: bool,
+    /// Cells from strip to strip or tile to tile.
+    chunk: (usize, usize),
+    columns: usize,
+}
+
+impl Picture {
+    fn new(tiff: &mut Tiff) -> Result<Self, RasterError> {
+        let mut number = |tag: Tag, default: u16| {
+            let value = tiff.find_tag_unsigned_vec::<u16>(tag).map_err(wrong)?;
+            Ok::<_, RasterError>(value.and_then(|all| all.last().copied()).unwrap_or(default))
+        };
+        let samples = number(Tag::SamplesPerPixel, 1)?;
+        let bits = number(Tag::BitsPerSample, 1)?;
+        let planar = number(Tag::PlanarConfiguration, 1)?;
+        let has_mask = matches!(number(EXTRA_SAMPLES, 0)?, 1 | 2) && samples > 1;
+        let (columns, _) = tiff.dimensions().map_err(wrong)?;
+        let (width, height) = tiff.chunk_dimensions();
+        Ok(Self {
+            bits,
+            samples,
+            is_planar: planar == PlanarConfiguration::Planar.to_u16(),
+            has_mask,
+            chunk: (width as usize, height as usize),
+            columns: columns as usize,
+        })
+    }
+
+    /// Refuses what holds no one band; returns whether its second sample is a mask.
+    fn check(&self) -> Result<bool, RasterError> {
+        match (self.samples, self.has_mask) {
+            (1, _) | (2, true) => {}
+            (samples, true) => return Err(RasterError::BandsWithMask(samples)),
+            (samples, false) => return Err(RasterError::Bands(samples)),
+        }
+        if self.bits < 8 {
+            return Err(RasterError::Bits(self.bits));
+        }
+        Ok(self.samples == 2)
+    }
+
+    /// One sample of the cells of a window; only the strips and tiles that it reaches are decoded.
+    fn read(
+        &self,
+        tiff: &mut Tiff,
+        window: &Window,
+        sample: usize,
+    ) -> Result<Vec<f64>, RasterError> {
+        let (width, height) = self.chunk;
+        let across = self.columns.div_ceil(width.max(1));
+        let down = tiff.dimensions().map_err(wrong)?.1 as usize;
+        let down = down.div_ceil(height.max(1));
+        let (first, step) = if self.is_planar {
+            (sample * across * down, 1)
+        } else {
+            (0, usize::from(self.samples))
+        };
+        let offset = if self.is_planar { 0 } else { sample };
+        let mut values = vec![f64::NAN; window.len()];
+        for chunk_row in window.rows.start / height..=(window.rows.end - 1) / height {
+            for chunk_column in window.columns.start / width..=(window.columns.end - 1) / width {
+                let index = (first + chunk_row * across + chunk_column) as u32;
+                let chunk = tiff.read_chunk(index).map_err(wrong)?;
+                let (held, _) = tiff.chunk_data_dimensions(index);
+                let held = held as usize;
+                let chunk = self.numbers(chunk, held * step);
+                let rows = chunk_row * height..((chunk_row + 1) * height).min(window.rows.end);
+                for row in rows.filter(|row| window.rows.contains(row)) {
+                    let start = (chunk_column * width).max(window.columns.start);
+                    let end = (chunk_column * width + held).min(window.columns.end);
+                    let line = (row - window.rows.start) * window.columns.len();
+                    for column in start..end {
+                        let inside =
+                            (row - chunk_row * height) * held + column - chunk_column * width;
+                        let to = line + column - window.columns.start;
+                        values[to] = chunk.get(inside * step + offset).copied().unwrap_or(f64::NAN);
+                    }
+                }
+            }
+        }
+        Ok(values)
+    }
+
+    /// Numbers of a chunk whose rows hold so many; those of less than a byte are unpacked.
+    fn numbers(&self, chunk: DecodingResult, in_row: usize) -> Vec<f64> {
+        let DecodingResult::U8(bytes) = chunk else { return numbers(chunk) };
+        if self.bits >= 8 {
+            return bytes.into_iter().map(f64::from).collect();
+        }
+        let bits = usize::from(self.bits);
+        let stride = (in_row * bits).div_ceil(8).max(1);
+        let most = (1_u16 << bits) - 1;
+        let number = |row: &[u8], index: usize| {
+            let (byte, bit) = (index * bits / 8, index * bits % 8);
+            // The first value stands in the highest bits.
+            f64::from(u16::from(row[byte]) >> (8 - bits - bit) & most)
+        };
+        let rows = bytes.chunks_exact(stride);
+        rows.flat_map(|row| (0..in_row).map(move |index| number(row, index))).collect()
+    }
 }
 
 /// Refuses a file that is shorter than its own strips or tiles before any memory is asked for.
@@ -117,6 +279,8 @@ fn place(tiff: &mut Tiff, columns: f64, rows: f64) -> Result<Option<Place>, Rast
             let cell = DVec2::new(width, height);
             (DVec2::new(x - column * width, y + row * height), cell)
         }
+        // GDAL writes this where it knows no place.
+        (_, _, Some(&[1.0, 0.0, _, 0.0, 0.0, 1.0, _, 0.0, ..])) => return Ok(None),
         (_, _, Some(&[width, a, _, x, b, height, _, y, ..])) => {
             if a != 0.0 || b != 0.0 || height >= 0.0 {
                 return Err(RasterError::Rotated);
@@ -125,35 +289,21 @@ fn place(tiff: &mut Tiff, columns: f64, rows: f64) -> Result<Option<Place>, Rast
         }
         _ => return Ok(None),
     };
-    let keys: Vec<u16> =
-        tiff.find_tag_unsigned_vec(Tag::GeoKeyDirectoryTag).map_err(wrong)?.unwrap_or_default();
-    // Four numbers a key: its number, 0 for a value that stands right there, 1, the value.
-    let key = |number: u16| {
-        let entries = keys.chunks_exact(4).skip(1);
-        entries.filter(|entry| entry[0] == number && entry[1] == 0).map(|entry| entry[3]).next()
+    let text = tiff.find_tag(Tag::GeoAsciiParamsTag).map_err(wrong)?;
+    let keys = GeoKeys {
+        directory: tiff
+            .find_tag_unsigned_vec(Tag::GeoKeyDirectoryTag)
+            .map_err(wrong)?
+            .unwrap_or_default(),
+        reals: reals(tiff, Tag::GeoDoubleParamsTag)?.unwrap_or_default(),
+        texts: text.and_then(|text| text.into_string().ok()).unwrap_or_default(),
     };
     // A raster of points has its origin in the middle of the first cell.
-    let shift = if key(RASTER_TYPE) == Some(2) { 0.5 } else { 0.0 };
+    let shift = if keys.is_point() { 0.5 } else { 0.0 };
     let north_west = origin + DVec2::new(-shift, shift) * cell;
     let corner = DVec2::new(north_west.x, north_west.y - rows * cell.y);
     if !(columns * cell.x).is_finite() {
         return Err(RasterError::BadCell { width: cell.x, height: cell.y });
     }
-    let unit = match (key(MODEL_TYPE), key(LINEAR_UNIT)) {
-        (Some(2), _) => Unit::Degrees,
-        (Some(1), None | Some(9001)) => Unit::Metres,
-        (Some(1), Some(9002 | 9003)) => Unit::Other("feet".to_owned()),
-        (Some(1), Some(other)) => Unit::Other(format!("EPSG unit {other}")),
-        _ => Unit::Unknown,
-    };
-    // EPSG numbers the zones of UTM on WGS 84 from 32601 in the north and 32701 in the south.
-    let projection = key(PROJECTED_CRS).and_then(|code| {
-        let (zone, half) = match code {
-            32601..=32660 => (code - 32600, "North"),
-            32701..=32760 => (code - 32700, "South"),
-            _ => return None,
-        };
-        Some(Projection { name: "UTM".to_owned(), rest: format!("{zone}, {half}, WGS-84") })
-    });
-    Ok(Some(Place { corner, cell, unit, projection }))
+    Ok(Some(Place { corner, cell, crs: keys.crs(), projection: None }))
 }

@@ -1,10 +1,18 @@
-//! Rasters: ESRI ASCII grids, ENVI files and `GeoTIFF`.
+//! Rasters: ESRI ASCII grids, ENVI files, Esri's `.bil` and `.flt`, and `GeoTIFF`.
 
 mod ascii;
 mod directory;
 mod envi;
 mod error;
+mod esri;
+mod geokeys;
 mod geotiff;
+mod metadata;
+mod names;
+mod raw;
+mod sidecar;
+mod strange;
+mod window;
 
 use std::fs::File;
 use std::io::Read;
@@ -13,10 +21,12 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::AssetError;
+use super::crs::{Axes, Crs, Heights};
 use super::text::open;
 
-pub(crate) use envi::companion;
 pub use error::RasterError;
+pub(crate) use sidecar::companions;
+pub use window::Extent;
 
 pub use crate::components::Projection;
 
@@ -30,12 +40,26 @@ pub struct Raster {
     pub columns: usize,
     /// Cells from north to south.
     pub rows: usize,
-    /// Values, shape `[rows, columns]`, row 0 in the north; NaN where there is no data.
+    /// Values with the file's scale and offset applied, shape `[rows, columns]`, row 0 in the north;
+    /// NaN where there is no data.
     pub values: Vec<f64>,
     /// Where it lies, if the file says so.
     pub place: Option<Place>,
     /// Names of classes by their value, if it is an ENVI classification; else empty.
     pub class_names: Vec<String>,
+    /// Unit of its values, if the file says so.
+    pub heights: Option<Heights>,
+    /// Cells without data by a value that the file does not name as such.
+    pub assumed: Option<Assumed>,
+}
+
+/// A value that most likely stands for no data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumed {
+    /// The value as it is stored.
+    pub value: f64,
+    /// Number of cells that hold it.
+    pub count: usize,
 }
 
 /// Where a raster lies, in the units of its coordinates.
@@ -45,23 +69,10 @@ pub struct Place {
     pub corner: DVec2,
     /// Width and height of a cell.
     pub cell: DVec2,
-    /// What the coordinates are.
-    pub unit: Unit,
-    /// How ENVI names the projection in its `map info`: name, and what follows the size of cells.
+    /// Coordinate reference system, as far as the file says.
+    pub crs: Crs,
+    /// Projection as ENVI names it, if it is an ENVI file.
     pub projection: Option<Projection>,
-}
-
-/// What coordinates are.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Metres east and north.
-    Metres,
-    /// Longitude and latitude.
-    Degrees,
-    /// Something else, by its name.
-    Other(String),
-    /// The file does not say.
-    Unknown,
 }
 
 impl Raster {
@@ -69,10 +80,10 @@ impl Raster {
     /// within the globe's range and not at its origin.
     #[must_use]
     pub fn is_in_degrees(&self) -> bool {
-        self.place.as_ref().is_some_and(|place| match place.unit {
-            Unit::Degrees => true,
-            Unit::Metres | Unit::Other(_) => false,
-            Unit::Unknown => {
+        self.place.as_ref().is_some_and(|place| match place.crs.axes {
+            Axes::Degrees => true,
+            Axes::Metres | Axes::Length(_) | Axes::World | Axes::Geocentric => false,
+            Axes::Unknown => {
                 let far = place.corner + place.cell * self.size_in_cells();
                 let within = place.corner.x >= -180.0
                     && far.x <= 360.0
@@ -113,27 +124,35 @@ impl Raster {
     }
 }
 
-/// Reads the first band of a raster; the format follows from the content.
+/// Reads the first band of a raster, or of a part of it; the format follows from the content.
 ///
-/// ENVI rasters may be named by their values or by their header.
+/// ENVI rasters and those of Esri may be named by their values or by their header. What a file does
+/// not say is looked up in those beside it that GDAL writes and reads: `.prj`, `.aux.xml`, `.msk`
+/// and world files.
 ///
 /// # Errors
 /// What the file lacks or says wrongly.
-pub fn read_raster(path: &Path) -> Result<Raster, AssetError> {
+pub fn read_raster(path: &Path, extent: Option<&Extent>) -> Result<Raster, AssetError> {
     let mut start = Vec::new();
     open(path)?
-        .take(8)
+        .take(512)
         .read_to_end(&mut start)
         .map_err(|cause| AssetError::Unreadable { file: path.to_owned(), cause })?;
+    let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
     let raster = if is_tiff(&start) {
-        geotiff::read(open(path)?)
+        geotiff::read(path, open(path)?, extent)
     } else if let Some(header) = envi::header_of(path, &start) {
-        envi::read(path, &header)
+        envi::read(path, &header, extent)
+    } else if let Some(problem) = strange::format_of(&start) {
+        Err(problem)
+    } else if let Some(header) = esri::header_of(path) {
+        esri::read(path, &header, extent)
+    } else if strange::is_binary(&start) {
+        Err(RasterError::Binary)
     } else {
-        return ascii::read(path);
+        return ascii::read(path, extent);
     };
-    let raster = raster.and_then(Raster::checked);
-    raster.map_err(|problem| AssetError::Raster { file: path.to_owned(), problem })
+    raster.and_then(Raster::checked).map_err(wrong)
 }
 
 fn is_tiff(start: &[u8]) -> bool {
@@ -150,8 +169,32 @@ fn cells(columns: u64, rows: u64) -> Result<usize, RasterError> {
 }
 
 /// Whether a value stands for no data: programs round the largest numbers when they write them.
+#[expect(clippy::float_cmp, reason = "an infinite value for no data is equal or is not")]
 fn is_no_data(value: f64, no_data: Option<f64>) -> bool {
-    value.is_nan() || no_data.is_some_and(|no| (value - no).abs() <= 2e-6 * no.abs())
+    value.is_nan()
+        || no_data.is_some_and(|no| {
+            value == no || no.is_finite() && (value - no).abs() <= 2e-6 * no.abs()
+        })
+}
+
+/// Whether a value stands for no data in many files and is no value of heights, densities or classes.
+fn is_usual_no_data(value: f64) -> bool {
+    const USUAL: [f64; 6] =
+        [-9999.0, -99_999.0, -999_999.0, -32_767.0, -32_768.0, -2_147_483_648.0];
+    USUAL.contains(&value) || value.is_finite() && value.abs() >= 1e30
+}
+
+/// A value for no data as programs write it; `None` if it is none.
+fn parse_no_data(text: &str) -> Option<f64> {
+    let text = text.trim_matches(['\0', ' ', '\t', '"']);
+    let lower = text.to_ascii_lowercase();
+    match lower.trim_start_matches(['+', '-']) {
+        // As C writes numbers on some systems.
+        "1.#qnan" | "1.#ind" | "1.#snan" | "nan(ind)" | "nan(snan)" => Some(f64::NAN),
+        "1.#inf" if lower.starts_with('-') => Some(f64::NEG_INFINITY),
+        "1.#inf" => Some(f64::INFINITY),
+        _ => text.parse().ok(),
+    }
 }
 
 fn length(file: &File) -> u64 {

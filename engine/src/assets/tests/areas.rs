@@ -5,7 +5,7 @@ use crate::assets::{read_geojson, read_polygons};
 use crate::geometry::Polygon;
 
 fn geojson(text: &str) -> Result<Vec<Polygon>, AssetError> {
-    read_geojson(file(text).path())
+    read_geojson(file(text).path()).map(|areas| areas.polygons)
 }
 
 fn table(text: &str) -> Result<Vec<Polygon>, AssetError> {

@@ -166,6 +166,6 @@ fn a_header_that_closes_no_brace_is_read_in_no_time() {
     let header = format!("ENVI\nsamples = 1\nlines = 1\nmap info = {{UTM{}", "\n,".repeat(1 << 19));
     std::fs::write(&path, header).unwrap();
     std::fs::write(folder.path().join("a.img"), [1]).unwrap();
-    let error = crate::assets::read_raster(&path).unwrap_err();
+    let error = crate::assets::read_raster(&path, None).unwrap_err();
     assert!(message(&error).contains("no `data type`"), "{error}");
 }

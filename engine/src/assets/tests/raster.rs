@@ -7,11 +7,11 @@ use tempfile::TempDir;
 use tiff::encoder::{TiffEncoder, colortype};
 use tiff::tags::Tag;
 
-use super::super::{Raster, Unit, read_raster};
+use super::super::{Axes, Raster, read_raster};
 use super::{file, message};
 
 fn ascii(text: &str) -> Result<Raster, String> {
-    read_raster(file(text).path()).map_err(|error| message(&error))
+    read_raster(file(text).path(), None).map_err(|error| message(&error))
 }
 
 /// Writes a header and values side by side; the path of the values.
@@ -23,7 +23,7 @@ fn envi(folder: &TempDir, header: &str, values: &[u8]) -> PathBuf {
 }
 
 fn read(path: &Path) -> Result<Raster, String> {
-    read_raster(path).map_err(|error| {
+    read_raster(path, None).map_err(|error| {
         let text = error.to_string();
         text.rsplit_once('/').map_or(text.clone(), |(_, rest)| rest.to_owned())
     })
@@ -39,7 +39,7 @@ fn ascii_grids_are_read_whatever_their_keys_look_like() {
     assert!(raster.values[3].is_nan());
     let place = raster.place.unwrap();
     assert_eq!((place.corner, place.cell), (DVec2::new(10.0, 20.0), DVec2::splat(5.0)));
-    assert_eq!(place.unit, Unit::Unknown);
+    assert_eq!(place.crs.axes, Axes::Unknown);
     // By the centre of the first cell, other sizes each way, all values in one line.
     let center = "nrows 2 ncols 2 xllcenter 12.5 yllcentre 21\r\ndx 5\r\ndy 2\r\n1 2 3 4";
     let raster = ascii(center).unwrap();
@@ -129,7 +129,10 @@ fn envi_files_of_every_interleave_order_and_type_are_the_same_raster() {
                 assert!(raster.values[5].is_nan());
                 let place = raster.place.clone().unwrap();
                 assert_eq!(place.corner, DVec2::new(500_000.0, 4_000_080.0));
-                assert_eq!((place.cell, place.unit), (DVec2::splat(10.0), Unit::Metres));
+                assert_eq!(
+                    (place.cell, place.crs.axes.clone()),
+                    (DVec2::splat(10.0), Axes::Metres)
+                );
                 let projection = place.projection.unwrap();
                 let text = (projection.name.as_str(), projection.rest.as_str());
                 assert_eq!(text, ("UTM", "33, North, WGS-84"));
@@ -205,12 +208,13 @@ fn geotiffs_lie_where_their_tags_say() {
     assert!(raster.values[5].is_nan());
     let place = raster.place.unwrap();
     assert_eq!(place.corner, DVec2::new(500_000.0, 3_999_980.0));
-    assert_eq!(place.unit, Unit::Metres);
-    assert_eq!(place.projection.unwrap().rest, "33, South, WGS-84");
+    assert_eq!(place.crs.axes, Axes::Metres);
+    let zone = place.crs.utm.unwrap();
+    assert_eq!((zone.number, zone.is_south), (33, true));
     geotiff(&path, 2, 2);
     let place = read(&path).unwrap().place.unwrap();
     assert_eq!(place.corner, DVec2::new(499_995.0, 3_999_985.0), "a raster of points");
-    assert_eq!(place.unit, Unit::Degrees);
+    assert_eq!(place.crs.axes, Axes::Degrees);
     // Cut anywhere, it is an error.
     let whole = fs::read(&path).unwrap();
     for length in 4..whole.len() {
@@ -259,7 +263,7 @@ proptest! {
         let path = folder.path().join(["a.asc", "a.hdr", "a.tif"][kind]);
         fs::write(&path, bytes).unwrap();
         fs::write(folder.path().join("a.img"), [1, 2, 3, 4, 5, 6]).unwrap();
-        if let Ok(raster) = read_raster(&path) {
+        if let Ok(raster) = read_raster(&path, None) {
             prop_assert_eq!(raster.values.len(), raster.columns * raster.rows);
             prop_assert!(raster.values.iter().all(|value| !value.is_infinite()));
             if let Some(place) = raster.place {

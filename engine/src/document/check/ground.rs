@@ -1,6 +1,6 @@
 //! The frame and the terrain.
 
-use super::super::scene::{LandCover, NoData, Scene, Terrain};
+use super::super::scene::{LandCover, NoData, RasterWindow, Scene, Terrain};
 use super::Report;
 use super::mesh::check_material;
 
@@ -24,8 +24,23 @@ pub(super) fn check_terrain(scene: &Scene, report: &mut Report<'_>) {
             corner_m,
             size_m,
             lowest_m,
+            window,
+            height_unit_m,
             ..
         } => {
+            if let Some(RasterWindow { corner_m: (x, y), size_m: (width, height) }) = window {
+                report.finite("terrain.window.corner_m", &[*x, *y]);
+                report.above_zero("terrain.window.size_m[0]", *width);
+                report.above_zero("terrain.window.size_m[1]", *height);
+                if corner_m.is_some() || size_m.is_some() {
+                    let message = "a window and a place of the raster's own contradict each other";
+                    let help = "take `corner_m` and `size_m` out, or `window`";
+                    report.error("terrain.window", message, help);
+                }
+            }
+            if let Some(unit) = height_unit_m {
+                report.above_zero("terrain.height_unit_m", *unit);
+            }
             check_rectangle(*size_m, *corner_m, report);
             report.at_least("terrain.tolerance_m", *tolerance_m, 0.0);
             report.finite("terrain.lowest_m", lowest_m.as_slice());

@@ -36,7 +36,12 @@ pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
                 }
             }
             Instances::Scatter { .. } => check_scatter(scene, instances, &path, report),
-            Instances::CanopyHeights { of, min_height_m, window, sink_m, .. } => {
+            Instances::CanopyHeights {
+                of, min_height_m, window, sink_m, height_unit_m, ..
+            } => {
+                if let Some(unit) = height_unit_m {
+                    report.above_zero(&format!("{path}.height_unit_m"), *unit);
+                }
                 let at = format!("{path}.of");
                 for (index, name) in of.iter().enumerate() {
                     report.name(&format!("{at}[{index}]"), "mesh", name, &scene.meshes, "meshes");

@@ -9,6 +9,7 @@ use super::Map;
 
 choice! {
     /// The ground.
+    #[expect(clippy::large_enum_variant, reason = "a scene has one")]
     pub enum Terrain ("a terrain") {
         /// Horizontal rectangle.
         Plane {
@@ -34,6 +35,11 @@ choice! {
             tolerance_m: f64 = 0.0,
             /// What the coordinates are, where the file does not say; degrees are refused without it.
             coordinates: Option<Coordinates> = None,
+            /// Part of the raster that is read, to whole cells; all of it if left out.
+            window: Option<RasterWindow> = None,
+            /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
+            /// for feet. Without it, heights that the file says are in feet become metres.
+            height_unit_m: Option<f64> => "0.01" = None,
             /// What becomes of cells without data.
             no_data: NoData = NoData::Refuse,
             /// South-west corner, m, in place of the file's.
@@ -50,6 +56,16 @@ choice! {
             /// Where its origin lies, m.
             at_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
         },
+    }
+}
+
+record! {
+    /// Part of a raster.
+    pub struct RasterWindow ("a window of a raster") {
+        /// South-west corner, m, local frame: the map less `frame.origin_m`.
+        corner_m: (f64, f64) => "(0.0, 0.0)",
+        /// Extent to the east and to the north, m.
+        size_m: (f64, f64) => "(200.0, 200.0)",
     }
 }
 

@@ -89,6 +89,9 @@ choice! {
             /// Meshes. Each tree gets the one whose ratio of height to crown diameter is nearest to
             /// its own, scaled to both.
             of: Vec<String> => r#"["oak", "fir"]"#,
+            /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
+            /// for feet. Without it, heights that the file says are in feet become metres.
+            height_unit_m: Option<f64> => "0.01" = None,
             /// What is lower is no tree, m.
             min_height_m: f64 = 3.0,
             /// Two numbers a, b: of tops less than half of a m + b h² from one of height h m, only

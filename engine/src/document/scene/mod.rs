@@ -24,7 +24,7 @@ use super::syntax::Node;
 
 pub use camera::{Cover, FisheyeProjection, Look, Picture};
 pub use crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
-pub use ground::{Boundary, Coordinates, LandCover, NoData, Terrain};
+pub use ground::{Boundary, Coordinates, LandCover, NoData, RasterWindow, Terrain};
 pub use instances::{
     Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, SpeciesMeshes, Stems, TableCoordinates,
     meant_column,
@@ -56,7 +56,7 @@ record! {
         /// Reading a scene takes them into it and leaves nothing here.
         include: Map<Include> = Map::new(),
         /// Where the local frame lies on Earth.
-        frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0) },
+        frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0), crs: None },
         /// Spectral bands, in the order of all band lists.
         bands: Vec<Band> => r#"[(name: "red", center_nm: 660.0, width_nm: 10.0)]"#,
         /// Spectra that materials and lights may name.
@@ -98,6 +98,10 @@ record! {
     pub struct Frame ("the frame") {
         /// Easting, northing and height (UTM, say) of the local origin, m. Results do not depend on it.
         origin_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
+        /// Coordinate reference system of `origin_m`: a projected one in metres, by its number, such as
+        /// `"EPSG:32632"`. Rasters and polygons must be in it, and images say so. Without it, it is that
+        /// of the first file that names one.
+        crs: Option<String> => r#""EPSG:32632""# = None,
     }
 }
 

@@ -1,0 +1,92 @@
+//! Raw values of a file beside a header: where they lie and what they are.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::window::Window;
+use super::{RasterError, length};
+
+/// Order of values of several bands.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Interleave {
+    Bands,
+    Lines,
+    Pixels,
+}
+
+/// What a value is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    Unsigned,
+    Signed,
+    Real,
+}
+
+/// How values lie in a file.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub(super) columns: u64,
+    pub(super) rows: u64,
+    pub(super) bands: u64,
+    pub(super) offset: u64,
+    pub(super) interleave: Interleave,
+    pub(super) kind: Kind,
+    /// Bytes of a value.
+    pub(super) size: u64,
+    pub(super) is_big: bool,
+}
+
+impl Layout {
+    /// Values of the cells of a window in the first band.
+    pub(super) fn read(&self, path: &Path, window: &Window) -> Result<Vec<f64>, RasterError> {
+        let Self { columns, rows, bands, offset, size, .. } = *self;
+        let mut file = File::open(path)
+            .map_err(|_unreadable| RasterError::NoValues(path.display().to_string()))?;
+        let needed = columns
+            .checked_mul(rows)
+            .and_then(|count| count.checked_mul(size))
+            .and_then(|bytes| bytes.checked_mul(bands))
+            .and_then(|bytes| bytes.checked_add(offset));
+        let found = length(&file);
+        if needed.is_none_or(|needed| needed > found) {
+            let needed = needed.unwrap_or(u64::MAX);
+            return Err(RasterError::TooShort { columns, rows, needed, found });
+        }
+        // Values from one of the first band to the next in a row, and from row to row.
+        let (step, stride) = match self.interleave {
+            Interleave::Bands => (1, columns),
+            Interleave::Lines => (1, columns * bands),
+            Interleave::Pixels => (bands, columns * bands),
+        };
+        let first = window.columns.start as u64 * step;
+        let count = (window.columns.len() as u64 - 1) * step + 1;
+        let mut bytes = vec![0; (count * size) as usize];
+        let mut values = Vec::with_capacity(window.len());
+        let unreadable = |cause: std::io::Error| RasterError::Unreadable(cause.to_string());
+        for row in window.rows.clone() {
+            let start = offset + (row as u64 * stride + first) * size;
+            file.seek(SeekFrom::Start(start)).map_err(unreadable)?;
+            file.read_exact(&mut bytes).map_err(unreadable)?;
+            let pixels = bytes.chunks((step * size) as usize);
+            values.extend(pixels.map(|pixel| self.number(&pixel[..size as usize])));
+        }
+        Ok(values)
+    }
+
+    fn number(&self, raw: &[u8]) -> f64 {
+        // The bytes in little-endian order, the least first.
+        let mut bytes = [0; 8];
+        for (index, &byte) in raw.iter().enumerate() {
+            bytes[if self.is_big { raw.len() - 1 - index } else { index }] = byte;
+        }
+        let whole = u64::from_le_bytes(bytes);
+        let unused = 64 - 8 * raw.len() as u32;
+        match self.kind {
+            Kind::Unsigned => whole as f64,
+            Kind::Signed => ((whole << unused) as i64 >> unused) as f64,
+            Kind::Real if raw.len() == 4 => f64::from(f32::from_bits(whole as u32)),
+            Kind::Real => f64::from_bits(whole),
+        }
+    }
+}
