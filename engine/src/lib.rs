@@ -8,6 +8,7 @@ pub mod assets;
 pub mod components;
 pub mod document;
 pub mod extract;
+mod files;
 pub mod film;
 pub mod geometry;
 mod memory;

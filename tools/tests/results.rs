@@ -449,3 +449,45 @@ fn runs_side_by_side_leave_the_results_of_one() {
     whole(&place.path("o"));
     assert_eq!(place.names(""), ["big.ron", "long.ron", "mid.ron", "o"]);
 }
+
+/// *Scene*: every product that there is. *Expected*: as many values as the lengths of the axes say, and
+/// tables with one column an axis and coordinate.
+#[test]
+fn axes_have_the_shape_of_the_values() {
+    let place = Place(tempdir().unwrap());
+    let scenes = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes"));
+    let mut products = 0;
+    for name in ["products.ron", "sensors.ron"] {
+        let scene = scenes.join(name);
+        place.done(&format!("run {} --quality 0.005 --out {name}", scene.display()));
+        let summary = place.summary(name);
+        let sensors = summary["sensors"].as_object().unwrap();
+        for (sensor, product) in sensors.values().flat_map(|s| s.as_object().unwrap()) {
+            let count = |list: &Value| list.as_array().unwrap().len();
+            let axes = product["axes"].as_object().unwrap();
+            let values: usize = axes.values().map(count).product();
+            assert_eq!(values, count(&product["values"]), "{sensor}");
+            assert_eq!(values, count(&product["standard_error"]), "{sensor}");
+            assert_eq!(axes.len(), count(&product["shape"]), "{sensor}");
+            let mut columns: Vec<&String> = axes.keys().filter(|name| *name != "band").collect();
+            for (axis, others) in product["coordinates"].as_object().into_iter().flatten() {
+                for (name, points) in others.as_object().unwrap() {
+                    assert_eq!(count(points), count(&axes[axis]), "{sensor}: {name}");
+                    columns.push(name);
+                }
+            }
+            let files = product["files"].as_array().unwrap();
+            for file in files.iter().map(|file| file.as_str().unwrap()) {
+                let path = place.path(name).join(file);
+                if path.extension().is_some_and(|ending| ending == "csv") {
+                    let rows = table(&path);
+                    for column in &columns {
+                        assert!(rows[0].contains(column), "{file}: no {column}");
+                    }
+                }
+            }
+            products += 1;
+        }
+    }
+    assert!(products > 20, "{products}");
+}

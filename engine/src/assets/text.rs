@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::AssetError;
 use super::error::excerpt;
+use crate::files;
 
 /// Longest line, bytes: what a file without line ends may cost in memory.
 const LONGEST_LINE: usize = 1 << 20;
@@ -28,7 +29,7 @@ pub(super) fn open(path: &Path) -> Result<File, AssetError> {
     if !fs::metadata(path).map_err(unreadable)?.is_file() {
         return Err(AssetError::NotAFile { file: path.to_owned() });
     }
-    File::open(path).map_err(unreadable)
+    files::open(path).map_err(unreadable)
 }
 
 /// Bytes of a file.

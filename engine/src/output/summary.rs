@@ -278,6 +278,8 @@ impl<V: Serialize> Serialize for Ordered<'_, V> {
 #[derive(Default)]
 struct OneKeyALine {
     depth: usize,
+    /// Whether the object that began last has no key yet.
+    is_empty: bool,
 }
 
 impl OneKeyALine {
@@ -290,6 +292,7 @@ impl OneKeyALine {
 impl Formatter for OneKeyALine {
     fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.depth += 1;
+        self.is_empty = true;
         writer.write_all(b"{")
     }
 
@@ -297,6 +300,7 @@ impl Formatter for OneKeyALine {
         if !first {
             w.write_all(b",")?;
         }
+        self.is_empty = false;
         self.break_line(w)
     }
 
@@ -306,7 +310,9 @@ impl Formatter for OneKeyALine {
 
     fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.depth -= 1;
-        self.break_line(writer)?;
+        if !std::mem::take(&mut self.is_empty) {
+            self.break_line(writer)?;
+        }
         writer.write_all(b"}")
     }
 

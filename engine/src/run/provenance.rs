@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use super::Failure;
 use crate::document::{Ends, Scene, Sensor};
+use crate::files;
 
 /// Hash of a scene as it was resolved and of the content of each file that it reads, hexadecimal.
 /// Equal hashes, versions and seeds give equal results.
@@ -41,6 +42,6 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
 /// Hash of what a file holds.
 pub(super) fn content(path: &Path) -> Result<blake3::Hash, Failure> {
     let error = |source| Failure::Read { path: path.to_owned(), source };
-    let file = std::fs::File::open(path).map_err(error)?;
+    let file = files::open(path).map_err(error)?;
     Ok(blake3::Hasher::new().update_reader(file).map_err(error)?.finalize())
 }
