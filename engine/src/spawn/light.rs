@@ -3,7 +3,7 @@ use hecs::World;
 use super::Spawner;
 use super::spectra::Quantity;
 use crate::components::{SceneId, Sky, Sun, View};
-use crate::document::{self, Diagnostic, Spectrum};
+use crate::document::{self, Diagnostic, ImageMeasure, PhotonMeasure, Sensor, Spectrum};
 
 impl Spawner<'_> {
     /// Spawns sun and sky.
@@ -55,9 +55,11 @@ impl Spawner<'_> {
     fn doubt_dark_bands(&mut self, sun: Option<&Sun>, sky: Option<&Sky>) {
         let lights = [sun.map(|sun| &sun.irradiance), sky.map(|sky| &sky.irradiance)];
         let is_dark = |band: usize| lights.iter().flatten().all(|light| light[band] <= 0.0);
+        // Reflectance is measured in bands of emission as well.
+        let asks = self.scene.sensors.values().any(asks_for_reflectance);
         let bands = self.scene.bands.iter().enumerate();
         let dark: Vec<String> = bands
-            .filter(|&(index, band)| band.reflects() && is_dark(index))
+            .filter(|&(index, band)| (band.reflects() || asks) && is_dark(index))
             .map(|(_, band)| format!("`{}`", band.name))
             .collect();
         // Scenes without any light measure gaps and emission, or were refused.
@@ -91,5 +93,18 @@ impl Spawner<'_> {
              irradiance",
             values.collect::<Vec<_>>().join(", ")
         ));
+    }
+}
+
+/// Whether a sensor reports what is relative to the light of sun and sky.
+fn asks_for_reflectance(sensor: &Sensor) -> bool {
+    let of_image = |one: &ImageMeasure| matches!(one, ImageMeasure::Brf | ImageMeasure::Orders);
+    let of_photons = |one: &PhotonMeasure| {
+        !one.is_absolute()
+            && !matches!(one, PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature)
+    };
+    match sensor {
+        Sensor::Photons { measure, .. } => measure.iter().any(of_photons),
+        other => other.image_measures().into_iter().flatten().any(of_image),
     }
 }

@@ -267,6 +267,8 @@ fn seeds(reader: &Reader) -> Vec<Vec<u8>> {
     let corpus = format!("tests/corpus/{}", reader.name);
     let folders = reader.seeds.iter().map(|&folder| folder.to_owned()).chain([corpus]);
     let files = folders.flat_map(|folder| files_below(&project().join(folder), reader.extensions));
+    // Closed white boxes take seconds each: ten thousand orders a path.
+    let files = files.filter(|file| !file.to_string_lossy().contains("closedbox"));
     let seeds: Vec<_> = files.map(|file| fs::read(file).expect("a seed")).collect();
     if seeds.is_empty() { vec![b" ".to_vec()] } else { seeds }
 }
