@@ -1,4 +1,4 @@
-//! What may stand on the command line.
+//! The command line: commands and their arguments.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -11,7 +11,7 @@ use sunfleck::run::{self, Share};
 
 use crate::verify::CHECKS;
 
-/// Where the light of a forest goes: images, BRF, albedo and absorbed light of scenes written as text.
+/// Simulates light in forest scenes that are written as text: images, BRF, albedo, absorbed light.
 #[derive(Debug, Parser)]
 #[command(
     name = "sunfleck",
@@ -20,34 +20,35 @@ use crate::verify::CHECKS;
     after_help = "First steps:\n  \
         sunfleck run scenes/birch_stand.ron                      results in out/birch_stand\n  \
         sunfleck run scenes/birch_stand.ron --set sza=60         with another value of a parameter\n  \
-        sunfleck check scenes/birch_stand.ron                    errors and warnings only"
+        sunfleck check scenes/birch_stand.ron                    errors and warnings only\n  \
+        sunfleck keys Orthographic                               keys of a sensor, with units and defaults"
 )]
 pub(crate) enum Command {
-    /// Trace a scene and write what its sensors measure
+    /// Run a scene and write the results of its sensors
     Run(Trace),
-    /// Run a scene at every point of its `sweep`, and write one table of all; goes on where an earlier
-    /// run of the same sweep has stopped
+    /// Run a scene at every point of its `sweep` and write one table; continues an interrupted sweep
     Sweep(Run),
-    /// Measure a scene with each transport system that can, and show their differences in standard
-    /// errors and what each costs
+    /// Run a scene with several transport systems and show their differences in standard errors, and
+    /// their cost
     Compare(Compare),
-    /// Make results of the parts that `run --part` has traced
+    /// Combine the checkpoints of `run --part` and write the results
     Merge(Merge),
-    /// Say what is wrong with a scene and what it consists of: extent, stems, leaf area, cover, sun, bands, sensors
+    /// Report what a scene consists of, its errors and its warnings, without running it
     Check(Check),
-    /// Measure run time against error on a scene: of each product, by each transport system that can
-    /// measure it, over doublings of the number of samples
+    /// Measure run time and error of each product with each transport system, for several numbers of
+    /// samples
     Bench(Bench),
-    /// Put this program to the test on this machine: physics whose answer is known, pass or fail with
-    /// numbers, in about a minute
+    /// Test this program on this machine against known solutions; takes about a minute
     Verify(Verify),
-    /// Print a scene as it is after includes, variant and parameters, each value with its origin
+    /// Print a scene with its includes, variant and parameters applied, and the origin of each value
     Expand(Scene),
-    /// Lay scene files out evenly; values and comments stay as they are
+    /// Format scene files; values and comments stay as they are
     Fmt(Fmt),
-    /// Print a JSON schema of the scene language: every key, described
+    /// Print a JSON schema of the scene language, for editors
     Schema,
-    /// Turn a project folder of LESS 1.8.8 into a scene, and say what became of each setting
+    /// Print every key of the scene language with values, units, defaults and examples, as Markdown
+    Keys(Keys),
+    /// Convert a project folder of LESS 1.8.8 to a scene and report how each setting was converted
     ImportLess(ImportLess),
 }
 
@@ -56,25 +57,32 @@ pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
-    /// Print JSON, for machines
+    /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Verify {
-    /// Run this check alone; may be repeated
+    /// Run only this check; may be repeated
     #[arg(long, value_name = "NAME", value_parser = CHECKS.map(|check| check.name))]
     pub(crate) only: Vec<String>,
 
-    /// Print JSON, for machines
+    /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
+pub(crate) struct Keys {
+    /// Type, variant or key to print alone, such as `Orthographic` or `size_px`
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Args, Debug)]
 pub(crate) struct ImportLess {
-    /// Folder of the project, with `Parameters/input.conf` in it
+    /// Folder of the project; it contains `Parameters/input.conf`
     #[arg(value_name = "FOLDER")]
     pub(crate) folder: PathBuf,
 
@@ -100,7 +108,7 @@ pub(crate) struct Fmt {
     #[arg(value_name = "SCENE", required = true)]
     pub(crate) files: Vec<PathBuf>,
 
-    /// Change nothing, and fail if a file would change
+    /// Change no file; fail if one is not formatted
     #[arg(long)]
     pub(crate) check: bool,
 }
@@ -117,7 +125,7 @@ pub(crate) struct Bench {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum OtherBench {
-    /// Rate of the rays of path tracing, build time and memory of the ray engine
+    /// Measure rays per second, build time and memory of the ray engine
     Rays(Rays),
 }
 
@@ -128,11 +136,11 @@ pub(crate) struct ErrorBench {
     #[command(flatten)]
     pub(crate) measured: Measured,
 
-    /// Doublings of the number of samples up to that of --quality
+    /// Number of times that the number of samples is doubled, up to that of --quality
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=20))]
     pub(crate) doublings: u32,
 
-    /// Times that each number of samples is measured, with random numbers of its own
+    /// Number of independent measurements with each number of samples
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) repeats: u32,
 }
@@ -142,15 +150,15 @@ pub(crate) struct Rays {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
-    /// Threads to use [default: all]
+    /// Number of threads [default: all]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Paths whose rays are traced
+    /// Number of paths whose rays are traced
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     pub(crate) paths: u64,
 
-    /// Times that each measurement is repeated
+    /// Number of repetitions of each measurement
     #[arg(long, value_name = "N", default_value_t = 7)]
     pub(crate) rounds: usize,
 }
@@ -160,20 +168,20 @@ pub(crate) struct Trace {
     #[command(flatten)]
     pub(crate) run: Run,
 
-    /// Trace the first samples alone, and say how much time, memory and files all of them will take
+    /// Run only the first samples, and print the time, memory and file sizes of the whole run
     #[arg(long, conflicts_with = "checkpoint")]
     pub(crate) forecast: bool,
 
-    /// Write what is traced to this file every so often, and go on with it if it is there
+    /// File that the run saves its state to and resumes from
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,
 
-    /// Seconds between two writings of the checkpoint
+    /// Seconds between two saves of the checkpoint
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "checkpoint", value_parser = seconds)]
     pub(crate) every: f64,
 
-    /// Trace the second of four shares of the run alone, and write it to the checkpoint; `merge` makes
-    /// results of all shares
+    /// Run only one part, such as 2/4, the second of four, and save it to the checkpoint; `merge` combines
+    /// all parts
     #[arg(long, value_name = "I/N", requires = "checkpoint", value_parser = part)]
     pub(crate) part: Option<Share>,
 }
@@ -183,14 +191,14 @@ pub(crate) struct Merge {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
-    /// Checkpoints of all parts
+    /// Checkpoint files of all parts
     #[arg(value_name = "FILE", required = true)]
     pub(crate) files: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(crate) out: Out,
 
-    /// Multiply the number of samples, as the parts did
+    /// Factor for the number of samples; the same as for the parts
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
     pub(crate) quality: f64,
 }
@@ -210,16 +218,15 @@ pub(crate) struct Run {
     #[command(flatten)]
     pub(crate) out: Out,
 
-    /// Threads to use [default: all]; the results do not depend on it
+    /// Number of threads [default: all]; results do not depend on it
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Multiply the number of samples: 0.05 for a quick look
+    /// Factor for the number of samples: 0.05 for a quick look
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
     pub(crate) quality: f64,
 
-    /// Refuse a run whose films and results take more memory than this, such as 4GiB [default: what is
-    /// free]
+    /// Largest memory for films and results, such as 4GiB; larger runs are refused [default: free memory]
     #[arg(long, value_name = "SIZE", value_parser = memory)]
     pub(crate) memory: Option<u64>,
 }
@@ -231,25 +238,25 @@ impl Run {
     }
 }
 
-/// A scene, and by what it is measured.
+/// A scene, its sensors and transport systems.
 #[derive(Args, Debug)]
 pub(crate) struct Measured {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
-    /// Transport systems
+    /// Transport systems to run
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = all_systems(), value_parser = system)]
     systems: Vec<SystemName>,
 
-    /// Measure this sensor; may be repeated [default: all]
+    /// Run only this sensor; may be repeated [default: all]
     #[arg(long = "sensor", value_name = "NAME")]
     pub(crate) sensors: Vec<String>,
 
-    /// Multiply the number of samples: 0.05 for a quick look
+    /// Factor for the number of samples: 0.05 for a quick look
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
     pub(crate) quality: f64,
 
-    /// Threads to use [default: all]; the results do not depend on it
+    /// Number of threads [default: all]; results do not depend on it
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
 
@@ -291,11 +298,11 @@ pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) measured: Measured,
 
-    /// The system that the others are compared with [default: the first]
+    /// Transport system that the others are compared with [default: the first]
     #[arg(long, value_name = "NAME", value_parser = system)]
     reference: Option<SystemName>,
 
-    /// Write each pixel of images into the table too
+    /// Include every pixel of images in the table
     #[arg(long)]
     pub(crate) pixels: bool,
 }
@@ -338,11 +345,11 @@ pub(crate) struct Scene {
     #[arg(value_name = "SCENE")]
     pub(crate) file: PathBuf,
 
-    /// Give a parameter of the scene another value, a number or a text; may be repeated
+    /// Set a parameter of the scene to a number or a text; may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<(String, document::Param)>,
 
-    /// Apply one of the scene's variants
+    /// Apply this variant of the scene
     #[arg(long, value_name = "NAME")]
     pub(crate) variant: Option<String>,
 }
@@ -404,7 +411,7 @@ fn setting(text: &str) -> Result<(String, document::Param), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as sza=30")?;
     let name = name.trim();
     if name.is_empty() {
-        return Err("there is no name before `=`".to_owned());
+        return Err("the name before `=` is missing".to_owned());
     }
     match value.trim() {
         "" => Err("there is no value behind `=`".to_owned()),
@@ -412,7 +419,7 @@ fn setting(text: &str) -> Result<(String, document::Param), String> {
     }
 }
 
-/// Parts that a run may be divided into: each randomisation belongs to one.
+/// Largest number of parts of a run; each randomisation belongs to one part.
 const MOST_PARTS: u32 = 32;
 
 fn part(text: &str) -> Result<Share, String> {

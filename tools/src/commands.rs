@@ -1,4 +1,4 @@
-//! What each command does.
+//! Execution of the commands.
 
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -10,7 +10,7 @@ use sunfleck::run::Share;
 use sunfleck::{document, output, run};
 
 use crate::arguments::{
-    Bench, Check, Command, Fmt, Merge, OtherBench, Out, Run, Scene, Trace, Verify,
+    Bench, Check, Command, Fmt, Keys, Merge, OtherBench, Out, Run, Scene, Trace, Verify,
 };
 use crate::progress::Bars;
 use crate::{bench, compare, describe, import_less, verify};
@@ -32,6 +32,11 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Expand(scene) => expand(scene),
         Command::Fmt(arguments) => fmt(arguments),
         Command::Schema => print(&document::json_schema()),
+        Command::Keys(Keys { name: None }) => print(&document::keys_page()),
+        Command::Keys(Keys { name: Some(name) }) => match document::keys_about(name) {
+            Ok(text) => print(&text),
+            Err(error) => bail!(error),
+        },
         Command::ImportLess(arguments) => {
             print(&import_less::import(&arguments.folder, &arguments.out())?)
         }
@@ -84,7 +89,7 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
     warn(&report.warnings);
     let file = arguments.checkpoint.as_deref().unwrap_or(Path::new(""));
     print(&format!(
-        "{}: part {} of {}: {:.3} million rays in {:.1} s; `sunfleck merge` makes results of all parts\n",
+        "{}: part {} of {}: {:.3} million rays in {:.1} s; `sunfleck merge` combines all parts\n",
         file.display(),
         share.index + 1,
         share.of,
@@ -240,14 +245,14 @@ fn fmt(arguments: &Fmt) -> anyhow::Result<()> {
     }
     print(&changed)?;
     if arguments.check && !changed.is_empty() {
-        bail!("not in normal form: run `sunfleck fmt` on these files");
+        bail!("not formatted: run `sunfleck fmt` on these files");
     }
     Ok(())
 }
 
 fn verify(arguments: &Verify) -> anyhow::Result<()> {
     if !verify::verify(&arguments.only, arguments.json, print)? {
-        bail!("what this program measures here is not to be trusted");
+        bail!("this program gives wrong results on this machine: see the checks that failed");
     }
     Ok(())
 }

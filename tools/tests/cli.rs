@@ -405,7 +405,7 @@ fn fmt_changes_what_is_not_in_normal_form_and_check_says_so() {
     let folder = folder_with("Scene(format:1, // one\n)");
     let (code, stdout, stderr) = outcome(folder.path(), &["fmt", "--check", "soil.ron"]);
     assert_eq!((code, stdout.as_str()), (1, "soil.ron\n"));
-    assert_eq!(stderr, "error: not in normal form: run `sunfleck fmt` on these files\n");
+    assert_eq!(stderr, "error: not formatted: run `sunfleck fmt` on these files\n");
     let (code, stdout, stderr) = outcome(folder.path(), &["fmt", "soil.ron"]);
     assert_eq!((code, stdout.as_str(), stderr.as_str()), (0, "soil.ron\n", ""));
     let text = fs::read_to_string(folder.path().join("soil.ron")).unwrap();

@@ -9,12 +9,15 @@ use super::scene::Scene;
 #[derive(Debug, Default)]
 pub(super) struct Book {
     types: Map<String, Value>,
+    /// Names of the types, in the order in which they were met.
+    order: Vec<String>,
 }
 
 impl Book {
     /// A reference to a type, which is described where it is first met.
     pub(super) fn describe(&mut self, name: &str, of: impl FnOnce(&mut Self) -> Value) -> Value {
         if !self.types.contains_key(name) {
+            self.order.push(name.to_owned());
             // Types may hold themselves.
             self.types.insert(name.to_owned(), Value::Null);
             let described = of(self);
@@ -38,26 +41,77 @@ pub fn json_schema() -> String {
     if let Some(include) = book.types.get_mut("Include") {
         *include = json!({ "anyOf": [include.take(), { "type": "string" }] });
     }
-    let schema = json!({
+    let mut schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "sunfleck scene, format 1",
         "$ref": root["$ref"],
         "$defs": book.types,
     });
+    leave_out_annotations(&mut schema);
     format!("{schema:#}\n")
 }
 
-/// A key of a record: name, doc attributes, schema, and whether it must be written.
-pub(super) type Key = (&'static str, String, Value, bool);
+/// Annotation of records: keys in the order of their declaration, with defaults and examples as RON.
+pub(super) const KEYS: &str = "x-keys";
+
+/// Annotation of variants: name, what they hold, an example as RON.
+pub(super) const VARIANT: &str = "x-variant";
+
+/// All types of the language with their annotated schemas, in the order in which `Scene` leads to them.
+pub(super) fn types() -> Vec<(String, Value)> {
+    let mut book = Book::default();
+    Scene::schema(&mut book);
+    let Book { mut types, order } = book;
+    order
+        .into_iter()
+        .map(|name| {
+            let schema = types.get_mut(&name).map_or(Value::Null, Value::take);
+            (name, schema)
+        })
+        .collect()
+}
+
+/// Takes out what is not part of JSON schemas.
+fn leave_out_annotations(schema: &mut Value) {
+    match schema {
+        Value::Object(entries) => {
+            entries.remove(KEYS);
+            entries.remove(VARIANT);
+            entries.values_mut().for_each(leave_out_annotations);
+        }
+        Value::Array(items) => items.iter_mut().for_each(leave_out_annotations),
+        _ => {}
+    }
+}
+
+/// A key of a record.
+pub(super) struct Key {
+    pub(super) name: &'static str,
+    pub(super) doc: String,
+    pub(super) schema: Value,
+    /// Default as RON; none if the key must be written.
+    pub(super) default: Option<String>,
+    /// Example as RON.
+    pub(super) example: Option<String>,
+}
 
 /// A record, or the keys of a variant.
 pub(super) fn record(doc: &str, keys: Vec<Key>) -> Value {
-    let required: Vec<_> = keys.iter().filter(|key| key.3).map(|key| key.0).collect();
+    let required: Vec<_> =
+        keys.iter().filter(|key| key.default.is_none()).map(|key| key.name).collect();
+    let annotations: Vec<_> = keys
+        .iter()
+        .map(|Key { name, doc, schema, default, example }| {
+            let schema = with_description(schema.clone(), doc);
+            json!({ "name": name, "schema": schema, "default": default, "example": example })
+        })
+        .collect();
     let properties: Map<String, Value> = keys
         .into_iter()
-        .map(|(name, doc, schema, _)| (name.to_owned(), with_description(schema, &doc)))
+        .map(|key| (key.name.to_owned(), with_description(key.schema, &key.doc)))
         .collect();
     let mut schema = json!({
+        KEYS: annotations,
         "type": "object",
         "properties": properties,
         "required": required,
@@ -70,10 +124,16 @@ pub(super) fn record(doc: &str, keys: Vec<Key>) -> Value {
 }
 
 /// A variant: its name alone, or its name with what it holds.
-pub(super) fn variant(name: &str, doc: &str, holds: Option<Value>) -> Value {
+pub(super) fn variant(name: &str, doc: &str, holds: Option<Value>, example: String) -> Value {
+    let mut annotation = json!({ "name": name, "example": example });
     let Some(holds) = holds else {
-        return with_description(json!({ "const": name }), doc);
+        return with_description(json!({ "const": name, VARIANT: annotation }), doc);
     };
+    // Keys of its own, or one value.
+    match holds.get(KEYS) {
+        Some(keys) => annotation[KEYS] = keys.clone(),
+        None => annotation["holds"] = holds.clone(),
+    }
     let may_be_bare = holds["required"].as_array().is_some_and(Vec::is_empty);
     let object = json!({
         "type": "object",
@@ -81,7 +141,9 @@ pub(super) fn variant(name: &str, doc: &str, holds: Option<Value>) -> Value {
         "required": [name],
         "additionalProperties": false,
     });
-    let schema = if may_be_bare { json!({ "anyOf": [object, { "const": name }] }) } else { object };
+    let mut schema =
+        if may_be_bare { json!({ "anyOf": [object, { "const": name }] }) } else { object };
+    schema[VARIANT] = annotation;
     with_description(schema, doc)
 }
 

@@ -116,6 +116,13 @@ impl Text {
         writer.out
     }
 
+    /// As one line.
+    pub(super) fn into_line(self) -> String {
+        let mut writer = Writer { out: String::new(), path: String::new(), remark: &|_| None };
+        writer.flat(&self);
+        writer.out
+    }
+
     /// Characters on one line, if at most `limit`, and if it may stand on one.
     fn width(&self, limit: usize) -> Option<usize> {
         let within = |width: usize| (width <= limit).then_some(width);

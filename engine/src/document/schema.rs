@@ -30,12 +30,14 @@ macro_rules! record {
                 use crate::document::describe::{doc, record};
                 book.describe(stringify!($name), |book| record(
                     &doc(&[$(stringify!($meta)),*]),
-                    vec![$((
-                        stringify!($field),
-                        doc(&[$(stringify!($field_meta)),*]),
-                        <$type>::schema(book),
-                        is_required!($($default)?),
-                    )),*],
+                    vec![$(crate::document::describe::Key {
+                        name: stringify!($field),
+                        doc: doc(&[$(stringify!($field_meta)),*]),
+                        schema: <$type>::schema(book),
+                        default: default_of_key!($type $(= $default)?),
+                        example: example_of_key!($field: $type $(=> $example)? $(= $default)?)
+                            .map(|(_, example)| example),
+                    }),*],
                 ))
             }
 
@@ -112,8 +114,17 @@ macro_rules! choice {
                         stringify!($variant),
                         &doc(&[$(stringify!($variant_meta)),*]),
                         schema_of_variant!(book $(($tuple))? $({ $(
-                            $(#[$field_meta])* $field: $type $(= $default)?
+                            $(#[$field_meta])* $field: $type $(=> $example)? $(= $default)?
                         ),* })?),
+                        {
+                            #[allow(unused_imports, reason = "only variants with keys use it")]
+                            use crate::document::decode::example_of_keys;
+                            example_of_variant!(
+                                $variant
+                                $(($tuple $(=> $tuple_example)?))?
+                                $({ $($field: $type $(=> $example)? $(= $default)?),* })?
+                            )
+                        },
                     )),*];
                     serde_json::json!({
                         "description": doc(&[$(stringify!($meta)),*]),
@@ -167,13 +178,14 @@ macro_rules! choice {
     };
 }
 
-macro_rules! is_required {
-    () => {
-        true
+macro_rules! default_of_key {
+    ($type:ty) => {
+        None
     };
-    ($default:expr) => {
-        false
-    };
+    ($type:ty = $default:expr) => {{
+        let default: $type = $default;
+        Some(default.encode().into_line())
+    }};
 }
 
 macro_rules! schema_of_variant {
@@ -184,13 +196,17 @@ macro_rules! schema_of_variant {
     ($book:ident ($tuple:ty)) => {
         Some(<$tuple>::schema($book))
     };
-    ($book:ident { $($(#[$meta:meta])* $field:ident: $type:ty $(= $default:expr)?),* }) => {
-        Some(crate::document::describe::record("", vec![$((
-            stringify!($field),
-            doc(&[$(stringify!($meta)),*]),
-            <$type>::schema($book),
-            is_required!($($default)?),
-        )),*]))
+    ($book:ident { $($(#[$meta:meta])* $field:ident: $type:ty
+        $(=> $example:literal)? $(= $default:expr)?),* }
+    ) => {
+        Some(crate::document::describe::record("", vec![$(crate::document::describe::Key {
+            name: stringify!($field),
+            doc: doc(&[$(stringify!($meta)),*]),
+            schema: <$type>::schema($book),
+            default: default_of_key!($type $(= $default)?),
+            example: example_of_key!($field: $type $(=> $example)? $(= $default)?)
+                .map(|(_, example)| example),
+        }),*]))
     };
 }
 
@@ -211,7 +227,7 @@ macro_rules! example_of_key {
         Some((stringify!($field), $example.to_owned()))
     };
     ($field:ident: $type:ty = $default:expr) => {
-        None
+        None::<(&str, String)>
     };
 }
 

@@ -131,11 +131,11 @@ choice! {
 choice! {
     /// How many stems there are.
     pub enum Stems ("a choice of how many stems") {
-        /// So many.
+        /// A number of them.
         Count(u32 => "500"),
-        /// So many a hectare of the area where they may stand.
+        /// Stems per hectare of the area where they may stand.
         PerHectare(f64 => "400.0"),
-        /// So many a hectare as a raster says, place by place: ESRI ASCII grid, ENVI or `GeoTIFF`. It
+        /// Stems per hectare, place by place, from a raster: ESRI ASCII grid, ENVI or `GeoTIFF`. It
         /// lies where the file says, as the terrain does; over the whole terrain if the file does
         /// not. Beside it and where it has no data stands nothing.
         Raster {

@@ -28,9 +28,9 @@ choice! {
             zenith_deg: f64 = 0.0,
             /// Where the sensor is, clockwise from north, degrees. A nadir image has north up at 180.
             azimuth_deg: f64 = 180.0,
-            /// Samples a pixel; 64 if neither this nor `samples_per_m2` is written.
+            /// Samples per pixel; 64 if neither this nor `samples_per_m2` is written.
             samples_per_px: Option<u32> = None,
-            /// Samples a square metre of the footprint, in place of `samples_per_px`.
+            /// Samples per m² of the footprint, in place of `samples_per_px`.
             samples_per_m2: Option<f64> = None,
             /// When it is good enough; the number of samples then is no limit.
             until: Option<Ends> = None,
@@ -60,7 +60,7 @@ choice! {
             /// Whether the camera sees the sky where nothing stands before it; otherwise there is no
             /// data.
             sees_sky: bool = false,
-            /// Samples a pixel.
+            /// Samples per pixel.
             samples_per_px: u32 = 64,
             /// When it is good enough; `samples_per_px` then is no limit.
             until: Option<Ends> = None,
@@ -92,7 +92,7 @@ choice! {
             /// Whether the camera sees the sky where nothing stands before it; otherwise there is no
             /// data.
             sees_sky: bool = true,
-            /// Samples a pixel.
+            /// Samples per pixel.
             samples_per_px: u32 = 64,
             /// When it is good enough; `samples_per_px` then is no limit.
             until: Option<Ends> = None,
@@ -119,7 +119,7 @@ choice! {
         },
         /// Photon packets from sun and sky, and from what surfaces and `thermal_sky` emit.
         Photons {
-            /// Packets a square metre of the terrain's rectangle; of emitted light, lines through the
+            /// Packets per m² of the terrain's rectangle; of emitted light, lines through the
             /// scene along each of which several start.
             per_m2: f64 = 1000.0,
             /// When it is good enough; `per_m2` then is no limit.
@@ -325,7 +325,7 @@ impl ImageMeasure {
 choice! {
     /// What photons are counted for.
     pub enum PhotonMeasure ("a measure of photons") {
-        /// BRF in so many equal-area cells of the hemisphere.
+        /// BRF in this number of equal-area cells of the hemisphere.
         BrfCells(u32 => "150"),
         /// BRF towards directions, by virtual photons.
         BrfViews(Views => "PrincipalPlane"),
@@ -333,7 +333,7 @@ choice! {
         BrfCones(Vec<(f64, f64, f64)> => "[(30.0, 90.0, 5.0)]"),
         /// Reflected over incident flux.
         Albedo,
-        /// Radiance in so many equal-area cells of the hemisphere, W m⁻² sr⁻¹ nm⁻¹, from the sources
+        /// Radiance in this number of equal-area cells of the hemisphere, W m⁻² sr⁻¹ nm⁻¹, from the sources
         /// that the band names; of an isolated scene, over the terrain's rectangle.
         RadianceCells(u32 => "150"),
         /// The same towards directions, by virtual photons.

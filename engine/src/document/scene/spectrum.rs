@@ -12,7 +12,7 @@ choice! {
     pub enum Spectrum ("a spectrum") {
         /// The same at every wavelength.
         Constant(f64 => "0.3"),
-        /// One value a band of this scene.
+        /// One value for each band of this scene.
         Bands(Vec<f64> => "[0.1, 0.2]"),
         /// Points (wavelength nm, value), joined by straight lines and averaged over each band.
         Points(Vec<(f64, f64)> => "[(400.0, 0.05), (800.0, 0.3)]"),

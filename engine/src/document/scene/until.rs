@@ -17,9 +17,9 @@ choice! {
         RelError(f64 => "0.005"),
         /// That of each of these products is at most this: the names are those in `summary.json`.
         RelErrors(Map<f64> => "{ \"brf\": 0.005 }"),
-        /// It has run for so many seconds.
+        /// It has run for this number of seconds.
         Seconds(f64 => "60.0"),
-        /// So many samples a pixel or a direction; of `Photons`, packets.
+        /// Samples per pixel or direction; of `Photons`, the number of packets.
         Samples(u64 => "1000"),
     }
 }
