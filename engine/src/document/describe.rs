@@ -124,7 +124,7 @@ pub(super) fn record(doc: &str, keys: Vec<Key>) -> Value {
 }
 
 /// A variant: its name alone, or its name with what it holds.
-pub(super) fn variant(name: &str, doc: &str, holds: Option<Value>, example: String) -> Value {
+pub(super) fn variant(name: &str, doc: &str, holds: Option<Value>, example: &str) -> Value {
     let mut annotation = json!({ "name": name, "example": example });
     let Some(holds) = holds else {
         return with_description(json!({ "const": name, VARIANT: annotation }), doc);

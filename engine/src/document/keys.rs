@@ -85,7 +85,7 @@ impl Section {
         let rows: Vec<_> = self.rows.iter().map(|(_, row)| row.as_str()).collect();
         let mut text = self.with_rows(&rows);
         if !self.example.is_empty() {
-            text += &format!("\n{}\n", self.example);
+            text.extend(["\n", &self.example, "\n"]);
         }
         text
     }
@@ -93,7 +93,7 @@ impl Section {
     fn with_rows(&self, rows: &[&str]) -> String {
         let mut text = format!("{}\n", self.heading);
         if !self.text.is_empty() {
-            text += &format!("\n{}\n", self.text);
+            text.extend(["\n", &self.text, "\n"]);
         }
         if !rows.is_empty() {
             text += "\n| key | value | default | meaning |\n|---|---|---|---|\n";
@@ -119,7 +119,11 @@ fn sections() -> Vec<Section> {
             variants.iter().partition(|variant| variant[VARIANT][KEYS].is_array());
         if !plain.is_empty() {
             let lines: Vec<_> = plain.into_iter().map(plain_variant).collect();
-            head.text = [head.text, lines.join("\n")].join("\n\n").trim().to_owned();
+            let text = std::mem::take(&mut head.text);
+            head.text = match text.as_str() {
+                "" => lines.join("\n"),
+                _ => format!("{text}\n\n{}", lines.join("\n")),
+            };
         }
         sections.push(head);
         for variant in with_keys {
@@ -148,10 +152,10 @@ fn plain_variant(variant: &Value) -> String {
     }
     let text = description(variant);
     if !text.is_empty() {
-        line += &format!(": {text}");
+        line.extend([": ", &text]);
     }
     if !of_variant["holds"].is_null() {
-        line += &format!(" Example: `{}`", example(of_variant));
+        line.extend([" Example: `", example(of_variant), "`"]);
     }
     line
 }

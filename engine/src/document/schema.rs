@@ -116,7 +116,7 @@ macro_rules! choice {
                         schema_of_variant!(book $(($tuple))? $({ $(
                             $(#[$field_meta])* $field: $type $(=> $example)? $(= $default)?
                         ),* })?),
-                        {
+                        &{
                             #[allow(unused_imports, reason = "only variants with keys use it")]
                             use crate::document::decode::example_of_keys;
                             example_of_variant!(
