@@ -199,6 +199,7 @@ fn run_options(arguments: &Run) -> run::Options {
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
         memory: arguments.memory,
+        sensors: arguments.sensors.clone(),
         ..run::Options::default()
     }
 }

@@ -63,6 +63,8 @@ pub struct Options {
     pub memory: Option<u64>,
     /// Trace no more of each sensor than tells how long it will take.
     pub forecast: bool,
+    /// Names of the sensors that measure; all if empty.
+    pub sensors: Vec<String>,
 }
 
 impl Default for Options {
@@ -75,6 +77,7 @@ impl Default for Options {
             unite: Vec::new(),
             memory: None,
             forecast: false,
+            sensors: Vec::new(),
         }
     }
 }
@@ -391,10 +394,15 @@ fn measure(
 }
 
 fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
-    let reading = document::read_file(path, &options.document)
+    let mut reading = document::read_file(path, &options.document)
         .map_err(|error| Failure::Scene(error.to_string()))?;
     if reading.is_sound() {
-        return Ok(reading);
+        let unknown = choose_sensors(&mut reading.scene, &options.sensors);
+        return if unknown.is_empty() {
+            Ok(reading)
+        } else {
+            Err(Failure::Scene(reading.source.render(&unknown)))
+        };
     }
     // What can be found out beyond the text is reported at once with the rest.
     let mut problems = reading.diagnostics;
@@ -403,6 +411,18 @@ fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
     let missing = missing_files(&reading.scene, folder_of(path)).into_iter();
     problems.extend(missing.filter(|m| !known.iter().any(|path| m.path.starts_with(path))));
     Err(Failure::Scene(reading.source.render(&problems)))
+}
+
+/// Leaves out all sensors but these; returns an error for each name that is none.
+fn choose_sensors(scene: &mut Scene, names: &[String]) -> Vec<Diagnostic> {
+    let unknown = names.iter().filter(|name| !scene.sensors.contains_key(name.as_str()));
+    let known = || scene.sensors.keys().map(String::as_str);
+    let unknown = unknown.map(|name| document::unknown_name("sensors", "sensor", name, known()));
+    let unknown = unknown.collect();
+    if !names.is_empty() {
+        scene.sensors.retain(|name, _| names.contains(name));
+    }
+    unknown
 }
 
 /// Folder that paths in a scene file are relative to.
