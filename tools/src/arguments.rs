@@ -215,6 +215,10 @@ pub(crate) struct Run {
     #[command(flatten)]
     pub(crate) scene: Scene,
 
+    /// Measure with this sensor alone; may be repeated [default: all]
+    #[arg(long = "sensor", value_name = "NAME")]
+    pub(crate) sensors: Vec<String>,
+
     #[command(flatten)]
     pub(crate) out: Out,
 
@@ -232,10 +236,6 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Measure with this sensor alone; may be repeated [default: all]
-    #[arg(long = "sensor", value_name = "NAME")]
-    pub(crate) sensors: Vec<String>,
-
     /// Folder for the results of a command whose default folders end in `ending`.
     pub(crate) fn folder(&self, ending: &str) -> PathBuf {
         self.out.folder(&self.scene, ending)

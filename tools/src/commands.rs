@@ -214,14 +214,17 @@ fn check(arguments: &Check) -> anyhow::Result<()> {
     if arguments.json {
         return print(&describe::json(facts.as_ref(), &warnings)?);
     }
+    let (notes, warnings): (Vec<String>, Vec<String>) =
+        warnings.into_iter().partition(|text| text.starts_with(NOTE));
     warn(&warnings);
-    let found = match warnings.iter().filter(|text| !has_heading(text, &[SKIPPED, NOTE])).count() {
+    let found = match warnings.iter().filter(|text| !text.starts_with(SKIPPED)).count() {
         0 => "no errors".to_owned(),
         1 => "no errors, 1 warning".to_owned(),
         n => format!("no errors, {n} warnings"),
     };
     let facts = facts.as_ref().map(describe::text).unwrap_or_default();
-    print(&format!("{facts}{}: {found}\n", scene.file.display()))
+    let notes = notes.iter().flat_map(|note| [note.as_str(), "\n"]).collect::<String>();
+    print(&format!("{facts}{notes}{}: {found}\n", scene.file.display()))
 }
 
 fn expand(scene: &Scene) -> anyhow::Result<()> {
@@ -258,14 +261,10 @@ fn verify(arguments: &Verify) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn has_heading(text: &str, headings: &[&str]) -> bool {
-    headings.iter().any(|heading| text.starts_with(heading))
-}
-
 pub(crate) fn warn(warnings: &[String]) {
     let mut stderr = io::stderr().lock();
     for warning in warnings {
-        let headed = has_heading(warning, &["warning: ", SKIPPED, NOTE]);
+        let headed = ["warning: ", SKIPPED].iter().any(|heading| warning.starts_with(heading));
         let heading = if headed { "" } else { "warning: " };
         // A warning that cannot be shown is no reason to lose the results.
         drop(writeln!(stderr, "{heading}{}", warning.trim_end()));

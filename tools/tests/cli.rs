@@ -438,3 +438,18 @@ fn verify_says_what_it_measured_and_whether_it_holds() {
     assert!(stderr.contains("reciprocity") && stderr.contains("turbid"), "{stderr}");
     assert_eq!(names(folder.path()), Vec::<String>::new(), "it writes nothing");
 }
+
+#[test]
+fn sensors_are_chosen_by_their_names() {
+    let folder = folder_with(SOIL);
+    let arguments = ["run", "soil.ron", "--sensor", "views", "--out", "views"];
+    let (code, stdout, stderr) = outcome(folder.path(), &arguments);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stdout.contains("views") && !stdout.contains("top"), "{stdout}");
+    let (code, _, stderr) = outcome(folder.path(), &["run", "soil.ron", "--sensor", "view"]);
+    assert_eq!(code, 1);
+    assert!(
+        stderr.contains("no sensor `view`") && stderr.contains("did you mean `views`"),
+        "{stderr}"
+    );
+}
