@@ -482,7 +482,11 @@ fn axes_have_the_shape_of_the_values() {
                 if path.extension().is_some_and(|ending| ending == "csv") {
                     let rows = table(&path);
                     for column in &columns {
-                        assert!(rows[0].contains(column), "{file}: no {column}");
+                        // The last axis of some products is the columns themselves.
+                        let first = axes.get(*column).and_then(|axis| axis[0].as_str());
+                        let is_across =
+                            first.is_some_and(|label| rows[0].iter().any(|name| name == label));
+                        assert!(rows[0].contains(column) || is_across, "{file}: no {column}");
                     }
                 }
             }
