@@ -162,11 +162,11 @@ fn changed_parameters_have_folders_of_their_own_and_are_told() {
     // In a folder that was named, a word says what was there.
     place.done("run par.ron --set r=0.2 --out o");
     let text = place.done("run par.ron --set r=0.3 --out o");
-    assert!(text.contains("7 files in o (o held results with r = 0.2): "), "{text}");
+    assert!(text.contains("8 files in o (o held results with r = 0.2): "), "{text}");
     let text = place.done("run par.ron --set r=0.3 --out o --quality 0.5");
     assert!(text.contains("(o held results with r = 0.3)"), "{text}");
     let text = place.done("run par.ron --set r=0.3 --out o --quality 0.5");
-    assert!(text.contains("7 files in o: "), "{text}");
+    assert!(text.contains("8 files in o: "), "{text}");
 }
 
 /// Neighbours: names of variants, and commands with folders of their own.
@@ -208,7 +208,7 @@ fn what_is_none_of_ours_stays_and_results_are_not_lost_for_it() {
     fs::create_dir_all(place.path("o/k_brf.exr")).unwrap();
     fs::write(place.path("o/summary.json"), "[\"of another program\"]").unwrap();
     let text = place.done("run a/plot.ron --out o");
-    assert!(text.contains("7 files in o_2: "), "{text}");
+    assert!(text.contains("8 files in o_2: "), "{text}");
     assert_eq!(place.names("o"), ["k_brf.exr", "summary.json"]);
     assert!(place.path("o_2/summary.json").is_file());
     // A folder of a person's own work, which is the working folder too.

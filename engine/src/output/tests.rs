@@ -444,7 +444,8 @@ fn hostile_names_stay_inside_the_folder_and_apart() {
     let paths = write(&report(sensors), &folder).unwrap();
     assert_eq!(names(root.path()), ["out"]);
     let found = names(&folder);
-    assert_eq!(found.len(), hostile.len() + 1, "{found:?}");
+    // A table and a chart each, and the summary.
+    assert_eq!(found.len(), 2 * hostile.len() + 1, "{found:?}");
     for path in &paths {
         assert_eq!(path.parent(), Some(folder.as_path()));
         assert!(path.is_file());
@@ -456,7 +457,8 @@ fn hostile_names_stay_inside_the_folder_and_apart() {
     let text = fs::read_to_string(folder.join("summary.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["sensors"].as_object().unwrap().len(), hostile.len());
-    assert_eq!(json["sensors"]["A b"]["brf"]["files"], serde_json::json!(["A_b_brf_3.csv"]));
+    let files = serde_json::json!(["A_b_brf_3.csv", "A_b_brf_3.svg"]);
+    assert_eq!(json["sensors"]["A b"]["brf"]["files"], files);
 }
 
 #[test]
