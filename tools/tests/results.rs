@@ -85,7 +85,7 @@ fn names(folder: &Path) -> Vec<String> {
 
 /// Names of the files of an image.
 fn image(stem: &str) -> Vec<String> {
-    [".exr", ".img", ".img.hdr", ".png", "_se.img", "_se.img.hdr"]
+    [".exr", ".img", ".img.hdr", ".pixels.png", ".png", "_se.img", "_se.img.hdr"]
         .map(|ending| format!("{stem}{ending}"))
         .to_vec()
 }
