@@ -70,7 +70,9 @@ impl Origins {
         };
         let (path, row) = (format!("instances[{entry}]"), instance - start);
         match scene.instances.get(entry) {
-            Some(Instances::List { .. }) => (format!("{path}.at_m[{row}]"), "it".to_owned()),
+            Some(Instances::List { .. }) => {
+                (format!("{path}.at_m[{row}]"), "this instance".to_owned())
+            }
             Some(Instances::Table { file, .. }) => {
                 (format!("{path}.file"), format!("row {} of `{file}`", row + 1))
             }
