@@ -72,7 +72,7 @@ fn the_example_of_the_design_gives_every_product_that_it_asks_for() {
         ("flux", "upwelling_top", 2),
         ("flux", "downwelling_terrain", 2),
         ("flux", "upwelling_terrain", 2),
-        ("flux", "energy", 7 * 2),
+        ("flux", "energy", 9 * 2),
     ];
     for (sensor, name, values) in expected {
         let product = product(&report, sensor, name);

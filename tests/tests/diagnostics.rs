@@ -46,7 +46,11 @@ fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
     // band beyond the spectrum.
     assert_eq!(
         places(dir.path()),
-        ["8:33 (meshes.tree.file)", "5:17 (materials.leaf)", "6:41 (materials.soil.reflectance)"]
+        [
+            "8:33 (meshes.tree.file)",
+            "5:17 (materials.leaf)",
+            "6:53 (materials.soil.reflectance.file)"
+        ]
     );
     fs::write(dir.path().join("t.obj"), "g leaf\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         .expect("a file");

@@ -322,7 +322,9 @@ fn a_signal_while_files_are_written_takes_them_away() {
             send(&child, "-TERM");
             child.wait().unwrap().code()
         };
-        assert!(code == Some(143) || code == Some(0), "{code:?}");
+        // At the first moment the program may not yet handle signals: then it has written nothing.
+        let is_early = moment == 0 && code.is_none();
+        assert!(is_early || code == Some(143) || code == Some(0), "{moment}: {code:?}");
         assert_eq!(place.names(""), ["big.ron", "long.ron", "mid.ron", "o"]);
         let now = contents(&place.path("o"));
         assert!(code == Some(0) || now == old || now.len() == old.len());

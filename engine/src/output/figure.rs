@@ -355,7 +355,7 @@ mod tests {
         let caption = Caption { title: "a: brf".to_owned(), scene: "", unit: "1" };
         let Figure { canvas } = Figure::new((&picture, &legend), &image, &caption);
         let letters = Letters::for_width(320);
-        assert_eq!(canvas.width, LETTERS * letters.width() + 2 * letters.height());
+        assert_eq!(canvas.width, (LETTERS * letters.width()).max(320) + 2 * letters.height());
         assert_eq!(canvas.rgb.len(), 3 * canvas.width * canvas.height);
         let count =
             |colour: [u8; 3]| canvas.rgb.chunks_exact(3).filter(|one| *one == colour).count();

@@ -512,7 +512,10 @@ fn a_write_that_fails_leaves_no_file_and_an_older_report_whole() {
         matches!(&error, OutputError::Taken { path } if path.ends_with("late_brf.csv")),
         "{error}"
     );
-    assert_eq!(names(root.path()), ["late_brf.csv", "plane_brf.csv", "summary.json"]);
+    assert_eq!(
+        names(root.path()),
+        ["late_brf.csv", "plane_brf.csv", "plane_brf.svg", "summary.json"]
+    );
     assert_eq!(fs::read(root.path().join("summary.json")).unwrap(), before);
     let csv = fs::read_to_string(root.path().join("plane_brf.csv")).unwrap();
     assert!(!csv.contains("0.9"), "{csv}");

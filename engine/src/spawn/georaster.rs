@@ -5,7 +5,9 @@ use glam::DVec2;
 
 use super::Spawner;
 use super::lay::Georeference;
-use crate::assets::{Assumed, Axes, Extent, Heights, Length, Place, Raster, read_raster};
+use crate::assets::{
+    AssetError, Assumed, Axes, Extent, Heights, Length, Place, Raster, RasterError, read_raster,
+};
 use crate::document::{Coordinates, Diagnostic};
 use crate::geometry::Rectangle;
 
@@ -51,7 +53,17 @@ impl Spawner<'_> {
     pub(super) fn georaster(&mut self, source: &RasterSource<'_>) -> Option<Raster> {
         let file = self.file(source.file);
         self.files.extend(crate::assets::companions(&file));
-        let mut raster = match read_raster(&file, source.extent.as_ref()) {
+        let nowhere = |error: &AssetError| {
+            matches!(error, AssetError::Raster { problem: RasterError::WindowOfNowhere, .. })
+        };
+        let read = match read_raster(&file, source.extent.as_ref()) {
+            // Classes without a place lie over the whole terrain, whose window nobody wrote.
+            Err(error) if source.quantity == Quantity::Classes && nowhere(&error) => {
+                read_raster(&file, None)
+            }
+            read => read,
+        };
+        let mut raster = match read {
             Ok(raster) => raster,
             Err(error) => {
                 self.problems.push(Diagnostic::error(source.path, error.to_string()));

@@ -5,7 +5,7 @@ use sunfleck::run::Options;
 use sunfleck_tests::field::{Case, Right, hold, hold_with};
 
 const DARK: &str = "no light falls on the scene in band";
-const HEIGHT: &str = "expected a height from -1e7 to 1e7 m";
+const HEIGHT: &str = "expected a height from -1e8 to 1e8 m";
 
 /// The value of a product without noise, or within its own.
 macro_rules! value {

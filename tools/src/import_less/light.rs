@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use anyhow::{Context as _, Result};
 
 use super::conf::{self, Node};
+use super::optics::HOTTEST_K;
 use super::project::Project;
 use super::report::Report;
 use super::settings::{Choice, Rule};
@@ -223,7 +224,7 @@ impl Project {
         };
         let name = node.text()?;
         let mean = match conf::finite(&name) {
-            Some(kelvin) if kelvin >= 0.0 => kelvin,
+            Some(kelvin) if (0.0..=HOTTEST_K).contains(&kelvin) => kelvin,
             Some(kelvin) if self.is_thermal => {
                 return Err(node.wrong(&format!("{kelvin} K is no temperature")));
             }

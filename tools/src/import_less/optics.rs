@@ -11,6 +11,9 @@ use super::light::counted;
 use super::report::Report;
 use super::text::{list, quoted};
 
+/// Highest temperature that a scene may hold, K.
+pub(super) const HOTTEST_K: f64 = 10_000.0;
+
 /// Name of the temperature of what has none, in a thermal project; that of LESS's window.
 const USUAL_TEMPERATURE: (&str, Temperature) = ("T300", Temperature { mean: 300.0, range: 5.0 });
 
@@ -204,6 +207,9 @@ fn temperature(node: &Node) -> Result<Temperature> {
     };
     if mean - 0.5 * range.abs() < 0.0 {
         return Err(node.wrong(&format!("{text:?} reaches below 0 K")));
+    }
+    if mean + 0.5 * range.abs() > HOTTEST_K {
+        return Err(node.wrong(&format!("{text:?} reaches above {HOTTEST_K} K")));
     }
     Ok(Temperature { mean, range })
 }

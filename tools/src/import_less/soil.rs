@@ -162,6 +162,13 @@ mod tests {
     fn the_hot_spot_is_where_sun_and_view_agree() {
         let soil = Soilspect { albedo: 0.5, c: [0.5, 0.2, 0.0, 0.0], h: [1.0, 0.1] };
         let (sun, view) = (0.7, 0.7);
-        assert!(soil.factor(sun, view, 0.0) > 1.5 * soil.factor(sun, view, 0.3));
+        let hot = soil.factor(sun, view, 0.0);
+        for azimuth in [0.05, 0.3, 1.0, 2.0, 3.0] {
+            assert!(hot > soil.factor(sun, view, azimuth), "{azimuth}");
+        }
+        // Without the term of the hot spot, `B`, the peak is gone but for the phase function's slope.
+        let without = Soilspect { h: [0.0, 0.1], ..soil };
+        let peak = |soil: &Soilspect| soil.factor(sun, view, 0.0) / soil.factor(sun, view, 0.3);
+        assert!(peak(&soil) > 1.2 * peak(&without), "{} {}", peak(&soil), peak(&without));
     }
 }

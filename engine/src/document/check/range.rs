@@ -30,8 +30,8 @@ pub(crate) const LENGTH: Range = Range {
 pub(crate) const HEIGHT: Range = Range {
     quantity: "a height",
     unit: "m",
-    least: -1e7,
-    most: 1e7,
+    least: -1e8,
+    most: 1e8,
     help: "heights are in metres",
 };
 
