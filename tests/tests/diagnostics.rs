@@ -60,7 +60,7 @@ fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
             "8:79 (meshes.tree.parts.laef)",
             "8:23 (meshes.tree)",
             "5:17 (materials.leaf)",
-            "6:41 (materials.soil.reflectance)"
+            "6:53 (materials.soil.reflectance.file)"
         ]
     );
 }

@@ -360,7 +360,9 @@ mod tests {
         let count =
             |colour: [u8; 3]| canvas.rgb.chunks_exact(3).filter(|one| *one == colour).count();
         assert!(count([186; 3]) >= 160 * 160, "the pixel");
-        assert_eq!(count(NO_DATA[0]) + count(NO_DATA[1]), 160 * 160 + 2 * 16 * 16);
+        // The pixel and its key; the soft edges of letters have some of these greys too.
+        let squares = 160 * 160 + 2 * 16 * 16;
+        assert!((squares..squares + 400).contains(&(count(NO_DATA[0]) + count(NO_DATA[1]))));
     }
 
     #[test]
