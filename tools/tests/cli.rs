@@ -189,7 +189,7 @@ fn check_says_what_a_scene_is() {
     let cover = number(&scene["canopy_cover"]);
     assert!((0.7 * circles..1.05 * circles).contains(&cover), "{cover}");
     assert_eq!(scene["sensors"][0]["samples"], 800);
-    assert_eq!(json["warnings"], serde_json::json!([]));
+    assert_eq!(json["warnings"].as_array().map(Vec::len), Some(1), "the band without light");
 }
 
 /// *Scene*: a crown of 2 m with 1200 m² of leaves, 400 in place of 4 m². *Expected*: a warning of each.
@@ -231,9 +231,7 @@ fn check_warns_of_what_cannot_be() {
 fn check_writes_nothing() {
     let folder = folder_with(SOIL);
     let (code, stdout, stderr) = outcome(folder.path(), &["check", "soil.ron"]);
-    assert_eq!(code, 0);
-    assert!(stderr.starts_with("warning: no light falls on the scene in band `dark`"), "{stderr}");
-    assert_eq!(stderr.matches("warning: ").count(), 1, "{stderr}");
+    assert_eq!((code, stderr.as_str()), (0, ""));
     assert!(stdout.ends_with("soil.ron: no errors\n"), "{stdout}");
     assert_eq!(names(folder.path()), ["soil.ron"]);
 }

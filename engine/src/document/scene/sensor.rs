@@ -103,7 +103,8 @@ choice! {
             /// Which transport system estimates it.
             system: System = System::Backward,
         },
-        /// The scene seen from many directions.
+        /// The scene seen from many directions: the mean over all lines through the rectangle of its
+        /// ground. `scenes/ISOLATED.md` says what that is where the scene ends.
         Directions {
             /// Where the sensors are.
             views: Views => "PrincipalPlane",
@@ -361,7 +362,8 @@ choice! {
             per: Per = Per::Instance,
         },
         /// Down- and upwelling flux density, W m⁻² nm⁻¹, on the terrain and at the top of the scene,
-        /// from the sources that the band names.
+        /// from the sources that the band names: per m² of horizontal area and, on relief, also per m²
+        /// of the inclined ground (`_terrain_surface`).
         Fluxes {
             /// Side of a square pixel, m.
             pixel_m: f64 = 1.0,
