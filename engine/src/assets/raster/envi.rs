@@ -1,6 +1,5 @@
 //! ENVI rasters: raw values beside a text header.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +12,7 @@ use super::names::{headers, values};
 use super::raw::{Interleave, Kind, Layout};
 use super::window::Window;
 use super::{Extent, Place, Projection, Raster, RasterError, parse_no_data, sidecar};
+use crate::files;
 
 /// Longest header, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
@@ -32,7 +32,7 @@ fn is_envi(start: &[u8]) -> bool {
 
 fn is_header(path: &Path) -> bool {
     let mut start = Vec::new();
-    File::open(path).and_then(|file| file.take(7).read_to_end(&mut start)).is_ok()
+    files::open(path).and_then(|file| file.take(7).read_to_end(&mut start)).is_ok()
         && is_envi(&start)
 }
 
@@ -60,7 +60,7 @@ impl Header {
     fn read(path: &Path) -> Result<Self, RasterError> {
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let mut bytes = Vec::new();
-        let read = File::open(path).and_then(|f| f.take(LONGEST_HEADER).read_to_end(&mut bytes));
+        let read = files::open(path).and_then(|f| f.take(LONGEST_HEADER).read_to_end(&mut bytes));
         read.map_err(|_unreadable| RasterError::NoHeader(name.clone()))?;
         let text = String::from_utf8_lossy(&bytes);
         if text.contains('\0') {

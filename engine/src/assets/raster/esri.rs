@@ -1,7 +1,6 @@
 //! Esri's binary rasters: values in `.bil`, `.bip`, `.bsq` or `.flt` beside a text header.
 //! Source: Esri, "BIL, BIP, and BSQ raster files" and "Float to raster" (`ArcGIS` documentation).
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +14,7 @@ use super::names::{headers, split, without};
 use super::raw::{Interleave, Kind, Layout};
 use super::window::Window;
 use super::{Extent, Place, Raster, RasterError, parse_no_data, sidecar};
+use crate::files;
 
 /// Longest header, bytes.
 const LONGEST_HEADER: u64 = 1 << 16;
@@ -38,7 +38,7 @@ pub(super) fn header_of(path: &Path) -> Option<PathBuf> {
 impl Header {
     fn read(path: &Path) -> Option<Self> {
         let mut bytes = Vec::new();
-        File::open(path).ok()?.take(LONGEST_HEADER).read_to_end(&mut bytes).ok()?;
+        files::open(path).ok()?.take(LONGEST_HEADER).read_to_end(&mut bytes).ok()?;
         let text = String::from_utf8(bytes).ok()?;
         let lines = text.trim_start_matches('\u{feff}').lines();
         let entries = lines.filter_map(|line| {

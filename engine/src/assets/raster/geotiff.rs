@@ -14,6 +14,7 @@ use super::geokeys::GeoKeys;
 use super::metadata::Band;
 use super::window::Window;
 use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
+use crate::files;
 
 type Tiff = Decoder<BufReader<Shown<File>>>;
 
@@ -81,7 +82,7 @@ pub(super) fn read(
     }
     if let Some(file) = sidecar::mask(path) {
         let bad = || RasterError::BadMask { columns, rows };
-        let Opened { mut tiff, .. } = open(File::open(file).map_err(|_unreadable| bad())?)?;
+        let Opened { mut tiff, .. } = open(files::open(&file).map_err(|_unreadable| bad())?)?;
         let (width, height) = tiff.dimensions().map_err(wrong)?;
         if (u64::from(width), u64::from(height)) != (columns, rows) {
             return Err(bad());

@@ -1,11 +1,11 @@
 //! Raw values of a file beside a header: where they lie and what they are.
 
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::window::Window;
 use super::{RasterError, length};
+use crate::files;
 
 /// Order of values of several bands.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,7 @@ impl Layout {
     /// Values of the cells of a window in the first band.
     pub(super) fn read(&self, path: &Path, window: &Window) -> Result<Vec<f64>, RasterError> {
         let Self { columns, rows, bands, offset, size, .. } = *self;
-        let mut file = File::open(path)
+        let mut file = files::open(path)
             .map_err(|_unreadable| RasterError::NoValues(path.display().to_string()))?;
         let needed = columns
             .checked_mul(rows)

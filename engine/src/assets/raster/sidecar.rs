@@ -1,6 +1,5 @@
 //! Files beside a raster that say more about it.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -10,13 +9,14 @@ use super::super::crs::{Crs, from_name};
 use super::metadata::Band;
 use super::names::{VALUES, headers, named, split, values, without};
 use super::{Place, RasterError};
+use crate::files;
 
 /// Longest of them, bytes.
 const LONGEST: u64 = 1 << 22;
 
 fn text(path: &Path) -> Option<String> {
     let mut bytes = Vec::new();
-    File::open(path).ok()?.take(LONGEST).read_to_end(&mut bytes).ok()?;
+    files::open(path).ok()?.take(LONGEST).read_to_end(&mut bytes).ok()?;
     Some(String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}').to_owned())
 }
 
