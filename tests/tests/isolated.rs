@@ -12,7 +12,7 @@ const VIEWS: &str = "[(0.0, 0.0), (30.0, 90.0), (45.0, 200.0), (60.0, 150.0), (7
 const CONES: &str = "[(0.0, 0.0, 20.0), (30.0, 90.0, 20.0), (45.0, 200.0, 20.0), (60.0, 150.0, 20.0), (75.0, 330.0, 20.0)]";
 const COUNT: usize = 5;
 
-/// What stands on the ground, or what the ground is.
+/// A site: its ground and what stands on it.
 struct Site {
     name: &'static str,
     mesh: &'static str,

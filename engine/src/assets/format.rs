@@ -110,7 +110,7 @@ pub(super) fn check(path: &Path, reader: Reader) -> Result<(), AssetError> {
     })
 }
 
-/// Whether a text begins as OBJ does, behind blank lines and comments.
+/// Returns whether a text begins as OBJ does, behind blank lines and comments.
 fn is_obj(head: &[u8]) -> bool {
     let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
     let Some(line) = lines.find(|line| !line.is_empty() && line[0] != b'#') else { return false };

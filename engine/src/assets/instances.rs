@@ -41,7 +41,7 @@ pub struct StemTable {
     pub rows: Vec<Row>,
     /// Species in the order of their first rows.
     pub species: Vec<String>,
-    /// Whether the diameters are said to be those of crowns.
+    /// True if the diameters are said to be those of crowns.
     pub diameter_is_of_crown: bool,
     /// Columns that mean nothing here.
     pub left_out: Vec<String>,

@@ -100,14 +100,14 @@ fn ungrouped(field: &str) -> Option<String> {
     finite(&text).map(|_| text)
 }
 
-/// Whether a field says that there is no value.
+/// Returns whether a field says that there is no value.
 pub(super) fn is_missing(field: &str) -> bool {
     const MARKS: [&str; 10] = ["", "na", "n/a", "#n/a", "nan", "null", "none", "-", "--", "*"];
     let field = field.trim();
     MARKS.iter().any(|mark| mark.eq_ignore_ascii_case(field))
 }
 
-/// Whether a field looks like a number, its decimal mark whichever.
+/// Returns whether a field looks like a number, its decimal mark whichever.
 pub(super) fn looks_like_number(field: &str) -> bool {
     let has_digit = field.contains(|c: char| c.is_ascii_digit());
     has_digit && (field.parse::<f64>().is_ok() || ungrouped(field).is_some())

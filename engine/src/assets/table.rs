@@ -171,7 +171,7 @@ impl Table {
     }
 }
 
-/// Whether fields are a row of numbers, rather than a header or a title: the first is a number, and
+/// Returns whether fields are a row of numbers, rather than a header or a title: the first is a number, and
 /// so is at least half of them.
 fn is_row_of_numbers(fields: &[String]) -> bool {
     let numbers = fields.iter().filter(|field| looks_like_number(field) || is_missing(field));

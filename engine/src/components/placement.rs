@@ -24,6 +24,14 @@ pub struct Placement {
 }
 
 impl Placement {
+    /// Factor by which the scales enlarge areas. It is exact if both are equal; leaves of all directions grow by
+    /// nearly this factor if they differ.
+    #[must_use]
+    pub fn area_factor(&self) -> f64 {
+        let (across, up) = (f64::from(self.scale_horizontal), f64::from(self.scale_vertical));
+        (across * across * up).abs().powf(2.0 / 3.0)
+    }
+
     /// Linear part of `world_from_object`: scale, then turn, then lean.
     #[must_use]
     pub fn world_from_object(&self) -> DMat3 {

@@ -59,6 +59,13 @@ impl TerrainPatch {
         self.base + self.unit * heights.reduce(f64::min).unwrap_or(0.0)
     }
 
+    /// Highest height of the ground, m.
+    #[must_use]
+    pub fn highest(&self) -> f64 {
+        let heights = self.mesh.vertices.iter().map(|v| f64::from(v.z));
+        self.base + self.unit * heights.reduce(f64::max).unwrap_or(0.0)
+    }
+
     /// Mean height of the ground, weighted by horizontal area, m. Cut faces, which are vertical, have
     /// none, and holes have no height.
     #[must_use]
@@ -73,7 +80,7 @@ impl TerrainPatch {
         if area > 0.0 { lowest + volume / area } else { lowest }
     }
 
-    /// Whether the ground leaves out some of the rectangle, by more than the rounding of its corners.
+    /// Returns whether the ground leaves out some of the rectangle, by more than the rounding of its corners.
     #[must_use]
     pub fn has_holes(&self) -> bool {
         self.ground().map(|(horizontal, _)| horizontal).sum::<f64>() < 1.0 - 1e-6

@@ -21,7 +21,7 @@ pub struct Stage {
     pub ground: f64,
     /// Mean height of the ground over the scene's rectangle, m.
     pub mean_ground: f64,
-    /// Whether the ground leaves out some of the scene's rectangle.
+    /// True if the ground leaves out some of the scene's rectangle.
     pub has_holes: bool,
     /// First of the ground's triangles that are no ground but the faces along which an isolated one
     /// is cut out of the earth.
@@ -82,7 +82,7 @@ impl Stage {
         self.geometry.top().max(self.ground)
     }
 
-    /// Whether the ground is anything but a level plain.
+    /// Returns whether the ground is anything but a level plain.
     #[must_use]
     pub fn has_relief(&self) -> bool {
         self.mean_ground > self.ground

@@ -12,7 +12,7 @@ const MOST_PLANES: usize = 4;
 pub(super) struct Lines {
     /// Title of the axis that values are drawn against.
     pub(super) axis: String,
-    /// Whether that axis is height, and stands upright.
+    /// True if that axis is height, and stands upright.
     pub(super) is_profile: bool,
     pub(super) curves: Vec<Line>,
     /// Lines that are left out.

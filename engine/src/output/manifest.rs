@@ -68,7 +68,7 @@ impl Manifest {
         }
     }
 
-    /// Whether results in `folder` are those of a command for a scene.
+    /// Returns whether results in `folder` are those of a command for a scene.
     pub(super) fn is_of(&self, folder: &Path, command: &str, scene: &Path) -> bool {
         self.command.as_deref() == Some(command)
             && self.scene_file(folder).is_some_and(|file| file == scene)
@@ -88,7 +88,7 @@ impl Manifest {
     }
 }
 
-/// Whether a name is that of a file in a folder and nowhere else.
+/// Returns whether a name is that of a file in a folder and nowhere else.
 fn is_plain(name: &str) -> bool {
     let mut components = Path::new(name).components();
     matches!((components.next(), components.next()), (Some(Component::Normal(_)), None))

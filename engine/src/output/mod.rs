@@ -72,7 +72,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Whether something else is where results are to be.
+    /// Returns whether something else is where results are to be.
     fn is_in_the_way(&self) -> bool {
         matches!(self, Self::Taken { .. } | Self::Foreign { .. } | Self::OfAnother { .. })
     }

@@ -30,7 +30,7 @@ struct Place {
     /// Folder that the unfinished one is made in, and the name that it is made for.
     around: PathBuf,
     name: OsString,
-    /// Whether the folder may be exchanged for another one.
+    /// True if the folder may be exchanged for another one.
     may_rename: bool,
     /// Folders around it that did not exist before, outermost first.
     made: Vec<PathBuf>,

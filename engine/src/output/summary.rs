@@ -278,7 +278,7 @@ impl<V: Serialize> Serialize for Ordered<'_, V> {
 #[derive(Default)]
 struct OneKeyALine {
     depth: usize,
-    /// Whether the object that began last has no key yet.
+    /// True if the object that began last has no key yet.
     is_empty: bool,
 }
 

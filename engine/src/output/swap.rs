@@ -211,7 +211,7 @@ impl Others {
     }
 }
 
-/// Whether [`link`] can give a file or a folder a second name, of no more than `left` entries.
+/// Returns whether [`link`] can give a file or a folder a second name, of no more than `left` entries.
 fn can_link(path: &Path, left: &mut usize) -> bool {
     let Ok(metadata) = fs::symlink_metadata(path) else { return false };
     let Some(rest) = left.checked_sub(1) else { return false };

@@ -66,7 +66,7 @@ impl GapSums<'_> {
         (at(self.gaps), at(self.samples))
     }
 
-    /// Whether there is any sample.
+    /// Returns whether there is any sample.
     fn is_sampled(&self) -> bool {
         (0..self.sums.sums.len() / self.stride).any(|cell| self.of_cell(cell).1 > 0.0)
     }

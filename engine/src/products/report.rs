@@ -96,7 +96,7 @@ impl Product {
         estimates.peek().is_some() && estimates.all(|(value, _)| value == 0.0)
     }
 
-    /// Whether it has values, and all of them are infinite: logarithms of what was never found.
+    /// Returns whether it has values, and all of them are infinite: logarithms of what was never found.
     #[must_use]
     pub fn is_unbounded(&self) -> bool {
         let mut estimates = self.estimates().peekable();

@@ -75,7 +75,7 @@ pub struct GroundFacts {
     pub highest_m: f64,
     /// Number of triangles.
     pub triangles: u64,
-    /// Whether the rectangle repeats without end.
+    /// True if the rectangle repeats without end.
     pub periodic: bool,
 }
 
@@ -105,7 +105,7 @@ pub struct SunFacts {
     pub zenith_deg: f64,
     /// Clockwise from north, degrees.
     pub azimuth_deg: f64,
-    /// Whether the angles follow from place and time.
+    /// True if the angles follow from place and time.
     pub from_place_and_time: bool,
 }
 
@@ -122,7 +122,7 @@ pub struct BandFacts {
     pub irradiance: f64,
     /// Fraction of it that the sky gives.
     pub diffuse_fraction: f64,
-    /// Whether it holds what surfaces emit.
+    /// True if it holds what surfaces emit.
     pub emits: bool,
 }
 
@@ -211,7 +211,6 @@ pub(super) fn warn_bright_ground(scene: &Scene, world: &World) -> Vec<Diagnostic
 fn ground(scene: &Scene, world: &World) -> GroundFacts {
     let mut patches = world.query::<&TerrainPatch>();
     let patch = patches.iter().next().expect("a scene has a terrain");
-    let heights = patch.mesh.vertices.iter().map(|vertex| f64::from(vertex.z));
     let (x, y, z) = scene.frame.origin_m;
     GroundFacts {
         corner_m: patch.corner.to_array(),
@@ -219,13 +218,13 @@ fn ground(scene: &Scene, world: &World) -> GroundFacts {
         origin_m: [x, y, z],
         projection: patch.projection.as_ref().map(|map| format!("{}, {}", map.name, map.rest)),
         lowest_m: patch.lowest(),
-        highest_m: patch.base + patch.unit * heights.reduce(f64::max).unwrap_or(0.0),
+        highest_m: patch.highest(),
         triangles: u64::from(patch.first_cut),
         periodic: scene.boundary == document::Boundary::Periodic,
     }
 }
 
-/// What is the same in all instances of a mesh.
+/// Properties that all instances of a mesh share.
 struct MeshSize {
     name: String,
     faces: u64,
@@ -261,13 +260,11 @@ fn meshes(scene: &Scene, world: &World, area: f64) -> Vec<MeshFacts> {
     let mut sums: BTreeMap<u32, InstanceSums> = BTreeMap::new();
     for placement in &mut world.query::<&Placement>() {
         let Some(size) = sizes.get(&placement.prototype.0) else { continue };
-        let across = f64::from(placement.scale_horizontal);
         let up = f64::from(placement.scale_vertical);
         let sum = sums.entry(placement.prototype.0).or_default();
         sum.count += 1;
         sum.height += size.height * up.abs();
-        // Exact for equal scales; leaves of all directions grow so, nearly, if the two differ.
-        sum.leaf_area += size.leaf_area * (across * across * up).abs().powf(2.0 / 3.0);
+        sum.leaf_area += size.leaf_area * placement.area_factor();
     }
     let facts = |(id, size): (u32, MeshSize)| {
         let sum = sums.get(&id).copied().unwrap_or_default();

@@ -31,7 +31,7 @@ pub(super) struct RasterSource<'a> {
     pub(super) quantity: Quantity,
     /// What the scene says that the coordinates are.
     pub(super) coordinates: Option<Coordinates>,
-    /// Whether the scene says how large the raster is, whatever the file says.
+    /// True if the scene says how large the raster is, whatever the file says.
     pub(super) has_size: bool,
     /// Length of the unit of heights, m, if the scene says so.
     pub(super) height_unit_m: Option<f64>,

@@ -58,9 +58,8 @@ impl CameraPlace {
 
 impl Relief {
     fn new(patch: &TerrainPatch, is_periodic: bool) -> Self {
-        let heights = patch.mesh.vertices.iter().map(|vertex| f64::from(vertex.z));
-        let highest = patch.base + patch.unit * heights.reduce(f64::max).unwrap_or(0.0);
-        Self { ground: Ground::of(patch), lowest: patch.lowest(), highest, is_periodic }
+        let (lowest, highest) = (patch.lowest(), patch.highest());
+        Self { ground: Ground::of(patch), lowest, highest, is_periodic }
     }
 
     /// Height of the ground at a place, m: of the periodic copy there, or of the lowest ground beside an
@@ -74,7 +73,7 @@ impl Relief {
         if self.is_beside(at) { Some(self.lowest) } else { self.ground.height(at) }
     }
 
-    /// Whether a place lies beside the ground of an isolated scene.
+    /// Returns whether a place lies beside the ground of an isolated scene.
     fn is_beside(&self, at: DVec2) -> bool {
         let inside = (at - self.ground.corner()) / self.ground.size();
         let is_within = inside.cmpge(DVec2::ZERO).all() && inside.cmple(DVec2::ONE).all();

@@ -14,7 +14,7 @@ pub(super) struct Georeference {
     pub(super) to: DVec2,
     pub(super) scale: DVec2,
     pub(super) is_of_degrees: bool,
-    /// Whether the scene says what the coordinates of the terrain's file are.
+    /// True if the scene says what the coordinates of the terrain's file are.
     pub(super) is_given: bool,
 }
 

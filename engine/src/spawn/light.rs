@@ -96,7 +96,7 @@ impl Spawner<'_> {
     }
 }
 
-/// Whether a sensor reports what is relative to the light of sun and sky.
+/// Returns whether a sensor reports what is relative to the light of sun and sky.
 fn asks_for_reflectance(sensor: &Sensor) -> bool {
     let of_image = |one: &ImageMeasure| matches!(one, ImageMeasure::Brf | ImageMeasure::Orders);
     let of_photons = |one: &PhotonMeasure| {

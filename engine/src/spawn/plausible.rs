@@ -15,7 +15,7 @@ const LEAF_AREA_OF_STAND: f64 = 25.0;
 const STEMS: f64 = 1e5;
 const TREE: f64 = 2.0;
 
-/// What is summed over the instances of a mesh.
+/// Sums over the instances of a mesh.
 struct Plants {
     name: String,
     count: u64,
@@ -84,10 +84,8 @@ impl Spawner<'_> {
             let id = placement.prototype.0;
             let Some(prototype) = meshes.get(&id) else { continue };
             let plant = plants.entry(id).or_insert_with(|| self.plant(prototype));
-            let across = f64::from(placement.scale_horizontal);
-            let up = f64::from(placement.scale_vertical);
             plant.count += 1;
-            plant.all += plant.leaf_area * (across * across * up).abs().powf(2.0 / 3.0);
+            plant.all += plant.leaf_area * placement.area_factor();
         }
         plants.into_values().collect()
     }
@@ -112,13 +110,8 @@ impl Spawner<'_> {
     /// Warns of a raster of heights that are all 0: a mask, or a map without heights.
     pub(super) fn warn_flat_raster(&mut self, patch: &TerrainPatch) {
         let Terrain::Raster { file, .. } = &self.scene.terrain else { return };
-        let heights = || patch.mesh.vertices.iter().map(|vertex| vertex.z);
-        let is_flat = heights()
-            .all(|height| heights().next().is_some_and(|one| one.total_cmp(&height).is_eq()));
-        let height =
-            patch.mesh.vertices.first().map_or(0.0, |v| patch.base + patch.unit * f64::from(v.z));
         let origin = self.scene.frame.origin_m.2;
-        if is_flat && height + origin == 0.0 {
+        if [patch.lowest(), patch.highest()].iter().all(|height| height + origin == 0.0) {
             let message = format!("all heights in `{file}` are 0");
             let help =
                 "is it a raster of elevations? flat ground is `Plane(size_m: (..), material: ..)`";

@@ -198,7 +198,7 @@ impl Spawner<'_> {
         }
     }
 
-    /// Whether all positions and scales are lawful; reports the first that is not.
+    /// Returns whether all positions and scales are lawful; reports the first that is not.
     fn check_placements(
         &mut self,
         placements: &[Placement],
@@ -291,7 +291,7 @@ impl Spawner<'_> {
     }
 }
 
-/// What is wrong with where an instance stands.
+/// Fault of the place of an instance.
 fn problem_of(placement: &Placement, bounds: Option<&Bounds>) -> Option<(String, &'static str)> {
     let Placement { position, scale_horizontal, scale_vertical, .. } = placement;
     let all: [(&Range, f64); 5] = [

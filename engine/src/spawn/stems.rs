@@ -172,7 +172,7 @@ impl Spawner<'_> {
         Some(kind)
     }
 
-    /// Whether coordinates are those of the map rather than the scene's: whichever lies on the terrain.
+    /// Returns whether coordinates are those of the map rather than the scene's: whichever lies on the terrain.
     fn guess_coordinates(
         &mut self,
         rows: &[Row],

@@ -61,7 +61,7 @@ impl BesideCounter {
     const OUTGOING_BESIDE: usize = 3;
     const CELLS: usize = 4;
 
-    /// Whether a line through `point` passes beside the plane; `up` is its direction upwards.
+    /// Returns whether a line through `point` passes beside the plane; `up` is its direction upwards.
     fn is_beside(&self, point: DVec3, up: DVec3) -> bool {
         !self.plane.is_left_by(point, up)
     }

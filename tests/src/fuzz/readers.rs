@@ -47,7 +47,7 @@ impl Reader {
         Self { name, extensions, seeds, read, most_seconds: MOST_SECONDS, free_bytes: FREE_BYTES }
     }
 
-    /// Whether its files go through all of sunfleck, in processes of their own with limits.
+    /// Returns whether its files go through all of sunfleck, in processes of their own with limits.
     #[must_use]
     pub fn is_pipeline(&self) -> bool {
         self.name == PIPELINE

@@ -92,7 +92,7 @@ fn is_whole(value: f64, least: f64, most: f64) -> bool {
 pub(super) struct Choice<'a, T> {
     /// Names and values; the first is the default.
     pub(super) choices: &'a [(&'a str, T)],
-    /// Whether real projects lack the key, so that its absence needs no remark.
+    /// True if real projects lack the key, so that its absence needs no remark.
     pub(super) may_be_absent: bool,
 }
 

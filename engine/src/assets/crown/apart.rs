@@ -90,7 +90,7 @@ impl Flat for [Vec3; 4] {
             if low.min(high) > 0.0 || low.max(high) < 0.0 {
                 continue;
             }
-            // Of a side in the plane, its start counts, and of the next side its end.
+            // A side in the plane counts by its start, and the next side by its end.
             let share = if low - high == 0.0 { 0.0 } else { low / (low - high) };
             let at = cut.along.dot(corners[start].lerp(corners[end], share));
             chord = Some(chord.map_or((at, at), |(least, most)| (least.min(at), most.max(at))));
@@ -99,7 +99,7 @@ impl Flat for [Vec3; 4] {
     }
 }
 
-/// Whether two pieces have a point in common. Of pieces in one plane, those whose spheres intersect count.
+/// Returns whether two pieces have a point in common. Pieces in one plane count if their spheres intersect.
 pub(super) fn intersect<F: Flat>(a: &F, b: &F) -> bool {
     let (middle, other) = (a.middle(), b.middle());
     let reach = a.reach() + b.reach();

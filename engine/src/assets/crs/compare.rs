@@ -1,15 +1,15 @@
-//! Whether two systems are the same.
+//! Comparison of two coordinate systems.
 
 use super::{Axes, Crs};
 
-/// What two systems are to each other.
+/// Relation of two coordinate systems.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Agreement {
     /// Coordinates of both are the same within a metre or so.
     Same,
     /// They may differ, for this reason.
     MayDiffer(String),
-    /// The same coordinates are surely other places, for this reason.
+    /// Equal coordinates are different places, for this reason.
     Differ(String),
 }
 
@@ -49,7 +49,7 @@ pub(super) fn plain(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_lowercase()
 }
 
-/// Whether two datums are the same within a metre, or one is a generation of the other.
+/// Returns whether two datums are the same within a metre, or one is a generation of the other.
 fn is_same_datum(a: &str, b: &str) -> bool {
     datum(a) == datum(b)
 }

@@ -27,7 +27,7 @@ pub struct Crs {
     pub utm: Option<UtmZone>,
     /// Name of the geodetic datum, if it is known.
     pub datum: Option<String>,
-    /// What its heights are, if it says.
+    /// Unit and direction of its heights, if it says.
     pub heights: Option<Heights>,
     /// Well-known text, if the file holds it.
     pub wkt: Option<String>,
@@ -65,7 +65,7 @@ pub struct Length {
 pub struct Heights {
     /// Unit.
     pub unit: Length,
-    /// Whether they are depths, which count downwards.
+    /// True if they are depths, which count downwards.
     pub is_depth: bool,
 }
 
@@ -74,7 +74,7 @@ pub struct Heights {
 pub struct UtmZone {
     /// Number, 1 to 60.
     pub number: u8,
-    /// Whether it lies south of the equator.
+    /// True if it lies south of the equator.
     pub is_south: bool,
 }
 
@@ -122,7 +122,7 @@ impl Length {
         Self { name: "metre".to_owned(), metres: 1.0 }
     }
 
-    /// Whether it is the metre.
+    /// Returns whether it is the metre.
     #[must_use]
     pub fn is_metre(&self) -> bool {
         (self.metres - 1.0).abs() < 1e-9

@@ -121,7 +121,7 @@ pub(super) fn unread(json: &Root) -> Vec<String> {
     found.iter().take(MOST_SHOWN).map(sentence).collect()
 }
 
-/// Whether a node, and with it all below it, is hidden.
+/// Returns whether a node, and with it all below it, is hidden.
 pub(super) fn is_hidden(node: &Node<'_>) -> bool {
     let visible = node.extension_value(VISIBILITY).and_then(|value| value.get("visible"));
     visible.and_then(Value::as_bool) == Some(false)

@@ -3,7 +3,7 @@
 /// Keywords that a name follows: in it, `#` starts a comment behind a space only, as in `g leaf#3 # crown`.
 const NAMES: [&[u8]; 6] = [b"g", b"o", b"usemtl", b"mtllib", b"usemap", b"maplib"];
 
-/// Whether a name follows the keyword of a line.
+/// Returns whether a name follows the keyword of a line.
 pub(super) fn is_name(line: &[u8]) -> bool {
     let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
     NAMES.contains(&&line[..end])

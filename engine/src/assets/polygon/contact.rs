@@ -9,7 +9,7 @@ use super::turn;
 /// Share of its extent below which an excursion of the outline has no width.
 const NARROW: f64 = 2e-12;
 
-/// Whether triangles that cover each point as often as the outline runs around it cover none twice. False also for
+/// Returns whether triangles that cover each point as often as the outline runs around it cover none twice. False also for
 /// outlines that merely touch themselves.
 pub(super) fn covers_once(flat: &[DVec2]) -> bool {
     // Four corners cannot run around anything twice.
@@ -32,7 +32,7 @@ fn is_convex(flat: &[DVec2]) -> bool {
     (turned - TAU).abs() < 1.0
 }
 
-/// Whether edges meet anywhere but in the corner that neighbours share.
+/// Returns whether edges meet anywhere but in the corner that neighbours share.
 fn touches_itself(flat: &[DVec2]) -> bool {
     let count = flat.len();
     let edge = |i: usize| [flat[i], flat[(i + 1) % count]];
@@ -48,7 +48,7 @@ fn touches_itself(flat: &[DVec2]) -> bool {
     false
 }
 
-/// Whether two edges have a point in common; true also for some on one line that have none.
+/// Returns whether two edges have a point in common; true also for some on one line that have none.
 fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
     let is_apart = (a.max(b)).cmplt(c.min(d)).any() || (c.max(d)).cmplt(a.min(b)).any();
     !is_apart

@@ -163,7 +163,7 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Whether the triangle at this corner lies in the polygon and holds no other corner of it.
+    /// Returns whether the triangle at this corner lies in the polygon and holds no other corner of it.
     fn cuts_nothing(&self, at: usize) -> bool {
         let [before, _, end] = self.neighbours(at);
         let [a, b, c] = [before, at, end].map(|corner| self.flat[corner]);

@@ -63,7 +63,7 @@ pub(super) struct Written {
 }
 
 impl Directory {
-    /// Whether it is the mask of a picture of the full size.
+    /// Returns whether it is the mask of a picture of the full size.
     pub(super) fn is_mask_of(&self, other: &Self) -> bool {
         const MASK: u64 = 4;
         const REDUCED: u64 = 1;

@@ -25,7 +25,7 @@ pub(super) fn header_of(path: &Path, start: &[u8]) -> Option<PathBuf> {
     headers(path).into_iter().find(|header| header != path && is_header(header))
 }
 
-/// Whether a file starts as an ENVI header does, be it with the mark of UTF-8 text.
+/// Returns whether a file starts as an ENVI header does, be it with the mark of UTF-8 text.
 fn is_envi(start: &[u8]) -> bool {
     start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).starts_with(b"ENVI")
 }

@@ -58,7 +58,7 @@ impl GeoKeys {
         (place == TEXTS && !text.is_empty()).then_some(text)
     }
 
-    /// Whether coordinates are those of the centres of cells.
+    /// Returns whether coordinates are those of the centres of cells.
     pub(super) fn is_point(&self) -> bool {
         self.number(RASTER_TYPE) == Some(2)
     }

@@ -124,7 +124,7 @@ struct Picture {
     bits: u16,
     samples: u16,
     is_planar: bool,
-    /// Whether the last sample is a mask.
+    /// True if the last sample is a mask.
     has_mask: bool,
     /// Cells from strip to strip or tile to tile.
     chunk: (usize, usize),

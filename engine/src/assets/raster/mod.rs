@@ -177,7 +177,7 @@ fn is_no_data(value: f64, no_data: Option<f64>) -> bool {
         })
 }
 
-/// Whether a value stands for no data in many files and is no value of heights, densities or classes.
+/// Returns whether a value stands for no data in many files and is no value of heights, densities or classes.
 fn is_usual_no_data(value: f64) -> bool {
     const USUAL: [f64; 6] =
         [-9999.0, -99_999.0, -999_999.0, -32_767.0, -32_768.0, -2_147_483_648.0];

@@ -35,7 +35,7 @@ pub(super) fn format_of(start: &[u8]) -> Option<RasterError> {
     is_grass.then_some(RasterError::Strange("a GRASS ASCII grid"))
 }
 
-/// Whether a file is no text.
+/// Returns whether a file is no text.
 pub(super) fn is_binary(start: &[u8]) -> bool {
     start.iter().any(|&byte| byte < 0x20 && !byte.is_ascii_whitespace() && byte != 0x1a)
 }

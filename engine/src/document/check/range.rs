@@ -180,7 +180,7 @@ fn range_of(steps: &[Step<'_>]) -> Option<&'static Range> {
     })
 }
 
-/// Whether a number is one of a pair in a list.
+/// Returns whether a number is one of a pair in a list.
 fn is_point(steps: &[Step<'_>]) -> bool {
     matches!(steps, [.., Step::Index(_), Step::Index(_)])
 }

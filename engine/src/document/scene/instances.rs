@@ -210,7 +210,7 @@ choice! {
 }
 
 choice! {
-    /// What the coordinates of a table are.
+    /// Frame of the coordinates of a table.
     #[derive(Copy, Eq)]
     pub enum TableCoordinates ("coordinates of a table") {
         /// Those of the map, as of rasters: `frame.origin_m` is subtracted, also from `z_m`, unless that

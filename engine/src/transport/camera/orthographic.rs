@@ -97,7 +97,7 @@ impl Projection {
             })
     }
 
-    /// Whether light must leave through a plane to be seen.
+    /// Returns whether light must leave through a plane to be seen.
     #[must_use]
     pub const fn has_plane(&self) -> bool {
         self.plane.is_some()

@@ -12,7 +12,7 @@ fn apart(shape: CrownShape, leaf: LeafShape, leaf_area_m2: f64) -> CrownSpec {
     CrownSpec { leaf_area_m2, overlap: false, ..spec(shape, leaf) }
 }
 
-/// Whether a segment passes through a disc or a triangle: independent of how crowns decide.
+/// Returns whether a segment passes through a disc or a triangle: independent of how crowns decide.
 fn pierces(
     [start, end]: [DVec3; 2],
     point: DVec3,
@@ -23,7 +23,7 @@ fn pierces(
     from * to < 0.0 && holds(start.lerp(end, from / (from - to)))
 }
 
-/// Whether the rim of one disc, in 720 chords, passes through the other one.
+/// Returns whether the rim of one disc, in 720 chords, passes through the other one.
 fn discs_meet(a: &Disc, b: &Disc) -> bool {
     if a.center.distance(b.center) > a.radius + b.radius {
         return false;
@@ -46,7 +46,7 @@ fn discs_meet(a: &Disc, b: &Disc) -> bool {
     pass(a, b) || pass(b, a)
 }
 
-/// Whether a side of one flat quadrilateral passes through the other one.
+/// Returns whether a side of one flat quadrilateral passes through the other one.
 fn quads_meet(a: &[Vec3; 4], b: &[Vec3; 4]) -> bool {
     // No side or diagonal is as long.
     if a[0].distance(b[0]) > 0.5 {
