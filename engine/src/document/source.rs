@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::diagnostic::{Diagnostic, Place, Severity};
+use super::legible::{NAME, legible, shortened};
 use super::syntax::{Node, Span, Value};
 
 /// A scene's text and that of the files that it includes, one behind the other; its tree, and where
@@ -153,8 +154,12 @@ impl Source {
     /// The same without the leading `error: `.
     pub(super) fn describe(&self, diagnostic: &Diagnostic) -> String {
         let Diagnostic { message, path, help, .. } = diagnostic;
-        let mut out = format!("{message}\n");
-        let at = if path.is_empty() { String::new() } else { format!(" ({path})") };
+        let mut out = format!("{}\n", legible(message));
+        let at = if path.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", shortened(&legible(path), NAME))
+        };
         let path_place = || if path.is_empty() { None } else { self.place(path) };
         let place = diagnostic.place.clone().or_else(path_place);
         let mut gutter = "     ".to_owned();
@@ -171,7 +176,7 @@ impl Source {
             None => write_line(&mut out, format_args!("  --> {}{at}", self.name())),
         }
         if let Some(advice) = help {
-            write_line(&mut out, format_args!("{gutter}= help: {advice}"));
+            write_line(&mut out, format_args!("{gutter}= help: {}", legible(advice)));
         }
         out
     }

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use crate::document::{Diagnostic, Source};
+use crate::document::{Diagnostic, Source, legible};
 
 /// Why a scene was not run.
 #[derive(Debug, thiserror::Error)]
@@ -42,5 +42,6 @@ impl Failure {
 pub(super) fn one_line(problem: &Diagnostic) -> String {
     let Diagnostic { path, message, help, .. } = problem;
     let help = help.as_ref().map_or_else(String::new, |help| format!(" ({help})"));
-    if path.is_empty() { format!("{message}{help}") } else { format!("{path}: {message}{help}") }
+    let text = if path.is_empty() { message.clone() } else { format!("{path}: {message}") };
+    format!("{}{}", legible(&text), legible(&help))
 }

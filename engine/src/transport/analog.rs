@@ -8,7 +8,7 @@ use crate::scattering::Spectrum;
 
 /// Orders after which a photon ends where nothing is absorbed and nothing gets out; what is left of it counts
 /// as removed by the limit of orders.
-const MOST_ORDERS: u32 = 10_000_000;
+const MOST_ORDERS: u32 = 1_000_000;
 
 impl<'a> Packet<'a> {
     /// Puts the power of all bands into one, chosen in proportion to the power of each: all photons carry

@@ -30,6 +30,9 @@ const HANG: u64 = 60;
 /// Most files that are kept to start from.
 const MOST_SEEDS: usize = 4096;
 
+/// Processor time from which on a file is no seed: what is made of it would be slow as well.
+const SLOW_SEED: Duration = Duration::from_millis(250);
+
 /// Longest time to make one finding small.
 const MINIMISING: Duration = Duration::from_secs(20);
 
@@ -193,7 +196,9 @@ impl Hunt {
                 // Readable should this process be ended.
                 fs::write(self.folder.join(COUNT), tried.to_string()).expect("a count");
             }
+            let start = ProcessTime::now();
             match self.try_bytes(&bytes) {
+                Ok(kinds) if start.elapsed() > SLOW_SEED => known.extend(kinds),
                 Ok(kinds) => {
                     let mut is_new = false;
                     for kind in kinds {

@@ -69,6 +69,14 @@ fn quantities_have_lawful_ranges() {
             ])],
         },
         Case {
+            scene: "70-hostile/near_samples_without_end.ron",
+            right: &[Right::Fails(&["expected 1000000000000 samples or fewer", ":7:"])],
+        },
+        Case {
+            scene: "70-hostile/near_name_of_many_lines.ron",
+            right: &[Right::Fails(&["no material `soil`", "so\\n\\n", "characters) …"])],
+        },
+        Case {
             scene: "70-hostile/temperature_nan.ron",
             right: &[Right::Fails(&["expected a temperature from 0 to 10000 K, found 1e300"])],
         },

@@ -93,6 +93,9 @@ fn check_views(path: &str, views: &Views, scene: &Scene, report: &mut Report<'_>
     }
 }
 
+/// Largest number of samples: at 10⁷ a second they take more than a day.
+const MOST_SAMPLES: u64 = 1_000_000_000_000;
+
 fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
     let ends = sensor.until();
     let least = match sensor {
@@ -126,6 +129,10 @@ fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
             Until::Samples(samples) if *samples < least => {
                 let message = format!("expected {least} samples or more, found {samples}");
                 report.error(&path, message, "fewer give no error estimate");
+            }
+            Until::Samples(samples) if *samples > MOST_SAMPLES => {
+                let message = format!("expected {MOST_SAMPLES} samples or fewer, found {samples}");
+                report.error(&path, message, "the first of several ends that holds ends it: `[RelError(0.01), Seconds(60.0)]`");
             }
             Until::Samples(_) => {}
         }
