@@ -35,6 +35,8 @@ pub struct SpectrumTable {
     pub points: Vec<SpectrumPoint>,
     /// Header of the column of values.
     pub value: String,
+    /// Headers of the columns that may hold values too, if none was asked for by name.
+    pub others: Vec<String>,
     /// Text of the header or of a title that says that the values are percent.
     pub percent: Option<String>,
 }
@@ -73,8 +75,10 @@ pub fn read_spectrum(
         .chain(hints())
         .find(|text| says_percent(text))
         .map(|text| text.trim().to_owned());
+    let mut others = columns_of_values(&table.first, columns.wavelength);
+    others.retain(|name| columns.value.is_none() && *name != value);
     let points = read_points(&mut table, &fields, unit, columns.unit.is_some())?;
-    Ok(SpectrumTable { points, value, percent })
+    Ok(SpectrumTable { points, value, others, percent })
 }
 
 fn read_points(
@@ -213,6 +217,42 @@ fn find_columns(
         |(place, name): (usize, &String)| Column { name: name.clone(), content: content(place) };
     Ok((names.iter().enumerate().map(column).collect(), names[ordinate].clone()))
 }
+
+/// Names of the columns that may hold values, in the order of the file.
+fn columns_of_values(names: &[String], wavelength: &str) -> Vec<String> {
+    let is_value = |name: &&String| {
+        let lower = name.to_lowercase();
+        let mut words = lower.split(|c: char| !c.is_alphanumeric());
+        *name != wavelength && !words.any(|word| BESIDE.contains(&word)) && !lower.trim().is_empty()
+    };
+    names.iter().filter(is_value).cloned().collect()
+}
+
+/// Words in the names of columns that stand beside values: spreads, numbers and notes.
+const BESIDE: [&str; 22] = [
+    "sd",
+    "std",
+    "stdev",
+    "stddev",
+    "se",
+    "sem",
+    "stderr",
+    "err",
+    "error",
+    "errors",
+    "unc",
+    "uncertainty",
+    "var",
+    "variance",
+    "n",
+    "count",
+    "samples",
+    "note",
+    "notes",
+    "flag",
+    "quality",
+    "comment",
+];
 
 #[cfg(test)]
 mod tests {

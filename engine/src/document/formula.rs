@@ -48,6 +48,8 @@ pub(super) struct Scope<'a> {
     pub(super) lost: &'a [String],
     /// Parameters that some formula has used.
     pub(super) used: &'a RefCell<HashSet<String>>,
+    /// What may not be meant in the formula.
+    pub(super) doubts: &'a RefCell<Vec<FormulaError>>,
 }
 
 /// Value of a formula; the text of a parameter that stands alone, if it is one.
@@ -113,6 +115,31 @@ const FUNCTIONS: [(&str, Function); 21] = [
 
 const FUNCTIONS_OF_TWO: [(&str, FunctionOfTwo); 4] =
     [("atan2", f64::atan2), ("hypot", f64::hypot), ("max", f64::max), ("min", f64::min)];
+
+/// Functions of an angle.
+const ANGULAR: [&str; 3] = ["sin", "cos", "tan"];
+
+/// Returns whether a function of formulas has this name.
+pub(super) fn is_function(name: &str) -> bool {
+    FUNCTIONS.iter().any(|(known, _)| *known == name)
+        || FUNCTIONS_OF_TWO.iter().any(|(known, _)| *known == name)
+}
+
+/// Names of all functions and constants, and what angles they take.
+pub(super) fn functions_text() -> String {
+    let of_one = FUNCTIONS.iter().map(|(name, _)| format!("`{name}(x)`"));
+    let of_two = FUNCTIONS_OF_TWO.iter().map(|(name, _)| format!("`{name}(x, y)`"));
+    let functions: Vec<_> = of_one.chain(of_two).collect();
+    let constants: Vec<_> = CONSTANTS.iter().map(|(name, _)| format!("`{name}`")).collect();
+    format!(
+        "A formula is a text that starts with `=`. It has numbers, names of `params`, `+ - * / % ^`, \
+         parentheses, the constants {} and the functions {}. **`sin`, `cos` and `tan` take radians, and \
+         `asin`, `acos`, `atan` and `atan2` return radians**: write `cos(radians(sza))` and \
+         `degrees(asin(0.5))`. A parameter that is a text stands alone: `\"=species\"`.",
+        constants.join(", "),
+        functions.join(", ")
+    )
+}
 
 /// A parameter of the same name hides a constant.
 const CONSTANTS: [(&str, f64); 3] = [("PI", consts::PI), ("E", consts::E), ("TAU", consts::TAU)];
@@ -286,6 +313,9 @@ impl Parser<'_> {
         let at = start..start + name.len();
         if let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) {
             let value = self.sum()?;
+            if ANGULAR.contains(&name) && value.abs() > consts::TAU {
+                self.doubt_degrees(name, value, start..self.at);
+            }
             self.close()?;
             return Ok(function(value));
         }
@@ -309,6 +339,13 @@ impl Parser<'_> {
             suggestion(name, &known, "functions")
         };
         Err(FormulaError::new(at, format!("no function `{name}`"), Some(help)))
+    }
+
+    /// Notes an angle beyond a whole turn: degrees, most likely.
+    fn doubt_degrees(&self, name: &str, value: f64, at: Range<usize>) {
+        let message = format!("`{name}` takes radians, and {value} are more than a whole turn");
+        let help = format!("of an angle in degrees, write `{name}(radians(..))`");
+        self.scope.doubts.borrow_mut().push(FormulaError::new(at, message, Some(help)));
     }
 
     fn close(&mut self) -> std::result::Result<(), FormulaError> {
@@ -363,10 +400,17 @@ mod tests {
     use super::{FormulaError, Param, Scope, evaluate};
 
     fn over(params: &IndexMap<String, f64>, formula: &str) -> super::Result {
-        let (later, used) = Default::default();
+        let (later, used, doubts) = Default::default();
         let params = params.iter().map(|(name, value)| (name.clone(), Param::Number(*value)));
         let params = params.chain([("leaf".to_owned(), "birch.csv".into())]).collect();
-        let scope = Scope { params: &params, namespace: "", later: &later, lost: &[], used: &used };
+        let scope = Scope {
+            params: &params,
+            namespace: "",
+            later: &later,
+            lost: &[],
+            used: &used,
+            doubts: &doubts,
+        };
         evaluate(formula, &scope).map(|value| value.number().expect("a number"))
     }
 
@@ -419,9 +463,16 @@ mod tests {
 
     #[test]
     fn a_text_stands_alone() {
-        let (later, used) = Default::default();
+        let (later, used, doubts) = Default::default();
         let params = IndexMap::from([("leaf".to_owned(), Param::from("birch.csv"))]);
-        let scope = Scope { params: &params, namespace: "", later: &later, lost: &[], used: &used };
+        let scope = Scope {
+            params: &params,
+            namespace: "",
+            later: &later,
+            lost: &[],
+            used: &used,
+            doubts: &doubts,
+        };
         assert_eq!(evaluate(" leaf ", &scope), Ok("birch.csv".into()));
         assert!(used.borrow().contains("leaf"));
         let found = error("2 * leaf");

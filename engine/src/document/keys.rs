@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::describe::{self, KEYS, VARIANT};
 use super::diagnostic::nearest;
+use super::formula::{functions_text, is_function};
 
 /// What stands above all types.
 const HEAD: &str = "\
@@ -34,10 +35,17 @@ struct Section {
     example: String,
 }
 
+/// Names by which a person may ask for the section of formulas.
+const FORMULA_NAMES: [&str; 5] = ["formula", "formulas", "function", "functions", "params"];
+
+fn formula_section() -> String {
+    format!("## Formulas\n\n{}\n", functions_text())
+}
+
 /// Markdown that describes every key of scene files: values, units, defaults and examples.
 #[must_use]
 pub fn keys_page() -> String {
-    let mut page = HEAD.to_owned();
+    let mut page = format!("{HEAD}\n{}", formula_section());
     for section in sections() {
         page.push('\n');
         page += &section.markdown();
@@ -67,6 +75,10 @@ pub fn keys_about(name: &str) -> Result<String, String> {
                 section.with_rows(&rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>()),
             );
         }
+    }
+    let is_of_formulas = FORMULA_NAMES.iter().copied().any(is_meant) || is_function(name);
+    if is_of_formulas {
+        parts.push(formula_section());
     }
     if !parts.is_empty() {
         return Ok(parts.join("\n"));

@@ -146,15 +146,23 @@ fn compute<'a>(
     later: &HashSet<&str>,
     reader: &mut Reader<'a>,
 ) -> Option<Param> {
+    let doubts = RefCell::default();
     let scope = Scope {
         params: &params.values,
         namespace: reader.namespace(node),
         later,
         lost: &params.lost,
         used: &params.used,
+        doubts: &doubts,
     };
     let value = match evaluate(formula, &scope) {
-        Ok(value) => Some(value),
+        Ok(value) => {
+            for doubt in doubts.take() {
+                let span = within_text(reader.text(), node.span, formula, &doubt.at);
+                reader.warn(span, doubt.message.unwrap_or_default(), doubt.help);
+            }
+            Some(value)
+        }
         Err(error) => {
             match error.message {
                 Some(message) => {

@@ -8,7 +8,6 @@ use super::{Failure, Options};
 use crate::components::{ImageSamples, Sensor, Stop};
 use crate::document::{Diagnostic, suggestion, unknown_name};
 use crate::extract::Stage;
-use crate::memory;
 use crate::products::{Context, Product};
 use crate::transport::{Camera, RANDOMISATIONS, Share};
 
@@ -124,8 +123,7 @@ fn check_memory(
         Size::of(measurement.as_mut(), keeper)
     };
     let sizes = sensors.iter().map(|(name, sensor)| size(name, sensor)).collect();
-    let free = options.memory.or_else(memory::free).unwrap_or(u64::MAX);
-    match forecast::check(sensors, sizes, free, size) {
+    match forecast::check(sensors, sizes, options.free_memory(), size) {
         Some(problem) => Err(Failure::Problems(vec![problem])),
         None => Ok(()),
     }

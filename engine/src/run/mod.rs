@@ -27,6 +27,7 @@ use crate::accel::Boundary;
 use crate::components::{Projection, TerrainPatch};
 use crate::document::{self, Diagnostic, Param, Reading, Scene, Sun};
 use crate::extract::{Rules, Setting, Stage};
+use crate::memory;
 use crate::products::{BandSources, Context, Origin, Report, SensorReport};
 use crate::spawn::{missing_files, respawn, spawn};
 use crate::spectral::BandWindow;
@@ -58,13 +59,20 @@ pub struct Options {
     pub checkpoint: Option<Checkpoint>,
     /// Checkpoints of all shares of one run, whose films are united in place of tracing them.
     pub unite: Vec<PathBuf>,
-    /// Memory that films and results may take, bytes; all that is free if absent. A run that takes more
+    /// Memory that the ray engine, and films with results, may take, bytes; all that is free if absent. A run that takes more
     /// is refused before it traces anything.
     pub memory: Option<u64>,
     /// Trace no more of each sensor than tells how long it will take.
     pub forecast: bool,
     /// Names of the sensors that measure; all if empty.
     pub sensors: Vec<String>,
+}
+
+impl Options {
+    /// Memory that a run may take, bytes.
+    fn free_memory(&self) -> u64 {
+        self.memory.or_else(memory::free).unwrap_or(u64::MAX)
+    }
 }
 
 impl Default for Options {
@@ -192,7 +200,7 @@ fn checked(
         progress.stage("loading");
         let mut spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
         progress.stage("building");
-        let stage = staged(&spawned, &reading.scene, None)?;
+        let stage = staged(&spawned, &reading.scene, None, options.free_memory())?;
         let context = context(&reading.scene, &stage);
         let sensors = sensors::in_order(&spawned.world);
         check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
@@ -237,7 +245,7 @@ pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
         let spawned = spawn(&reading.scene, folder_of(path))
             .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
         clock.lap("load");
-        let stage = staged(&spawned, &reading.scene, None)
+        let stage = staged(&spawned, &reading.scene, None, options.free_memory())
             .map_err(|failure| failure.with_source(&reading.source))?;
         clock.lap("build");
         let seconds = |lap: usize| clock.laps[lap].1;
@@ -295,7 +303,7 @@ fn run_kept(
     };
     clock.lap("spawn");
     progress.stage("building");
-    let stage = staged(&spawned, scene, built)?;
+    let stage = staged(&spawned, scene, built, options.free_memory())?;
     clock.lap("build");
     let context = context(scene, &stage);
     progress.stage("tracing");

@@ -9,10 +9,10 @@ use crate::accel::{self, BuildError};
 use crate::components::{Mesh, Name, SceneId};
 use crate::document::{Diagnostic, Scene};
 use crate::extract::{Stage, extract};
-use crate::memory;
 use crate::spawn::Spawned;
 
-/// The stage of a world, of geometry that was built before if there is any.
+/// The stage of a world, of geometry that was built before if there is any. `free` is the memory that the ray
+/// engine may take, bytes.
 ///
 /// # Errors
 /// If the trees of the ray engine take more memory than there is, or it refuses a mesh or an instance.
@@ -20,8 +20,8 @@ pub(super) fn staged(
     spawned: &Spawned,
     scene: &Scene,
     built: Option<Arc<accel::Scene>>,
+    free: u64,
 ) -> Result<Stage, Failure> {
-    let free = memory::free().unwrap_or(u64::MAX);
     let problem = spawned.reach().check_memory(free).filter(|_| built.is_none());
     if let Some(problem) = problem {
         return Err(Failure::Problems(vec![problem]));

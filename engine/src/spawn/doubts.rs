@@ -19,6 +19,9 @@ const OVERHANG: f64 = 1e-3;
 const FAR_M: f64 = 1000.0;
 const FAR_EXTENTS: f64 = 20.0;
 
+/// A mesh that a unit below a metre makes smaller than this, m, was most likely in metres.
+const SMALLEST: f32 = 0.3;
+
 /// No plant is larger, m.
 const TALLEST: f32 = 200.0;
 
@@ -98,13 +101,19 @@ impl Spawner<'_> {
     pub(super) fn doubt_sizes(&mut self, meshes: &BTreeMap<u32, Prototype>) {
         for prototype in meshes.values() {
             let name = &prototype.name.0;
-            let Some(Mesh::Obj { .. } | Mesh::Gltf { .. } | Mesh::Discs { .. }) =
-                self.scene.meshes.get(name.as_str())
-            else {
-                continue;
+            let unit = match self.scene.meshes.get(name.as_str()) {
+                Some(Mesh::Obj { unit_m, .. }) => *unit_m,
+                Some(Mesh::Gltf { .. } | Mesh::Discs { .. }) => 1.0,
+                _ => continue,
             };
             let Some((low, high)) = prototype.mesh.bounds() else { continue };
             let size = (high - low).max_element();
+            if unit < 1.0 && size < SMALLEST {
+                let message = format!("`{name}` is {:.3} m large, with a unit of {unit} m", size);
+                let help = "if the coordinates of its file are in metres, leave `unit_m` out";
+                let path = format!("meshes.{name}");
+                self.problems.push(Diagnostic::warning(path, message).help(help));
+            }
             if size > TALLEST {
                 let message = format!("`{name}` is {size:.0} m large");
                 let help = "if its file is in centimetres, write `unit_m: 0.01`; in millimetres, \

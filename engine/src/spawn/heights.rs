@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use hecs::World;
 
 use super::Spawner;
+use super::beside::problem_of_camera_beside;
 use super::standing::vertical_extent;
 use crate::components::{Mesh, Placement, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, Layers, Look, PhotonMeasure, Sensor, VirtualPlane};
@@ -17,21 +18,21 @@ const DEEP: f64 = 0.1;
 const POINTS: u32 = 64;
 
 /// The ground that heights are compared with.
-struct Relief {
-    ground: Ground,
+pub(super) struct Relief {
+    pub(super) ground: Ground,
     /// Height of the lowest and of the highest point, m.
     lowest: f64,
-    highest: f64,
-    is_periodic: bool,
+    pub(super) highest: f64,
+    pub(super) is_periodic: bool,
 }
 
 /// A camera of a document: where it is and what it looks at, m.
-struct CameraPlace {
-    position: DVec3,
-    target: Option<DVec3>,
+pub(super) struct CameraPlace {
+    pub(super) position: DVec3,
+    pub(super) target: Option<DVec3>,
     /// Key of the document that holds the target.
     target_key: &'static str,
-    is_above_ground: bool,
+    pub(super) is_above_ground: bool,
 }
 
 impl CameraPlace {
@@ -75,9 +76,25 @@ impl Relief {
 
     /// Returns whether a place lies beside the ground of an isolated scene.
     fn is_beside(&self, at: DVec2) -> bool {
-        let inside = (at - self.ground.corner()) / self.ground.size();
-        let is_within = inside.cmpge(DVec2::ZERO).all() && inside.cmple(DVec2::ONE).all();
-        !self.is_periodic && !is_within
+        !self.is_periodic && self.gap(at) > 0.0
+    }
+
+    /// Distance of a place from the ground's rectangle along one of the axes, m; negative inside.
+    pub(super) fn gap(&self, at: DVec2) -> f64 {
+        let (low, high) = (self.ground.corner(), self.ground.corner() + self.ground.size());
+        (low - at).max(at - high).max_element()
+    }
+
+    /// ``the ground reaches from (0, 0) to (20, 20) m``
+    pub(super) fn extent_text(&self) -> String {
+        let (low, high) = (self.ground.corner(), self.ground.corner() + self.ground.size());
+        format!(
+            "the ground reaches from ({}, {}) to ({}, {}) m",
+            metres(low.x),
+            metres(low.y),
+            metres(high.x),
+            metres(high.y)
+        )
     }
 
     /// Depth below a height that is more than rounding.
@@ -121,7 +138,9 @@ impl Spawner<'_> {
         for (name, sensor) in &scene.sensors {
             let path = format!("sensors.{name}");
             if let Some(camera) = CameraPlace::of(sensor) {
-                self.problems.extend(warn_camera(&camera, &path, &relief));
+                let (x, y, _) = scene.frame.origin_m;
+                let frame = DVec2::new(x, y);
+                self.problems.extend(warn_camera(&camera, &path, (&relief, frame)));
             }
             if let Some(plane) = virtual_plane(sensor) {
                 self.problems.extend(self.check_plane_height(plane, &path, &relief));
@@ -180,8 +199,15 @@ fn virtual_plane(sensor: &Sensor) -> Option<&VirtualPlane> {
     }
 }
 
-fn warn_camera(camera: &CameraPlace, path: &str, relief: &Relief) -> Vec<Diagnostic> {
+fn warn_camera(
+    camera: &CameraPlace,
+    path: &str,
+    (relief, frame): (&Relief, DVec2),
+) -> Vec<Diagnostic> {
     let DVec3 { x, y, z } = camera.position;
+    if let Some(problem) = problem_of_camera_beside(camera, path, relief, frame) {
+        return vec![problem];
+    }
     let Some(ground) = relief.height(DVec2::new(x, y)) else { return Vec::new() };
     let at = format!("{path}.position_m");
     let high = metres(ground);
@@ -319,7 +345,7 @@ fn top(world: &World) -> f64 {
 }
 
 /// A length with centimetres, or with three digits if it is short.
-fn metres(length: f64) -> String {
+pub(super) fn metres(length: f64) -> String {
     let text = if length.abs() < 0.1 { format!("{length:.2e}") } else { format!("{length:.2}") };
     match text.split_once('.') {
         Some(_) if length.abs() >= 0.1 => {

@@ -9,11 +9,16 @@ use crate::document::{Diagnostic, Material, Mesh, Terrain};
 
 /// Leaf area over the area of a plant's outline from above; crowns of trees have 2 to 15.
 const LEAF_AREA_OF_PLANT: f64 = 40.0;
+/// Leaf area over that area from which on a ray meets so many leaves that it takes a second.
+const OVERLAID: f64 = 1e4;
 /// Leaf area index of a stand; the densest forests have 15 to 20.
 const LEAF_AREA_OF_STAND: f64 = 25.0;
 /// Plants per hectare of at least [`TREE`], m; a thicket of young trees has 50 000.
 const STEMS: f64 = 1e5;
 const TREE: f64 = 2.0;
+
+/// Height that no plant reaches, m.
+const TALLEST: f64 = 200.0;
 
 /// Sums over the instances of a mesh.
 struct Plants {
@@ -22,6 +27,8 @@ struct Plants {
     /// One-sided leaf area of one plant and of all, m².
     leaf_area: f64,
     all: f64,
+    /// Height of the highest plant, m.
+    tallest: f64,
     /// Width, depth and height of the mesh, m.
     size: glam::DVec3,
 }
@@ -54,7 +61,22 @@ impl Spawner<'_> {
                     }
                 );
                 let path = format!("meshes.{}", plant.name);
-                self.problems.push(Diagnostic::warning(path, message).help(help));
+                let problem = if index > OVERLAID {
+                    Diagnostic::error(path, format!("{message}; at most {OVERLAID} are traced"))
+                } else {
+                    Diagnostic::warning(path, message)
+                };
+                self.problems.push(problem.help(help));
+            }
+            if plant.tallest > TALLEST && plant.size.z <= TALLEST {
+                let message = format!(
+                    "instances of `{}` are up to {} m high",
+                    plant.name,
+                    short(plant.tallest)
+                );
+                let help = "no plant is higher than 120 m: heights of tables are in metres, and a scale of 1 \
+                            leaves the mesh as it is";
+                self.problems.push(Diagnostic::warning("instances", message).help(help));
             }
             let per_hectare = plant.count as f64 / area * 1e4;
             if per_hectare > STEMS && plant.count > 10 && plant.size.z >= TREE {
@@ -86,6 +108,8 @@ impl Spawner<'_> {
             let plant = plants.entry(id).or_insert_with(|| self.plant(prototype));
             plant.count += 1;
             plant.all += plant.leaf_area * placement.area_factor();
+            let height = plant.size.z * f64::from(placement.scale_vertical);
+            plant.tallest = plant.tallest.max(height);
         }
         plants.into_values().collect()
     }
@@ -103,6 +127,7 @@ impl Spawner<'_> {
             count: 0,
             leaf_area: of_leaves.map(|(part, _)| prototype.mesh.part_area(part)).sum(),
             all: 0.0,
+            tallest: 0.0,
             size: (bounds.1 - bounds.0).as_dvec3(),
         }
     }

@@ -5,6 +5,13 @@ use crate::document::{Diagnostic, IRRADIANCE, Spectrum, unknown_name};
 use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
 use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
 
+/// Irradiance above this is several times that of the sun outside the atmosphere, W m⁻² nm⁻¹.
+pub(super) const STRONG: f64 = 10.0;
+
+/// Width of a band, nm, and difference of the values in it from which on a mean over it says little.
+const WIDE_NM: f64 = 200.0;
+const VARIED: f64 = 0.25;
+
 /// What a spectrum is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -22,11 +29,55 @@ impl Spawner<'_> {
         path: &str,
     ) -> Option<Vec<f64>> {
         let resolved = self.resolve(spectrum, quantity, path, &mut BTreeSet::new());
+        if quantity == Quantity::Irradiance && !self.reads_file(spectrum) {
+            self.warn_strong_light(resolved.as_deref().unwrap_or_default(), path);
+        }
         match resolved.and_then(|values| lawful(values, quantity, path)) {
             Ok(values) => Some(values),
             Err(problem) => {
                 self.problems.push(*problem);
                 None
+            }
+        }
+    }
+
+    /// Warns of light that is several times that of the sun: other units may have been meant.
+    fn warn_strong_light(&mut self, values: &[f64], path: &str) {
+        let strongest = values.iter().copied().fold(0.0, f64::max);
+        if strongest <= STRONG || !strongest.is_finite() {
+            return;
+        }
+        let message = format!(
+            "an irradiance of {strongest} W m⁻² nm⁻¹: the sun has at most 2.2 outside the atmosphere"
+        );
+        let help = "irradiance is per nanometre: 1000 W m⁻² over 400 to 700 nm are 3.3; results that are \
+                    ratios do not depend on it";
+        self.problems.push(Diagnostic::warning(path, message).help(help));
+    }
+
+    /// Warns of a wide band within which a surface differs so much that its mean says little.
+    pub(super) fn warn_wide_bands(&mut self, points: &[(f64, f64)], path: &str) {
+        for band in &self.scene.bands {
+            let (low, high) =
+                (band.center_nm - 0.5 * band.width_nm, band.center_nm + 0.5 * band.width_nm);
+            let within =
+                points.iter().filter(|(nm, value)| (low..=high).contains(nm) && value.is_finite());
+            let (least, most) = within
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &(_, v)| {
+                    (least.min(v), most.max(v))
+                });
+            if band.width_nm < WIDE_NM || most - least < VARIED {
+                continue;
+            }
+            let message = format!(
+                "band `{}` is {} nm wide, and values differ from {least:.3} to {most:.3} within it",
+                band.name, band.width_nm
+            );
+            let help = "light is scattered often, so the mean over a band does not give the mean of the \
+                        results: write several narrow bands and weight their results with the irradiance";
+            let warning = Diagnostic::warning(path, message).help(help);
+            if !self.problems.contains(&warning) {
+                self.problems.push(warning);
             }
         }
     }
@@ -53,7 +104,7 @@ impl Spawner<'_> {
         match spectrum {
             Spectrum::Constant(value) => Ok(vec![*value; bands]),
             Spectrum::Bands(values) => Ok(values.clone()),
-            Spectrum::Points(points) => self.mean_over_bands(points, path),
+            Spectrum::Points(points) => self.mean_over_bands(points, quantity, path),
             Spectrum::Table { .. } => self.table_means(spectrum, quantity, path),
             Spectrum::AstmG173 => self.astm_g173(quantity, path),
             Spectrum::Named(name) => {
@@ -95,8 +146,12 @@ impl Spawner<'_> {
                 let leaf =
                     leaf_spectrum(&chemistry).map_err(|error| Box::new(problem(path, &error)))?;
                 match quantity {
-                    Quantity::Reflectance => self.mean_over_bands(&leaf.reflectance, path),
-                    Quantity::Transmittance => self.mean_over_bands(&leaf.transmittance, path),
+                    Quantity::Reflectance => {
+                        self.mean_over_bands(&leaf.reflectance, quantity, path)
+                    }
+                    Quantity::Transmittance => {
+                        self.mean_over_bands(&leaf.transmittance, quantity, path)
+                    }
                     Quantity::Irradiance => {
                         let what = "Prospect gives reflectance and transmittance, no irradiance";
                         let help = "write AstmG173, Constant, Bands, Points or Table";
@@ -140,10 +195,14 @@ impl Spawner<'_> {
     }
 
     fn mean_over_bands(
-        &self,
+        &mut self,
         points: &[(f64, f64)],
+        quantity: Quantity,
         path: &str,
     ) -> Result<Vec<f64>, Box<Diagnostic>> {
+        if quantity != Quantity::Irradiance {
+            self.warn_wide_bands(points, path);
+        }
         let means = self.scene.bands.iter().map(|band| {
             band_mean(points, band.center_nm, band.width_nm).map_err(|error| {
                 Box::new(Diagnostic::error(path, format!("band `{}`: {error}", band.name)))

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Spawner;
-use super::spectra::Quantity;
+use super::spectra::{Quantity, STRONG};
 use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
 use crate::document::{Band, Diagnostic, Spectrum, ValueUnit, WavelengthUnit};
 use crate::spectral::band_mean;
@@ -22,8 +22,11 @@ const HUGE: f64 = 1e5;
 const NOISY_NM: [(f64, f64); 4] =
     [(0.0, 400.0), (1330.0, 1470.0), (1770.0, 2000.0), (2350.0, f64::INFINITY)];
 
-/// Irradiance above this is several times that of the sun outside the atmosphere, W m⁻² nm⁻¹.
-const STRONG: f64 = 10.0;
+/// Largest reflectance of a table, below which fractions were taken for percent: no leaf, soil or bark is so dark.
+const SMALL: f64 = 0.01;
+
+/// Step between wavelengths, nm, over which spectra of leaves and soils are no straight lines.
+const WIDE_GAP_NM: f64 = 50.0;
 
 /// A table of which the scene asks for means over bands.
 struct Values<'a> {
@@ -62,7 +65,9 @@ impl Spawner<'_> {
         let values = table.points.iter().map(|point| point.value * scale * percent).collect();
         let values = Values { table: &table, scaled: values, file, path };
         let mut warnings = Vec::new();
+        values.warn_other_columns(&mut warnings);
         if is_fraction {
+            values.warn_small(&mut warnings);
             let is_settled = unit.is_some() || *scale < 1.0;
             values.check_percent(is_settled)?;
             values.check_scale()?;
@@ -76,6 +81,10 @@ impl Spawner<'_> {
             values.mean(band, *wavelength_unit, is_fraction, &mut warnings)
         });
         let means = means.collect::<Result<Vec<f64>, _>>();
+        if is_fraction {
+            let points: Vec<_> = values.points().collect();
+            self.warn_wide_bands(&points, &values.path);
+        }
         for warning in warnings {
             if !self.problems.contains(&warning) {
                 self.problems.push(warning);
@@ -86,6 +95,12 @@ impl Spawner<'_> {
 }
 
 impl Values<'_> {
+    /// Wavelengths, nm, and values in the unit of the scene, without marks for no data.
+    fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+        let indices = (0..self.scaled.len()).filter(|&index| !self.is_mark(index));
+        indices.map(|index| (self.table.points[index].wavelength, self.scaled[index]))
+    }
+
     fn is_mark(&self, index: usize) -> bool {
         let written = self.table.points[index].value;
         !written.is_finite() || written.abs() >= HUGE || self.scaled[index] < MARK
@@ -186,6 +201,61 @@ impl Values<'_> {
         }
     }
 
+    /// Warns of a table of several columns of which the scene names none.
+    fn warn_other_columns(&self, warnings: &mut Vec<Diagnostic>) {
+        if self.table.others.is_empty() {
+            return;
+        }
+        let others: Vec<_> = self.table.others.iter().map(|name| format!("{name:?}")).collect();
+        let message = format!(
+            "{}: the values are taken from the column {:?}, and there are {} too",
+            self.file,
+            self.table.value,
+            others.join(", ")
+        );
+        let help = format!("write the one that is meant, such as `value: {:?}`", self.table.value);
+        warnings.push(Diagnostic::warning(&self.path, message).help(help));
+    }
+
+    /// Warns of fractions that a unit or a scale makes so small that they were fractions before.
+    fn warn_small(&self, warnings: &mut Vec<Diagnostic>) {
+        let all = self.find(|_, _| true);
+        let largest = all.iter().max_by(|&&a, &&b| self.scaled[a].total_cmp(&self.scaled[b]));
+        let Some(&largest) = largest else { return };
+        let (written, scaled) = (self.table.points[largest].value, self.scaled[largest]);
+        if written <= 1.0 && scaled < SMALL && scaled < 0.5 * written {
+            let message =
+                format!("{}, its largest value, and is taken as {scaled:.3e}", self.place(largest));
+            let help = "if the table holds fractions, leave `unit` and `scale` out";
+            warnings.push(Diagnostic::warning(&self.path, message).help(help));
+        }
+    }
+
+    /// Warns of a band between rows that lie far apart: what is between them is not known.
+    fn warn_gap(&self, band: &Band, warnings: &mut Vec<Diagnostic>) {
+        let points = &self.table.points;
+        let mut steps: Vec<f64> =
+            points.windows(2).map(|pair| pair[1].wavelength - pair[0].wavelength).collect();
+        steps.sort_by(f64::total_cmp);
+        let usual = steps[steps.len() / 2];
+        let used = &points[self.used(band)];
+        let widest = used
+            .windows(2)
+            .map(|pair| (pair[0].wavelength, pair[1].wavelength))
+            .max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)));
+        if let Some((from, to)) = widest
+            && to - from > WIDE_GAP_NM
+            && to - from > 5.0 * usual
+        {
+            let message = format!(
+                "{}: no value between {from} and {to} nm, and band `{}` is made of a straight line between them",
+                self.file, band.name
+            );
+            let help = "take a table that covers the band, or move the band";
+            warnings.push(Diagnostic::warning(&self.path, message).help(help));
+        }
+    }
+
     fn warn_strong(&self, warnings: &mut Vec<Diagnostic>) {
         let strong = self.find(|_, value| value > STRONG);
         let largest = strong.iter().max_by(|&&a, &&b| self.scaled[a].total_cmp(&self.scaled[b]));
@@ -236,6 +306,7 @@ impl Values<'_> {
         }
         if is_fraction {
             self.warn_zeros(band, warnings);
+            self.warn_gap(band, warnings);
         }
         Ok(())
     }

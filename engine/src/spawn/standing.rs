@@ -8,6 +8,12 @@ use crate::components::Placement;
 use crate::document::Diagnostic;
 use crate::terrain::Ground;
 
+/// Height of bodies that are flat, and gap over which those do not float, m.
+const FLAT: f64 = 0.05;
+
+/// Distance from the ground that is rounding, over the ground's height.
+const ROUNDING: f64 = 1e-6;
+
 /// Instances of one mesh that stand wrongly in one way.
 struct Case {
     count: usize,
@@ -24,6 +30,7 @@ impl Spawner<'_> {
         ground: &Ground,
     ) {
         let mut cases: BTreeMap<(u32, bool), Case> = BTreeMap::new();
+        let mut flat: BTreeMap<u32, (usize, DVec3)> = BTreeMap::new();
         // Once a mesh, not once an instance.
         let bounds: BTreeMap<u32, [DVec3; 2]> = meshes
             .iter()
@@ -35,7 +42,11 @@ impl Spawner<'_> {
             let (low, high) = vertical_extent(placement, bounds);
             let Some(below) = ground.height(placement.position.truncate()) else { continue };
             let (gap, height) = (low - below, high - low);
-            let floats = gap > height;
+            if height < FLAT && gap.abs() < ROUNDING * (below.abs() + 1.0) {
+                flat.entry(placement.prototype.0).or_insert((0, placement.position)).0 += 1;
+                continue;
+            }
+            let floats = gap > height.max(FLAT);
             if !floats && high - below >= 0.5 * height {
                 continue;
             }
@@ -48,6 +59,14 @@ impl Spawner<'_> {
                 ),
             });
             case.count += 1;
+        }
+        for (prototype, (count, at)) in flat {
+            let name = &meshes[&prototype].name.0;
+            self.notes.push(format!(
+                "{count} of `{name}` are flat and lie exactly in the ground: at ({}, {}) rays meet the ground or \
+                 `{name}`, whichever comes first (lift it by a millimetre to see it)",
+                at.x, at.y
+            ));
         }
         for ((prototype, floats), Case { count, example }) in cases {
             let name = &meshes[&prototype].name.0;

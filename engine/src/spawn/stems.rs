@@ -18,6 +18,11 @@ const STEM_TO_HEIGHT: f64 = 0.05;
 /// A plant that a diameter makes smaller than this part of its mesh was not meant.
 const SMALLEST: f64 = 0.1;
 
+/// Rows from which on places in a table that lie within [`NARROW_M`] are doubtful.
+const FEWEST_ROWS: usize = 5;
+/// Extent of a stand in degrees, where a plot of 1 km has 0.01.
+const NARROW_M: f64 = 0.1;
+
 /// Species that an error names.
 const MOST_NAMED: usize = 10;
 
@@ -62,6 +67,7 @@ impl Spawner<'_> {
                 None => return Vec::new(),
             },
         };
+        self.warn_degrees(&rows, file, &at);
         if is_of_map {
             self.bring_from_map(&mut rows, *on_terrain);
         }
@@ -76,6 +82,28 @@ impl Spawner<'_> {
             }
         }
         self.rows(&rows, &prototypes, ground.filter(|_| *on_terrain), path)
+    }
+
+    /// Warns of rows that lie so near to each other that their coordinates may be degrees.
+    fn warn_degrees(&mut self, rows: &[Row], file: &str, path: &str) {
+        let places = || rows.iter().map(|row| row.position.truncate());
+        let Some(first) = places().next() else { return };
+        let (low, high) = places().fold((first, first), |(a, b), p| (a.min(p), b.max(p)));
+        let span = (high - low).max_element();
+        let is_of_earth =
+            low.cmpge(DVec2::new(-180.0, -90.0)).all() && high.cmple(DVec2::new(180.0, 90.0)).all();
+        if rows.len() < FEWEST_ROWS || span >= NARROW_M || span == 0.0 || !is_of_earth {
+            return;
+        }
+        let message = format!(
+            "{file}: all {} rows stand within {span:.4} m, about ({:.4}, {:.4})",
+            rows.len(),
+            low.x,
+            low.y
+        );
+        let help = "if these are longitudes and latitudes, convert them to the projection of the scene, in \
+                    metres: `ogr2ogr -t_srs EPSG:32632 -lco GEOMETRY=AS_XY out.csv in.csv`";
+        self.problems.push(Diagnostic::warning(path, message).help(help));
     }
 
     /// Notes the columns that mean nothing; warns of those that may have been meant.

@@ -6,9 +6,30 @@ use crate::components::{MaterialId, TerrainPatch};
 use crate::document::{Boundary, Diagnostic, Sensor, Terrain, check_maps, unknown_name};
 use crate::terrain::{self, plane};
 
+/// Minimum extent of the ground, m: positions within it would be rounding, and a mesh would reach over more
+/// periodic tiles than can be counted.
+const SMALLEST_M: f64 = 1e-3;
+
 impl Spawner<'_> {
     /// The terrain, unless something is wrong with it.
     pub(super) fn terrain(&mut self) -> Option<TerrainPatch> {
+        let patch = self.patch()?;
+        let DVec2 { x, y } = patch.size;
+        if x.min(y) >= SMALLEST_M {
+            return Some(patch);
+        }
+        let path = match &self.scene.terrain {
+            Terrain::Plane { .. } => "terrain.size_m",
+            Terrain::Raster { .. } | Terrain::Mesh { .. } => "terrain",
+        };
+        let message =
+            format!("the ground is {x:?} m x {y:?} m: at least {SMALLEST_M} m are expected");
+        let problem = Diagnostic::error(path, message).help("extents are in metres");
+        self.problems.push(problem);
+        None
+    }
+
+    fn patch(&mut self) -> Option<TerrainPatch> {
         let scene = self.scene;
         let projection = self.frame_projection();
         let patch = match &scene.terrain {

@@ -3,18 +3,19 @@
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use sunfleck::output;
-use sunfleck::products::{Product, Report};
-use sunfleck::run::{Options, Unwatched, check_file, run_file};
+use sunfleck::products::{Forecast, Product, Report};
+use sunfleck::run::{Options, Progress, check_file, run_file};
 
 use super::project;
 use super::readers::Said;
 
-/// Memory that films and results of one scene may take, bytes.
-const MEMORY: u64 = 16 << 20;
+/// Memory that a scene, its films and its results may take, bytes.
+const MEMORY: u64 = 32 << 20;
 
 /// Files that scenes name, beside them.
 const FILES: [(&str, &str); 6] = [
@@ -34,12 +35,41 @@ fn options() -> Options {
     Options { threads: Some(1), quality: 1e-9, memory: Some(MEMORY), ..Options::default() }
 }
 
-/// Checks and runs a scene, and asserts what both promise.
+/// Longest forecast of a run that is waited for, s.
+const PATIENCE: f64 = 5.0;
+
+/// Ends a run that says that it will take longer than [`PATIENCE`].
+struct Impatient;
+
+/// Payload of the panic that ends it.
+struct LongRun;
+
+impl Progress for Impatient {
+    fn stage(&self, _: &str) {}
+    fn sensor(&self, _: &str, _: f64) {}
+    fn forecast(&self, _: &str, forecast: &Forecast) {
+        if forecast.seconds > PATIENCE {
+            resume_unwind(Box::new(LongRun));
+        }
+    }
+}
+
+/// Checks and runs a scene, and asserts what both promise. A scene that is said to be slow is not run to its end.
 pub(super) fn pipeline(path: &Path) -> Said {
     let folder = path.parent().unwrap_or(Path::new("."));
     furnish(folder);
     let checked = check_file(path, &options()).map_err(|failure| failure.to_string());
-    let run = run_file(path, &options(), &Unwatched).map_err(|failure| failure.to_string());
+    if let Ok(warnings) = &checked
+        && warnings.iter().any(|warning| warning.contains("this is slow"))
+    {
+        return ("a slow scene".to_owned(), warnings.clone());
+    }
+    let run = catch_unwind(AssertUnwindSafe(|| run_file(path, &options(), &Impatient)));
+    let run = match run {
+        Ok(run) => run.map_err(|failure| failure.to_string()),
+        Err(payload) if payload.is::<LongRun>() => return ("a long run".to_owned(), Vec::new()),
+        Err(payload) => resume_unwind(payload),
+    };
     match (checked, run) {
         (Ok(warnings), Ok(report)) => {
             sound(&report);

@@ -2,6 +2,7 @@
 //! clear error or a warning; beside them neighbours of the same kind (`near_*`). The inputs lie in
 //! `tests/field`, one folder a case.
 
+mod first_hour;
 mod guards;
 mod hostile;
 mod meshes;

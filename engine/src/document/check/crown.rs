@@ -183,6 +183,9 @@ fn check_range(
     }
 }
 
+/// Diameter of a trunk over its height that no tree exceeds.
+const THICKEST: f64 = 0.5;
+
 fn check_wood(
     path: &str,
     trunk: Option<&Trunk>,
@@ -196,6 +199,12 @@ fn check_wood(
         let lengths = [("height_m", trunk.height_m), ("diameter_m", trunk.diameter_m)];
         check_lengths(&at, &lengths, report);
         report.at_least(&format!("{at}.tip_diameter_m"), trunk.tip_diameter_m, 0.0);
+        if trunk.diameter_m > THICKEST * trunk.height_m && trunk.height_m > 0.0 {
+            let message =
+                format!("the trunk is {} m thick and {} m high", trunk.diameter_m, trunk.height_m);
+            let help = "lengths are in metres: 20 cm is 0.2";
+            report.warning(&format!("{at}.diameter_m"), message, help);
+        }
         if trunk.tip_diameter_m > trunk.diameter_m && trunk.diameter_m > 0.0 {
             let message = format!(
                 "the trunk's tip ({} m) is thicker than its foot ({} m)",

@@ -81,6 +81,10 @@ impl Report<'_> {
         self.push(Diagnostic::error(path, message).help(help));
     }
 
+    fn warning(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
+        self.push(Diagnostic::warning(path, message).help(help));
+    }
+
     fn finish(mut self) -> Vec<Diagnostic> {
         if self.dropped > 0 {
             let message = format!("and {} more errors", self.dropped);

@@ -58,6 +58,9 @@ pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {
 pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("materials", "a material", &scene.materials);
     for (name, material) in &scene.materials {
+        if let Material::Leaf { reflectance, transmittance, .. } = material {
+            warn_two_leaves(name, [reflectance, transmittance], scene, report);
+        }
         let (keys, back) = match material {
             Material::Lambertian { reflectance, back_reflectance, .. } => {
                 (vec![("reflectance", reflectance)], back_reflectance)
@@ -72,6 +75,23 @@ pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
             let path = format!("materials.{name}.{key}");
             check_spectrum(&path, spectrum, Quantity::Fraction, scene, report);
         }
+    }
+}
+
+/// Warns of a leaf whose reflectance and transmittance follow from two leaves.
+fn warn_two_leaves(name: &str, spectra: [&Spectrum; 2], scene: &Scene, report: &mut Report<'_>) {
+    let [reflectance, transmittance] = spectra.map(|spectrum| match spectrum {
+        Spectrum::Named(name) => resolve(name, scene),
+        other => Some(other),
+    });
+    let are_leaves = [reflectance, transmittance]
+        .iter()
+        .all(|one| matches!(one, Some(Spectrum::Prospect { .. })));
+    if are_leaves && reflectance != transmittance {
+        let message = "reflectance and transmittance are those of two different leaves";
+        let help = "define the leaf once, `spectra: { \"leaf\": Prospect(..) }`, and write \
+                    `Named(\"leaf\")` in both";
+        report.warning(&format!("materials.{name}.transmittance"), message, help);
     }
 }
 

@@ -95,7 +95,8 @@ impl<'a> Reader<'a> {
     /// What was wrong.
     pub(super) fn finish(self) -> Findings {
         let Self { diagnostics, dropped, mut broken, .. } = self;
-        broken.extend(diagnostics.iter().map(|error| error.path.clone()));
+        let errors = diagnostics.iter().filter(|one| one.is_error());
+        broken.extend(errors.map(|error| error.path.clone()));
         Findings { diagnostics, dropped, broken }
     }
 
@@ -123,6 +124,14 @@ impl<'a> Reader<'a> {
         if self.has_room() {
             let error = Diagnostic::error(path_of(&self.path), message).at(self.place_of(span));
             self.diagnostics.push(Diagnostic { help, ..error });
+        }
+    }
+
+    /// A value that is lawful and may not be meant, where reading has come to.
+    pub(super) fn warn(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
+        if self.has_room() {
+            let warning = Diagnostic::warning(path_of(&self.path), message).at(self.place_of(span));
+            self.diagnostics.push(Diagnostic { help, ..warning });
         }
     }
 
