@@ -23,6 +23,7 @@ fn crown(leaves: f64, leaf: LeafShape, leaf_area: f64) -> Mesh {
         leaf_angle: LeafAngle::Spherical,
         leaf,
         overlap: true,
+        min_distance_m: 0.0,
         trunk: None,
         branches: None,
         seed: 1,

@@ -85,14 +85,21 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
             on_branches,
         },
     );
-    let leaves =
-        (number(), number(), profile(), option(clumps), angle(), (leaf(), any::<bool>()), text());
+    let leaves = (
+        number(),
+        number(),
+        profile(),
+        option(clumps),
+        angle(),
+        (leaf(), any::<bool>(), number()),
+        text(),
+    );
     let wood = (option(trunk), option(branches), option(text()));
     (shape(), leaves, wood, any::<u64>())
         .prop_map(|(shape, leaves, (trunk, branches, wood_material), seed)| {
             let (base_m, leaf_area_m2, leaf_profile, clumps, leaf_angle, leaf, leaf_material) =
                 leaves;
-            let (leaf, overlap) = leaf;
+            let (leaf, overlap, min_distance_m) = leaf;
             Mesh::Crown {
                 shape,
                 base_m,
@@ -102,6 +109,7 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
                 leaf_angle,
                 leaf,
                 overlap,
+                min_distance_m,
                 leaf_material,
                 trunk,
                 branches,

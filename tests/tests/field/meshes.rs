@@ -47,6 +47,8 @@ fn colours_of_vertices_change_no_shape() {
         case("02-obj-vertex-colours/nan_colour.ron", &[absorbs(4.0)]),
         case("02-obj-vertex-colours/mrgb.ron", &[absorbs(4.0)]),
         case("02-obj-vertex-colours/weight_two.ron", &[absorbs(16.0)]),
+        case("02-obj-vertex-colours/near_some_coloured.ron", &[absorbs(4.0)]),
+        case("02-obj-vertex-colours/near_weight_zero.ron", &[absorbs(4.0)]),
     ];
     hold(CASES);
 }
@@ -112,6 +114,9 @@ fn leaves_that_are_there_twice_count_once() {
         case("04-obj-two-sided-duplicate/one.ron", ONCE),
         case("04-obj-two-sided-duplicate/same.ron", ONCE),
         case("04-obj-two-sided-duplicate/three.ron", ONCE),
+        case("04-obj-two-sided-duplicate/near_reversed.ron", ONCE),
+        case("04-obj-two-sided-duplicate/near_split.ron", ONCE),
+        case("04-obj-two-sided-duplicate/near_own_vertices.ron", ONCE),
         // 0.4 + 0.4³ / (1 - 0.16), less what leaves through the slit of 1 cm around the two.
         case("04-obj-two-sided-duplicate/sep1cm.ron", &[value("v", "brf", 0, 0.4762, 0.0008)]),
     ];
@@ -237,7 +242,9 @@ fn a_tree_of_small_leaves_is_the_same_in_any_corner_of_100_km() {
         }
     };
     // Four standard errors of 0.00035 each.
-    for name in ["small.ron", "km1.ron", "km100.ron", "high.ron"] {
+    for name in
+        ["small.ron", "km1.ron", "km100.ron", "high.ron", "near_below_sea.ron", "near_west.ron"]
+    {
         let gap = means(name)[0];
         assert!((gap - 0.88457).abs() < 0.0014, "{name}: {gap}");
     }
@@ -261,6 +268,8 @@ fn gaps_do_not_depend_on_the_size_of_leaves() {
         case("44-needles/r0.02.ron", &LARGE),
         case("44-needles/r0.002.ron", &SMALL),
         case("44-needles/r0.0005.ron", &SMALL),
+        case("44-needles/near_square.ron", &SMALL),
+        case("44-needles/near_needle.ron", &SMALL),
     ];
     hold(CASES);
 }

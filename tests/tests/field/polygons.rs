@@ -16,6 +16,8 @@ fn stems_fill_the_area_of_polygons_however_they_are_written() {
         ("20-polygon-oddities/xyz.ron", 1600),
         ("20-polygon-oddities/self_touch.ron", 1600),
         ("18-geojson-bom/near_bom_utm.ron", 1600),
+        ("20-polygon-oddities/near_hole_touches.ron", 1400),
+        ("20-polygon-oddities/near_repeated.ron", 1600),
     ] {
         let (all, _) = stand(scene).unwrap_or_else(|problem| panic!("{scene}: {problem}"));
         assert_eq!(all.len(), stems, "{scene}");
@@ -27,6 +29,7 @@ fn stems_fill_the_area_of_polygons_however_they_are_written() {
         ("18-geojson-bom/seq.ron", &["line 2"]),
         ("20-polygon-oddities/bowtie.ron", &["crosses itself"]),
         ("20-polygon-oddities/null_z.ron", &["null"]),
+        ("20-polygon-oddities/near_hole_crosses_itself.ron", &["crosses itself"]),
     ]);
 }
 

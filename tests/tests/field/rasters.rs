@@ -162,6 +162,8 @@ fn numbers_of_ascii_grids_are_read_or_refused_by_line() {
         ("13-ascii-nan-null/nan_nodata.ron", &[301.0], ""),
         ("13-ascii-nan-null/qnan.ron", &[301.0], ""),
         ("13-ascii-nan-null/sci.ron", &[301.0], ""),
+        ("13-ascii-nan-null/near_plus.ron", &[301.0], ""),
+        ("13-ascii-nan-null/near_tabs.ron", &[301.0], ""),
     ]);
     refused(&[
         ("13-ascii-nan-null/null.ron", &["line 6", "null"]),
@@ -169,6 +171,7 @@ fn numbers_of_ascii_grids_are_read_or_refused_by_line() {
         ("13-ascii-nan-null/comma2.ron", &["line 6", "300,05", "decimal point"]),
         ("13-ascii-nan-null/dexp.ron", &["line 6", "3.0005D+02"]),
         ("13-ascii-nan-null/grass.ron", &["GRASS ASCII grid", "gdal_translate"]),
+        ("13-ascii-nan-null/near_not_available.ron", &["line 6", "N/A"]),
     ]);
 }
 
@@ -225,6 +228,7 @@ fn geotiffs_of_every_kind_are_read_or_refused() {
         ("50-geotiff-miniswhite/u8_black.ron", &[11.0, 12.0], ""),
         ("50-geotiff-miniswhite/f32.ron", both, ""),
         ("50-geotiff-miniswhite/near_i16.ron", &[301.0], ""),
+        ("50-geotiff-miniswhite/near_big_endian.ron", &[301.0], ""),
     ]);
     refused(&[
         ("16-geotiff-variants/mercator.ron", &["Web Mercator", "1.64 times as long", "gdalwarp"]),
@@ -252,13 +256,18 @@ fn trees_of_canopies_are_counted_as_they_stand() {
         ("46-chm-on-plane/plane100.ron", 3),
         ("46-chm-on-plane/utm.ron", 3),
         ("46-chm-on-plane/dem.ron", 3),
+        ("46-chm-on-plane/near_middle.ron", 3),
         ("42-dsm-for-chm/near_unit.ron", 3),
+        ("42-dsm-for-chm/near_unit_dm.ron", 3),
         ("49-crs-mismatch/same.ron", 3),
         ("49-crs-mismatch/etrs.ron", 3),
     ] {
         let (all, _) = stand(scene).unwrap_or_else(|problem| panic!("{scene}: {problem}"));
         assert_eq!(all.len(), trees, "{scene}");
     }
+    let (trees, warnings) = stand("46-chm-on-plane/near_part.ron").expect("a stand");
+    assert_eq!(trees.len(), 1);
+    assert!(warnings.contains("2 of 3 trees have no terrain below"), "{warnings}");
     refused(&[
         ("42-dsm-for-chm/dsm.ron", &["300.012 m", "subtract the terrain"]),
         ("42-dsm-for-chm/dsm_150.ron", &["a tree of 150 m", "subtract the terrain"]),
@@ -282,6 +291,21 @@ fn systems_that_differ_are_refused_or_told() {
     let (trees, warnings) = stand("49-crs-mismatch/near_ed50.ron").expect("a stand");
     assert_eq!(trees.len(), 1);
     assert!(warnings.contains("ED50 and WGS 84"), "{warnings}");
+}
+
+/// *Scene*: half the ground of 0.4 and half of 0.2, on a slope of 0.1, by land cover with and without a colour table.
+/// *Expected*: BRF `0.3 cos i` from above with the sun at the zenith.
+#[test]
+fn land_cover_with_a_colour_table_gives_the_classes() {
+    let mean = 0.3 / 1.01_f64.sqrt();
+    let right =
+        [Right::value("i", "brf", 0, mean), Right::value("i", "brf", 1, mean), Right::Quiet];
+    hold(&[
+        Case { scene: "51-land-cover-palette/plain.ron", right: &right },
+        Case { scene: "51-land-cover-palette/palette.ron", right: &right },
+        Case { scene: "51-land-cover-palette/white.ron", right: &right },
+        Case { scene: "51-land-cover-palette/near_tiled.ron", right: &right },
+    ]);
 }
 
 #[test]

@@ -113,9 +113,14 @@ fn results_do_not_depend_on_where_the_scene_lies() {
         let products = report.sensors.iter().flat_map(|sensor| &sensor.products);
         products.flat_map(|product| product.values.iter().map(|value| value.to_bits())).collect()
     };
-    for (moved, kept) in
-        [("utm", "zero"), ("utm_frac", "zero"), ("utm_origin", "zero"), ("cam_utm", "cam_zero")]
-    {
+    for (moved, kept) in [
+        ("utm", "zero"),
+        ("utm_frac", "zero"),
+        ("utm_origin", "zero"),
+        ("cam_utm", "cam_zero"),
+        ("near_west", "zero"),
+        ("near_range", "zero"),
+    ] {
         assert_eq!(values(moved), values(kept), "{moved}");
     }
 }

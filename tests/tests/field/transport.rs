@@ -113,6 +113,35 @@ fn fluxes_on_slopes_are_given_for_both_areas() {
     ]);
 }
 
+/// *Scene*: a slope of 6 m in 20 m, repeated, with the wall that this makes at the seam: from a raster, from a mesh
+/// and from a mesh that has the wall. *Expected*: BRF and albedo of the cavity's cross-section by radiosity, 600
+/// strips with form factors by crossed strings; with the sun over the wall, BRF of the partly shaded slope.
+#[test]
+fn a_slope_that_is_repeated_is_a_cavity_with_its_wall() {
+    // Nadir, 30° towards the wall and 30° from behind it, each in two bands.
+    let cavity = [
+        Right::value("v", "brf", 0, 0.314_059),
+        Right::value("v", "brf", 2, 0.331_475),
+        Right::value("v", "brf", 4, 0.303_514),
+        Right::value("alb", "albedo", 0, 0.321_594),
+    ];
+    // Alone, the slope is lit by the sun only: ρ cos i / cos θ.
+    let tan = 40_f64.to_radians().tan();
+    let alone = 0.4 * (1.0 - 0.3 * tan) / 1.09_f64.sqrt();
+    hold(&[
+        Case { scene: "32-dem-periodic/periodic.ron", right: &cavity },
+        Case { scene: "32-dem-periodic/mesh_slope.ron", right: &cavity },
+        Case { scene: "32-dem-periodic/mesh_wall.ron", right: &cavity },
+        Case {
+            scene: "32-dem-periodic/isolated.ron",
+            right: &[Right::value("v", "brf", 0, alone)],
+        },
+        Case { scene: "32-dem-periodic/img.ron", right: &[Right::value("i", "brf", 0, 0.386_202)] },
+        // Sides that meet need no wall.
+        Case { scene: "32-dem-periodic/near_ridge.ron", right: &[Right::Quiet] },
+    ]);
+}
+
 /// Means of images leave out what lies beside the scene, forward as backward.
 #[test]
 fn means_of_forward_images_leave_out_empty_pixels() {

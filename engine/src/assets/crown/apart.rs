@@ -1,7 +1,8 @@
-//! Leaves that intersect no other leaf.
+//! Leaves that intersect no other leaf, or keep a minimum distance.
 
-use glam::{DVec3, I64Vec3, Vec3};
+use glam::{DVec3, Vec3};
 
+use super::grid::{Grid, Located};
 use super::stream::{Purpose, Stream};
 use super::{CrownError, CrownSpec, Places};
 use crate::components::Disc;
@@ -117,72 +118,56 @@ pub(super) fn intersect<F: Flat>(a: &F, b: &F) -> bool {
     first.0 <= second.1 && second.0 <= first.1
 }
 
-/// Pieces, to be found by where they are: lists of those whose cells of a grid share a bucket.
-struct Grid<F> {
-    /// Side of a cell: pieces that intersect are in the same cell or in neighbours.
-    cell: f64,
-    /// First piece of each bucket's list.
-    heads: Vec<u32>,
-    /// Next piece of the list of each piece.
-    next: Vec<u32>,
-    pieces: Vec<F>,
+impl<F: Flat> Located for F {
+    fn place(&self) -> DVec3 {
+        self.middle()
+    }
 }
 
-/// Ends a list.
-const NONE: u32 = u32::MAX;
+/// Leaves that have their place.
+struct Settled<F> {
+    pieces: Grid<F>,
+    /// Centres, if they keep a minimum distance.
+    centers: Option<Grid<DVec3>>,
+}
 
-impl<F: Flat> Grid<F> {
-    fn new(reach: f64, count: usize) -> Self {
+impl<F: Flat> Settled<F> {
+    fn new(crown: &CrownSpec, leaves: usize, leaf: &[F]) -> Self {
+        // All pieces are of one size but for rounding.
+        let reach = MARGIN * leaf.iter().map(Flat::reach).fold(0.0, f64::max);
+        let distance = crown.min_distance_m;
         Self {
-            cell: 2.0 * reach,
-            heads: vec![NONE; (2 * count).next_power_of_two()],
-            next: Vec::with_capacity(count),
-            pieces: Vec::with_capacity(count),
+            pieces: Grid::new(2.0 * reach, leaves * leaf.len()),
+            centers: (distance > 0.0).then(|| Grid::new(distance, leaves)),
         }
     }
 
-    fn cell_of(&self, piece: &F) -> I64Vec3 {
-        (piece.middle() / self.cell).floor().as_i64vec3()
+    fn has_room_at(&self, center: DVec3) -> bool {
+        self.centers.as_ref().is_none_or(|centers| {
+            let distance = centers.reach();
+            !centers.any_near(center, |other| other.distance_squared(center) < distance * distance)
+        })
     }
 
-    fn bucket(&self, I64Vec3 { x, y, z }: I64Vec3) -> usize {
-        let mut bits = 0_u64;
-        for axis in [x, y, z] {
-            bits = (bits ^ axis as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            bits ^= bits >> 32;
+    fn intersects(&self, leaf: &[F]) -> bool {
+        leaf.iter()
+            .any(|piece| self.pieces.any_near(piece.middle(), |other| intersect(piece, other)))
+    }
+
+    fn add(&mut self, center: DVec3, leaf: &mut Vec<F>) {
+        if let Some(centers) = &mut self.centers {
+            centers.add(center);
         }
-        bits as usize & (self.heads.len() - 1)
-    }
-
-    fn is_free(&self, piece: &F) -> bool {
-        let cell = self.cell_of(piece);
-        let neighbours = (0..27).map(|i| I64Vec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        for neighbour in neighbours {
-            let mut index = self.heads[self.bucket(cell + neighbour)];
-            while index != NONE {
-                if intersect(piece, &self.pieces[index as usize]) {
-                    return false;
-                }
-                index = self.next[index as usize];
-            }
-        }
-        true
-    }
-
-    fn add(&mut self, piece: F) {
-        let bucket = self.bucket(self.cell_of(&piece));
-        self.next.push(self.heads[bucket]);
-        self.heads[bucket] = self.pieces.len() as u32;
-        self.pieces.push(piece);
+        leaf.drain(..).for_each(|piece| self.pieces.add(piece));
     }
 }
 
-/// Pieces of `count` leaves, of which none intersects a piece of another leaf. `leaf` makes those of a leaf
-/// around its middle.
+/// Pieces of `count` leaves that keep the distances that the crown asks for: none intersects a piece of another
+/// leaf, or their centres are at least so far apart. `leaf` makes the pieces of a leaf around its centre.
 ///
 /// Random sequential addition: each leaf keeps its inclination and turn, and is tried at one place of its
-/// random stream after the other until it fits. So the first leaves, and all that overlap none before them,
-/// are where they are in the crown whose leaves may overlap.
+/// random stream after the other until it fits. So the first leaves, and all that are apart from those before
+/// them, are where they are in the crown of independent leaves.
 ///
 /// # Errors
 /// A leaf that finds no place.
@@ -198,25 +183,40 @@ where
     P: IntoIterator<Item = F>,
 {
     let mut candidate: Vec<F> = Vec::new();
-    let mut grid: Option<Grid<F>> = None;
+    let mut settled: Option<Settled<F>> = None;
     let mut tries = ALL_TRIES.0 + ALL_TRIES.1 * count as u64;
     for index in 0..count as u64 {
         let around = leaf(index);
         let random = &mut Stream::new(crown.seed, Purpose::Position, index);
         let most = tries.min(MOST_TRIES);
-        let fits = (0..most).any(|_| {
+        let center = (0..most).find_map(|_| {
             tries -= 1;
+            let center = places.draw(index, random) + DVec3::Z * crown.base_m;
+            // Discs are stored in f32: the distance holds between stored centres.
+            let stored = center.as_vec3().as_dvec3();
+            if settled.as_ref().is_some_and(|settled| !settled.has_room_at(stored)) {
+                return None;
+            }
             candidate.clear();
-            candidate.extend(around(places.draw(index, random) + DVec3::Z * crown.base_m));
-            grid.as_ref().is_none_or(|grid| candidate.iter().all(|piece| grid.is_free(piece)))
+            candidate.extend(around(center));
+            let crosses = |settled: &Settled<F>| !crown.overlap && settled.intersects(&candidate);
+            (!settled.as_ref().is_some_and(crosses)).then_some(stored)
         });
-        if !fits {
-            return Err(CrownError::NoRoom { placed: index, count: count as u64 });
-        }
-        // All pieces are of one size but for rounding.
-        let reach = || MARGIN * candidate.iter().map(Flat::reach).fold(0.0, f64::max);
-        let grid = grid.get_or_insert_with(|| Grid::new(reach(), count * candidate.len()));
-        candidate.drain(..).for_each(|piece| grid.add(piece));
+        let Some(center) = center else { return Err(no_room(crown, index, count as u64)) };
+        settled
+            .get_or_insert_with(|| Settled::new(crown, count, &candidate))
+            .add(center, &mut candidate);
     }
-    Ok(grid.map_or_else(Vec::new, |grid| grid.pieces))
+    Ok(settled.map_or_else(Vec::new, |settled| settled.pieces.into_items()))
+}
+
+fn no_room(crown: &CrownSpec, placed: u64, count: u64) -> CrownError {
+    let distance = crown.min_distance_m;
+    if distance == 0.0 {
+        return CrownError::NoRoom { placed, count };
+    }
+    // Equal fractions of the volume are filled if the cube of the distance falls as the number of leaves grows. The
+    // factor is for the rim, where a larger distance fits more leaves, and for saturation.
+    let possible = 0.85 * distance * (placed as f64 / count as f64).cbrt();
+    CrownError::NoRoomAtDistance { placed, count, distance, possible }
 }

@@ -28,6 +28,12 @@ pub enum CrownError {
          use smaller leaves, less leaf_area_m2, a larger crown or larger clumps, or leave out overlap"
     )]
     NoRoom { placed: u64, count: u64 },
+    #[error(
+        "min_distance_m is {distance}, and only {placed} of {count} leaves find a place so far from all others; \
+         at most about {possible:.2e} m is possible here: use that, less leaf_area_m2, larger leaves, a larger \
+         crown or larger clumps"
+    )]
+    NoRoomAtDistance { placed: u64, count: u64, distance: f64, possible: f64 },
     #[error("the crown has neither leaves nor a trunk; give leaf_area_m2 above 0 or a trunk")]
     Nothing,
     #[error("trunk.tip_diameter_m is {tip}; write 0 up to trunk.diameter_m = {foot}")]

@@ -52,7 +52,7 @@ pub(super) fn pieces(leaf: &LeafShape) -> u32 {
 /// `count` leaves of the crown.
 ///
 /// # Errors
-/// Leaves that do not fit without overlap where they are asked not to.
+/// Leaves that find no place apart from the others.
 pub(super) fn grow(
     crown: &CrownSpec,
     count: usize,
@@ -82,7 +82,7 @@ pub(super) fn grow(
                 [corners.map(DVec3::as_vec3)]
             }
         };
-        if !crown.overlap {
+        if !crown.has_independent_leaves() {
             return apart::place(crown, count, places, rhombus);
         }
         let rhombi = leaves.clone().map(|leaf| rhombus(leaf)(center(leaf)));
@@ -95,7 +95,7 @@ pub(super) fn grow(
                 let normal = normal(leaf).as_vec3();
                 move |center: DVec3| [Disc { center: center.as_vec3(), normal, radius }]
             };
-            let discs = if crown.overlap {
+            let discs = if crown.has_independent_leaves() {
                 let discs = leaves.map(|leaf| disc(leaf)(center(leaf)));
                 discs.collect::<Vec<_>>().into_flattened()
             } else {
@@ -129,7 +129,7 @@ pub(super) fn grow(
                     })
                 }
             };
-            Ok(quads(if crown.overlap {
+            Ok(quads(if crown.has_independent_leaves() {
                 leaves.flat_map_iter(|leaf| shoot(leaf)(center(leaf))).collect()
             } else {
                 apart::place(crown, count, places, shoot)?

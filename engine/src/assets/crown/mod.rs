@@ -3,6 +3,7 @@
 mod angles;
 mod apart;
 mod error;
+mod grid;
 mod heights;
 mod leaves;
 mod places;
@@ -58,6 +59,8 @@ pub struct CrownSpec {
     pub leaf: LeafShape,
     /// False if no leaf intersects another one.
     pub overlap: bool,
+    /// Minimum distance of the centres of two leaves, m; 0 if there is none.
+    pub min_distance_m: f64,
     /// Trunk from the ground up, if any.
     pub trunk: Option<Trunk>,
     /// Branches from the trunk into the crown, if any.
@@ -79,6 +82,7 @@ impl CrownSpec {
             leaf_angle,
             leaf,
             overlap,
+            min_distance_m,
             trunk,
             branches,
             seed,
@@ -96,10 +100,16 @@ impl CrownSpec {
             leaf_angle: leaf_angle.clone(),
             leaf: leaf.clone(),
             overlap: *overlap,
+            min_distance_m: *min_distance_m,
             trunk: trunk.clone(),
             branches: branches.clone(),
             seed: *seed,
         })
+    }
+
+    /// Returns whether the place of each leaf is independent of all others.
+    fn has_independent_leaves(&self) -> bool {
+        self.overlap && self.min_distance_m == 0.0
     }
 }
 
@@ -110,8 +120,9 @@ impl CrownSpec {
 /// uniform in what a clump shares with the outline. Normals follow the leaf angle distribution with
 /// uniform azimuths, and half of the fronts face down. There are `round(leaf area / area of a leaf)`
 /// leaves, of a size adjusted so that their total area is `leaf_area_m2` (to f32 rounding). Squares,
-/// rhombi and needles are two triangles each. Without `overlap`, leaves that would intersect an earlier one
-/// get another place, and keep their normal. Trunk and branches
+/// rhombi and needles are two triangles each. Leaves that would intersect an earlier one without
+/// `overlap`, or whose centre is nearer to that of an earlier one than `min_distance_m`, get another place and
+/// keep their normal. Trunk and branches
 /// are tapered, closed prisms, their corners on the circles of the given diameters; branches start
 /// on the trunk's axis and end near the outline.
 ///
@@ -143,6 +154,9 @@ fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
         shape::lengths(&crown.shape).into_iter().chain(leaves::lengths(&crown.leaf))
     {
         check_length(what, value)?;
+    }
+    if crown.min_distance_m != 0.0 {
+        check_length("min_distance_m", crown.min_distance_m)?;
     }
     if crown.base_m.is_nan() || crown.base_m.abs() > *LENGTHS.end() {
         return Err(CrownError::BadBase { value: crown.base_m });

@@ -22,6 +22,7 @@ pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut 
         wood_material,
         leaf_angle,
         overlap: _,
+        min_distance_m,
         seed: _,
     } = crown
     else {
@@ -35,6 +36,7 @@ pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut 
         check_clumps(path, clumps, branches.as_ref(), leaf_profile, report);
     }
     report.finite(&format!("{path}.base_m"), &[*base_m]);
+    report.at_least(&format!("{path}.min_distance_m"), *min_distance_m, 0.0);
     // A bare tree is a tree; a crown of nothing is not.
     if trunk.is_some() {
         report.at_least(&format!("{path}.leaf_area_m2"), *leaf_area_m2, 0.0);

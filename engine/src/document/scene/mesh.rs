@@ -76,10 +76,14 @@ choice! {
             leaf_angle: LeafAngle = LeafAngle::Spherical,
             /// Shape and size of a leaf.
             leaf: LeafShape => "Disc(radius_m: 0.05)",
-            /// False: no leaf intersects another leaf of the crown, as in the scenes of RAMI. Leaves keep
+            /// False: no leaf intersects another leaf of the crown. Leaves keep
             /// their number and inclinations; those that would overlap stand elsewhere in the crown, or in
             /// their clump. The needles of one shoot may cross each other, and so may leaves of two instances.
             overlap: bool = true,
+            /// Minimum distance between the centres of two leaves of the crown, m; of shoots, between the
+            /// middles of their twigs. Leaves that are nearer to an earlier one stand elsewhere, as with
+            /// `overlap: false`. Leaves of a diameter up to this distance never intersect.
+            min_distance_m: f64 = 0.0,
             /// Material of the leaves.
             leaf_material: String => r#""leaf""#,
             /// Trunk, if any.

@@ -152,6 +152,68 @@ fn crowns_without_room_are_errors_soon() {
     }
 }
 
+/// Smallest distance of two points [m].
+fn nearest(points: &[DVec3]) -> f64 {
+    let pairs =
+        points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(move |b| (a, b)));
+    pairs.map(|(a, b)| a.distance(*b)).fold(f64::INFINITY, f64::min)
+}
+
+fn centers(mesh: &Mesh) -> Vec<DVec3> {
+    mesh.discs.iter().map(|disc| disc.center.as_dvec3()).collect()
+}
+
+#[test]
+fn centers_of_leaves_keep_their_minimum_distance() {
+    for shape in shapes() {
+        let independent = CrownSpec { leaf_area_m2: 1.0, ..spec(shape.clone(), DISC) };
+        let crown = CrownSpec { min_distance_m: 0.2, ..independent.clone() };
+        let (mesh, all) = (grow_crown(&crown).unwrap(), grow_crown(&independent).unwrap());
+        assert_eq!(mesh.discs.len(), all.discs.len());
+        assert!(nearest(&centers(&all)) < 0.1, "{shape:?}");
+        assert!(nearest(&centers(&mesh)) >= 0.2, "{shape:?}: {}", nearest(&centers(&mesh)));
+        // Leaves that are apart from those before them stay; all keep their normal.
+        let stay = mesh.discs.iter().zip(&all.discs).filter(|(a, b)| a.center == b.center).count();
+        assert!(2 * stay > mesh.discs.len(), "{shape:?}: {stay}");
+        assert!(mesh.discs.iter().zip(&all.discs).all(|(a, b)| a.normal == b.normal));
+    }
+    // Squares of 0.1 m, whose centres are the means of their corners.
+    let crown =
+        CrownSpec { leaf_area_m2: 5.0, min_distance_m: 0.25, ..spec(shapes()[0].clone(), SQUARE) };
+    let centers: Vec<DVec3> = quads(&grow_crown(&crown).unwrap())
+        .iter()
+        .map(|[a, b, c, d]| 0.25 * (a + b + c + d).as_dvec3())
+        .collect();
+    assert!((0.2499..0.26).contains(&nearest(&centers)), "{}", nearest(&centers));
+    // With both conditions neither fails.
+    let crown = CrownSpec {
+        min_distance_m: 0.2,
+        ..apart(shapes()[0].clone(), LeafShape::Disc { radius_m: 0.2 }, 60.0)
+    };
+    let mesh = grow_crown(&crown).unwrap();
+    assert_eq!(meeting(&mesh.discs, 1, discs_meet), 0);
+    assert!(nearest(&self::centers(&mesh)) >= 0.2);
+}
+
+#[test]
+fn distances_without_room_are_errors_with_one_that_has_room() {
+    let crown = CrownSpec { min_distance_m: 0.5, ..spec(shapes()[0].clone(), DISC) };
+    let error = grow_crown(&crown).unwrap_err();
+    let AssetError::Crown(CrownError::NoRoomAtDistance { placed, count, possible, .. }) = error
+    else {
+        panic!("{error}");
+    };
+    assert!((100..count).contains(&placed), "{placed} of {count}");
+    let text = error.to_string();
+    assert!(text.contains("min_distance_m is 0.5, and only"), "{text}");
+    grow_crown(&CrownSpec { min_distance_m: possible, ..crown.clone() }).unwrap();
+    assert!(grow_crown(&CrownSpec { min_distance_m: 1.25 * possible, ..crown }).is_err());
+    for bad in [-0.1, f64::NAN, 1e-9] {
+        let crown = CrownSpec { min_distance_m: bad, ..spec(shapes()[0].clone(), DISC) };
+        assert!(grow_crown(&crown).unwrap_err().to_string().contains("min_distance_m is"), "{bad}");
+    }
+}
+
 #[test]
 fn discs_intersect_where_their_chords_do() {
     let disc = |x: f32, z: f32, tilt: f64| Disc {

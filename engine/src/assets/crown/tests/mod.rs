@@ -22,6 +22,7 @@ fn spec(shape: CrownShape, leaf: LeafShape) -> CrownSpec {
         leaf_angle: LeafAngle::Spherical,
         leaf,
         overlap: true,
+        min_distance_m: 0.0,
         trunk: None,
         branches: None,
         seed: SEED,
@@ -349,7 +350,7 @@ fn what_cannot_grow_is_an_error() {
 
 #[test]
 fn the_scene_language_describes_the_same_crown() {
-    let crown = tree(shapes()[2].clone());
+    let crown = CrownSpec { overlap: false, min_distance_m: 0.05, ..tree(shapes()[2].clone()) };
     let CrownSpec {
         shape,
         base_m,
@@ -359,6 +360,7 @@ fn the_scene_language_describes_the_same_crown() {
         leaf_angle,
         leaf,
         overlap,
+        min_distance_m,
         trunk,
         branches,
         seed,
@@ -372,6 +374,7 @@ fn the_scene_language_describes_the_same_crown() {
         leaf_angle,
         leaf,
         overlap,
+        min_distance_m,
         leaf_material: "leaf".to_owned(),
         trunk,
         branches,
