@@ -218,5 +218,7 @@ fn no_room(crown: &CrownSpec, placed: u64, count: u64) -> CrownError {
     // Equal fractions of the volume are filled if the cube of the distance falls as the number of leaves grows. The
     // factor is for the rim, where a larger distance fits more leaves, and for saturation.
     let possible = 0.85 * distance * (placed as f64 / count as f64).cbrt();
+    // Two digits.
+    let possible = format!("{possible:.1e}").parse().unwrap_or(possible);
     CrownError::NoRoomAtDistance { placed, count, distance, possible }
 }

@@ -30,7 +30,7 @@ pub enum CrownError {
     NoRoom { placed: u64, count: u64 },
     #[error(
         "min_distance_m is {distance}, and only {placed} of {count} leaves find a place so far from all others; \
-         at most about {possible:.2e} m is possible here: use that, less leaf_area_m2, larger leaves, a larger \
+         about {possible} m is possible here: use that, less leaf_area_m2, larger leaves, a larger \
          crown or larger clumps"
     )]
     NoRoomAtDistance { placed: u64, count: u64, distance: f64, possible: f64 },
