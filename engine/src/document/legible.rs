@@ -23,9 +23,10 @@ pub(crate) fn legible(text: &str) -> Cow<'_, str> {
     let escaped: String = text
         .chars()
         .flat_map(|character| {
-            let (escape, plain) = match character.is_control() {
-                true => (Some(character.escape_default()), None),
-                false => (None, Some(character)),
+            let (escape, plain) = if character.is_control() {
+                (Some(character.escape_default()), None)
+            } else {
+                (None, Some(character))
             };
             escape.into_iter().flatten().chain(plain)
         })
