@@ -147,6 +147,7 @@ fn films_hold_what_they_say() {
     let stage = &stage_file(&file, &Options::default()).expect("a stage").stage;
     let optics = Orthographic {
         footprint: Footprint::WholeScene,
+        pixel: None,
         view: View { zenith: 0.3, azimuth: 0.0 },
         plane: None,
     };

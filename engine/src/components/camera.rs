@@ -18,6 +18,8 @@ pub enum Optics {
 pub struct Orthographic {
     /// What the image shows.
     pub footprint: Footprint,
+    /// Side of a square pixel, m: the footprint grows to whole pixels around its middle.
+    pub pixel: Option<f64>,
     /// Where the sensor is.
     pub view: View,
     /// Only light that leaves through it is seen.

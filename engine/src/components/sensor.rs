@@ -94,7 +94,7 @@ pub enum ImageSamples {
 /// An image of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageSensor {
-    /// Columns and rows.
+    /// Columns and rows; where the projection has a pixel size, they follow from the stage.
     pub size: UVec2,
     /// How its points become rays.
     pub optics: Optics,

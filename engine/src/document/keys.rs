@@ -254,11 +254,12 @@ mod tests {
 
     #[test]
     fn a_key_has_its_default_and_a_required_one_an_example() {
+        let camera = keys_about("Perspective").expect("a sensor");
+        let required = "| `size_px` | (whole number, whole number) | required, e.g. `(256, 192)` |";
+        assert!(camera.contains(required), "{camera}");
         let page = keys_about("Orthographic").expect("a sensor");
         assert!(page.contains("### Orthographic (Sensor)"), "{page}");
-        assert!(page.contains(
-            "| `size_px` | (whole number, whole number) | required, e.g. `(256, 256)` |"
-        ));
+        assert!(page.contains("Columns and rows; either this or `pixel_m` is required."), "{page}");
         assert!(page.contains("| `azimuth_deg` | number | `180.0` |"), "{page}");
         let about = keys_about("AZIMUTH_deg").expect("a key");
         assert!(about.matches("| `azimuth_deg` |").count() > 2, "{about}");

@@ -22,7 +22,9 @@ mod sun;
 mod syntax;
 
 pub use check::check;
-pub(crate) use check::{HEIGHT, IRRADIANCE, LENGTH, Range, SCALE, check_maps};
+pub(crate) use check::{
+    HEIGHT, IRRADIANCE, LENGTH, Range, SCALE, check_maps, rounded_up, too_many_pixels,
+};
 pub use describe::json_schema;
 pub(crate) use diagnostic::suggestion;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};

@@ -177,7 +177,7 @@ pub(super) fn georeference(
     (is_nadir && north_up).then(|| Georeference {
         west: context.origin.0 + corner.x,
         north: context.origin.1 + corner.y,
-        pixel_width: extent.x / f64::from(sensor.size.x),
-        pixel_height: extent.y / f64::from(sensor.size.y),
+        pixel_width: optics.pixel.unwrap_or(extent.x / f64::from(sensor.size.x)),
+        pixel_height: optics.pixel.unwrap_or(extent.y / f64::from(sensor.size.y)),
     })
 }

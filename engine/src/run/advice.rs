@@ -1,6 +1,8 @@
 //! What to write for a sensor that takes too much memory.
 
-use crate::components::{Layers, Per, PhotonMeasure, Sensor};
+use crate::components::{ImageSensor, Layers, Optics, Orthographic, Per, PhotonMeasure, Sensor};
+use crate::document::rounded_up;
+use crate::geometry::PixelGrid;
 
 /// A sensor that takes less, and what makes it so.
 pub(super) struct Smaller {
@@ -16,11 +18,7 @@ pub(super) struct Smaller {
 pub(super) fn smaller(sensor: &Sensor, measure: usize, share: f64) -> Option<Smaller> {
     let mut sensor = sensor.clone();
     let (key, text) = match &mut sensor {
-        Sensor::Image(image) => {
-            let size = (image.size.as_dvec2() * share.sqrt()).as_uvec2();
-            image.size = Some(size).filter(|size| size.min_element() > 0)?;
-            (".size_px".to_owned(), format!("`size_px: ({}, {})`", size.x, size.y))
-        }
+        Sensor::Image(image) => fewer_pixels(image, share)?,
         Sensor::Directions(directions) => {
             let views = (directions.views.len() as f64 * share) as usize;
             directions.views.truncate(views);
@@ -32,6 +30,19 @@ pub(super) fn smaller(sensor: &Sensor, measure: usize, share: f64) -> Option<Sma
         }
     };
     Some(Smaller { sensor, key, text })
+}
+
+/// Gives an image a share of its pixels; returns the key and what to write there.
+fn fewer_pixels(image: &mut ImageSensor, share: f64) -> Option<(String, String)> {
+    if let Optics::Orthographic(Orthographic { pixel: Some(side), .. }) = &mut image.optics {
+        let extent = image.size.as_dvec2() * *side;
+        *side = rounded_up(*side / share.sqrt());
+        image.size = PixelGrid::covering(extent, *side).counts.as_uvec2();
+        return Some((".pixel_m".to_owned(), format!("`pixel_m: {side:?}`")));
+    }
+    let size = (image.size.as_dvec2() * share.sqrt()).as_uvec2();
+    image.size = Some(size).filter(|size| size.min_element() > 0)?;
+    Some((".size_px".to_owned(), format!("`size_px: ({}, {})`", size.x, size.y)))
 }
 
 /// Makes a measure count in a share of its cells.
@@ -58,23 +69,4 @@ fn coarser(measure: &mut PhotonMeasure, share: f64) -> Option<String> {
         }
         _ => return None,
     })
-}
-
-/// The same or up to a tenth more, with two digits.
-fn rounded_up(value: f64) -> f64 {
-    format!("{:.1e}", 1.05 * value).parse().unwrap_or(value)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::rounded_up;
-
-    #[test]
-    fn numbers_are_rounded_up_to_two_digits() {
-        for value in [1.0, 1.01, 1.049, 2.34, 9.95, 0.3, 1e-9, 7.77e5] {
-            let rounded = rounded_up(value);
-            assert!((1.0..1.11).contains(&(rounded / value)), "{value}: {rounded}");
-            assert!(format!("{rounded:e}").len() <= "1.2e-10".len(), "{rounded}");
-        }
-    }
 }

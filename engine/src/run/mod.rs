@@ -11,6 +11,7 @@ mod footprint;
 mod forecast;
 mod growth;
 mod photons;
+mod pixels;
 mod provenance;
 mod sensors;
 mod staging;
@@ -201,6 +202,7 @@ fn checked(
         let mut spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
         progress.stage("building");
         let stage = staged(&spawned, &reading.scene, None, options.free_memory())?;
+        pixels::count_pixels(&mut spawned, &stage)?;
         let context = context(&reading.scene, &stage);
         let sensors = sensors::in_order(&spawned.world);
         check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
@@ -289,7 +291,7 @@ fn run_kept(
     }
     progress.stage("loading");
     let last = kept.take().filter(|kept| kept.serves(scene));
-    let (spawned, built) = match last {
+    let (mut spawned, built) = match last {
         Some(Kept { spawned, geometry, .. }) => {
             (respawn(spawned, scene, folder).map_err(Failure::Problems)?, Some(geometry))
         }
@@ -304,6 +306,7 @@ fn run_kept(
     clock.lap("spawn");
     progress.stage("building");
     let stage = staged(&spawned, scene, built, options.free_memory())?;
+    pixels::count_pixels(&mut spawned, &stage)?;
     clock.lap("build");
     let context = context(scene, &stage);
     progress.stage("tracing");

@@ -9,6 +9,7 @@ use super::Spawner;
 use super::meshes::Prototype;
 use crate::components::{Placement, TerrainPatch};
 use crate::document::{Cover, Diagnostic, Mesh, Sensor, Terrain};
+use crate::geometry::PixelGrid;
 use crate::terrain::Ground;
 
 /// Ground that lies less below other ground is the same but for rounding, m.
@@ -134,6 +135,7 @@ impl Spawner<'_> {
         let (low, high) = (corner, corner + size);
         for (name, sensor) in &self.scene.sensors {
             let Sensor::Orthographic {
+                pixel_m,
                 extent_m: Some(extent),
                 cover: None::<Cover>,
                 center_m,
@@ -161,7 +163,9 @@ impl Spawner<'_> {
             if *zenith_deg != 0.0 || quarters.fract() != 0.0 {
                 continue;
             }
-            let mut half = 0.5 * DVec2::from(*extent);
+            let extent = DVec2::from(*extent);
+            let shown = pixel_m.map_or(extent, |side| PixelGrid::covering(extent, side).extent);
+            let mut half = 0.5 * shown;
             if quarters % 2.0 != 0.0 {
                 half = half.yx();
             }

@@ -26,16 +26,17 @@ impl Spawner<'_> {
             } => {
                 let per_pixel = ImageSamples::PerPixel(samples_per_px.unwrap_or(SAMPLES));
                 let samples = samples_per_m2.map_or(per_pixel, ImageSamples::PerArea);
-                (size_px, samples, measure, picture, system)
+                // `run/pixels.rs` counts pixels of a given side once the stage is known.
+                (size_px.unwrap_or((1, 1)), samples, measure, picture, system)
             }
             Sensor::Perspective { size_px, samples_per_px, measure, picture, system, .. }
             | Sensor::Fisheye { size_px, samples_per_px, measure, picture, system, .. } => {
-                (size_px, ImageSamples::PerPixel(*samples_per_px), measure, picture, system)
+                (*size_px, ImageSamples::PerPixel(*samples_per_px), measure, picture, system)
             }
             Sensor::Directions { .. } | Sensor::Photons { .. } => return None,
         };
         Some(ImageSensor {
-            size: UVec2::from(*size),
+            size: UVec2::from(size),
             optics: self.camera(sensor)?,
             samples,
             until: stops(sensor),
@@ -63,6 +64,7 @@ impl Spawner<'_> {
     fn camera(&self, sensor: &Sensor) -> Option<Optics> {
         Some(match sensor {
             Sensor::Orthographic {
+                pixel_m,
                 extent_m,
                 cover,
                 center_m,
@@ -82,7 +84,7 @@ impl Spawner<'_> {
                 };
                 let view = view(*zenith_deg, *azimuth_deg);
                 let plane = self.plane(virtual_plane.as_ref());
-                Optics::Orthographic(Orthographic { footprint, view, plane })
+                Optics::Orthographic(Orthographic { footprint, pixel: *pixel_m, view, plane })
             }
             Sensor::Perspective {
                 position_m,

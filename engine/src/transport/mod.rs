@@ -34,7 +34,7 @@ mod weights;
 
 use backward::Path;
 pub use beside::LightBeside;
-pub use camera::{Camera, Fisheye, Perspective, Projection, footprint};
+pub use camera::{Camera, Fisheye, Perspective, Projection, footprint, wanted_footprint};
 pub use components::{
     COMPONENT_COLUMNS, ComponentsFilm, GAP_COLUMN, GAP_RINGS, image_components_film,
 };

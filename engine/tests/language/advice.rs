@@ -26,7 +26,7 @@ const EMPTY: &str = "Scene(
     sky: Isotropic,
     thermal_sky: Radiance,
     sensors: {
-        \"a\": Orthographic(cover: WholeScene, picture: Bands), \"b\": Directions,
+        \"a\": Orthographic(size_px: (8, 8), cover: WholeScene, picture: Bands), \"b\": Directions,
         \"c\": Directions(views: CrossPlane, until: RelError),
         \"d\": Directions(views: List, until: Seconds),
         \"e\": Directions(views: List, until: Samples),

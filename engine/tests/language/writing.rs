@@ -315,7 +315,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
     let flags = || any::<(bool, bool, u32)>();
     prop_oneof![
         (
-            any::<(u32, u32)>(),
+            (option(any::<(u32, u32)>()), option(number())),
             (option(pair()), cover()),
             option(pair()),
             pair(),
@@ -325,7 +325,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
         )
             .prop_map(
                 |(
-                    size_px,
+                    (size_px, pixel_m),
                     (extent_m, cover),
                     center_m,
                     angles,
@@ -335,6 +335,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                 )| {
                     Sensor::Orthographic {
                         size_px,
+                        pixel_m,
                         extent_m,
                         cover,
                         center_m,

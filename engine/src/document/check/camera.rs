@@ -3,8 +3,8 @@
 use super::super::diagnostic::unknown_name;
 use super::super::scene::{Cover, FisheyeProjection, Look, Picture, Scene, Sensor, Terrain};
 use super::Report;
+use super::pixels::{check_pixels, check_size};
 use super::plane::check_plane;
-use super::sensor::VALUES;
 
 type Point = (f64, f64, f64);
 
@@ -17,6 +17,7 @@ pub(super) fn check_orthographic(
     let Sensor::Orthographic {
         until: _,
         size_px,
+        pixel_m,
         extent_m,
         cover,
         center_m,
@@ -34,7 +35,7 @@ pub(super) fn check_orthographic(
     };
     check_plane(path, virtual_plane.as_ref(), scene, report);
     let at = |key: &str| format!("{path}.{key}");
-    check_size(path, *size_px, scene, report);
+    check_pixels(path, (*size_px, *pixel_m), *extent_m, (scene, report));
     check_picture(path, picture, scene, report);
     if let Some((width, height)) = extent_m {
         report.above_zero(&at("extent_m[0]"), *width);
@@ -72,8 +73,14 @@ pub(super) fn check_orthographic(
         let message = "`samples_per_m2` and `samples_per_px` both say how many samples";
         report.error(&at("samples_per_m2"), message, "take one of the two out");
     }
-    if let Some((width, height)) = extent_m {
-        let pixel = width * height / (f64::from(size_px.0) * f64::from(size_px.1));
+    let pixel = match (size_px, pixel_m, extent_m) {
+        (_, Some(side), _) => Some(side * side),
+        (Some((columns, rows)), None, Some((width, height))) => {
+            Some(width * height / (f64::from(*columns) * f64::from(*rows)))
+        }
+        _ => None,
+    };
+    if let Some(pixel) = pixel {
         let most = f64::from(MOST_SAMPLES);
         if pixel.is_finite() && density * pixel > most {
             let message = format!("this makes more than {most} samples in a pixel of {pixel} m²");
@@ -192,24 +199,6 @@ pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: 
 
 /// Samples that a pixel may have.
 const MOST_SAMPLES: u32 = 1 << 24;
-
-fn check_size(path: &str, (columns, rows): (u32, u32), scene: &Scene, report: &mut Report<'_>) {
-    let at = |key: &str| format!("{path}.{key}");
-    for (key, pixels) in [("size_px[0]", columns), ("size_px[1]", rows)] {
-        if !(1..=65536).contains(&pixels) {
-            let message = format!("expected 1 to 65536 pixels, found {pixels}");
-            report.error(&at(key), message, "`size_px` is (columns, rows)");
-        }
-    }
-    let values = f64::from(columns) * f64::from(rows) * scene.bands.len() as f64;
-    if values > VALUES {
-        let message = format!(
-            "{columns} x {rows} pixels in {} bands are more than an image may hold",
-            scene.bands.len()
-        );
-        report.error(&at("size_px"), message, format!("keep the product below {VALUES}"));
-    }
-}
 
 /// Bands between the ends of the visible that make colours.
 const COLOUR_BANDS: usize = 10;

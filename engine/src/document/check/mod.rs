@@ -6,6 +6,7 @@ mod ground;
 mod instances;
 mod light;
 mod mesh;
+mod pixels;
 mod plane;
 mod program;
 mod range;
@@ -17,6 +18,7 @@ mod thermal;
 use super::diagnostic::{Diagnostic, unknown_name};
 use super::scene::{Map, Scene, Transport};
 
+pub(crate) use pixels::{rounded_up, too_many_pixels};
 pub(crate) use range::{HEIGHT, IRRADIANCE, LENGTH, Range, SCALE};
 pub(crate) use sensor::check_maps;
 

@@ -16,8 +16,11 @@ choice! {
     pub enum Sensor ("a sensor") {
         /// Parallel-projection image.
         Orthographic {
-            /// Columns and rows.
-            size_px: (u32, u32) => "(256, 256)",
+            /// Columns and rows; either this or `pixel_m` is required.
+            size_px: Option<(u32, u32)> => "(256, 256)" = None,
+            /// Side of a square pixel in the plane perpendicular to the view, m, in place of `size_px`. A
+            /// footprint that is no whole number of pixels grows around its middle to the next one.
+            pixel_m: Option<f64> = None,
             /// Width and height of the footprint in the plane perpendicular to the view, m.
             extent_m: Option<(f64, f64)> = None,
             /// `WholeScene`, in place of `extent_m` and `center_m`.

@@ -12,7 +12,7 @@ use crate::components::{ImageSamples, ImageSensor, Optics};
 use crate::extract::Stage;
 
 pub use fisheye::Fisheye;
-pub use orthographic::{Projection, footprint};
+pub use orthographic::{Projection, footprint, wanted_footprint};
 pub use perspective::Perspective;
 
 /// What turns points of an image into rays.

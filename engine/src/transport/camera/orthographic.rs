@@ -3,6 +3,7 @@ use glam::{DMat2, DMat3, DVec2, DVec3, UVec2};
 use crate::accel::Ray;
 use crate::components::{Footprint, Orthographic, View};
 use crate::extract::Stage;
+use crate::geometry::PixelGrid;
 use crate::transport::ReferencePlane;
 
 /// A parallel projection: a parallelogram in space through which light in one direction is seen.
@@ -186,6 +187,13 @@ fn axes(view: View) -> (DVec3, DVec3) {
 /// The point in the middle of an orthographic image, and the image's width and height, m.
 #[must_use]
 pub fn footprint(sensor: &Orthographic, stage: &Stage) -> (DVec3, DVec2) {
+    let (middle, extent) = wanted_footprint(sensor, stage);
+    (middle, sensor.pixel.map_or(extent, |side| PixelGrid::covering(extent, side).extent))
+}
+
+/// The footprint before it grows to whole pixels.
+#[must_use]
+pub fn wanted_footprint(sensor: &Orthographic, stage: &Stage) -> (DVec3, DVec2) {
     match sensor.footprint {
         Footprint::Rectangle { extent, center } => (center.extend(stage.ground_at(center)), extent),
         Footprint::WholeScene => {

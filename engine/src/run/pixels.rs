@@ -1,0 +1,54 @@
+//! Number of pixels of images whose pixels have a given side.
+
+use crate::components::{Name, Optics, Sensor};
+use crate::document::{Diagnostic, too_many_pixels};
+use crate::extract::Stage;
+use crate::geometry::PixelGrid;
+use crate::spawn::Spawned;
+use crate::transport::wanted_footprint;
+
+use super::Failure;
+
+/// Counts the pixels of each parallel projection that names their side: what the whole scene covers is
+/// known only of a stage. Adds a note for each footprint that grows to whole pixels.
+///
+/// # Errors
+/// If an image has more pixels than it may have.
+pub(super) fn count_pixels(spawned: &mut Spawned, stage: &Stage) -> Result<(), Failure> {
+    let bands = stage.light.irradiance.len();
+    let mut problems: Vec<Diagnostic> = Vec::new();
+    let mut notes: Vec<String> = Vec::new();
+    for (name, sensor) in spawned.world.query_mut::<(&Name, &mut Sensor)>() {
+        let Sensor::Image(image) = sensor else { continue };
+        let Optics::Orthographic(optics) = &image.optics else { continue };
+        let Some(side) = optics.pixel else { continue };
+        let (_, extent) = wanted_footprint(optics, stage);
+        let path = format!("sensors.{}.pixel_m", name.0);
+        if let Some(problem) = too_many_pixels(&path, extent, side, bands) {
+            problems.push(problem);
+            continue;
+        }
+        let grid = PixelGrid::covering(extent, side);
+        image.size = grid.counts.as_uvec2();
+        if grid.has_grown {
+            notes.push(format!(
+                "sensors.{}: {} x {} m are not whole pixels of {side} m; the image shows {} x {} m around the same middle, {} x {} pixels",
+                name.0,
+                shown(extent.x),
+                shown(extent.y),
+                shown(grid.extent.x),
+                shown(grid.extent.y),
+                image.size.x,
+                image.size.y
+            ));
+        }
+    }
+    notes.sort_unstable();
+    spawned.notes.extend(notes);
+    if problems.is_empty() { Ok(()) } else { Err(Failure::Problems(problems)) }
+}
+
+/// A length without the rounding of its computation, m.
+fn shown(length: f64) -> f64 {
+    (length * 1e6).round() / 1e6
+}
