@@ -6,6 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, bail};
 use sunfleck::output::{Results, Written};
+use sunfleck::products::{Night, Point};
 use sunfleck::run::Share;
 use sunfleck::{document, output, run};
 
@@ -160,37 +161,54 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let results = Results::open(&folder, "sweep", scene, arguments.out.force)?;
     let mut sweep = run::Sweep::read(scene, &run_options(arguments))?;
     let points = sweep.points().to_vec();
-    let mut ran = 0;
+    let (mut is_first, mut ran, mut dark) = (true, 0, 0);
     for index in sweep.order().to_vec() {
         let point = &points[index];
         if output::is_complete(point, &folder) {
             continue;
         }
+        warn_night(point);
         let bars = Bars::new();
         bars.heading(&format!("point {} of {}: {}", index + 1, points.len(), point.name()));
         let report = sweep.run(point, &bars);
         bars.clear();
         let report = report?;
-        if ran == 0 {
-            warn(&report.warnings);
+        if is_first {
+            let is_of_night =
+                |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
+            let others: Vec<String> =
+                report.warnings.iter().filter(|text| !is_of_night(text)).cloned().collect();
+            warn(&others);
             // From now on the folder says which scene its points are of.
             results.write_texts(&sweep.report(), &[])?;
         }
         output::write_point(&report, point, &folder)?;
-        ran += 1;
+        is_first = false;
+        if point.darkness().is_some() { dark += 1 } else { ran += 1 }
     }
-    let table = ("sweep.csv", output::sweep_table(&points, &folder)?);
-    let written = results.write_texts(&sweep.report(), &[table])?;
+    let table = output::sweep_table(&points, &folder)?;
+    let daily = output::daily_sums(&sweep.days(), &points, &folder)?;
+    let written = results.write_sweep(&sweep.report(), &points, &table, daily.as_ref())?;
     print(&format!(
-        "{}: {ran} {} run, {} kept; geometry built {}\n",
+        "{}: {ran} {} run, {}{} kept; geometry built {}\n",
         written.folder.join("sweep.csv").display(),
         if ran == 1 { "point" } else { "points" },
-        points.len() - ran,
+        if dark > 0 { format!("{dark} without light, ") } else { String::new() },
+        points.len() - ran - dark,
         match sweep.builds() {
             1 => "once".to_owned(),
             builds => format!("{builds} times"),
         }
     ))
+}
+
+/// Says what a sun below the horizon means at a point of a sweep.
+fn warn_night(point: &Point) {
+    match &point.night {
+        Some(Night::Dark(why)) => warn(&[format!("at {}: nothing is traced: {why}", point.name())]),
+        Some(Night::WithoutSun(what)) => warn(&[format!("at {}: {what}", point.name())]),
+        None => {}
+    }
 }
 
 fn run_options(arguments: &Run) -> run::Options {

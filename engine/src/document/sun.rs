@@ -2,34 +2,139 @@ use solar_positioning::time::JulianDate;
 use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
 
 use super::Diagnostic;
-use super::scene::{Sun, SunPosition};
+use super::read::Reading;
+use super::scene::{Scene, Sky, Sun, SunPosition};
 
 const AT: &str = "sun.position";
 
+/// Zenith angle of the horizon, degrees.
+const HORIZON_DEG: f64 = 90.0;
+
 impl Sun {
     /// Zenith angle and azimuth clockwise from north, degrees; `None` where the scene does not say,
-    /// or where the sun is not above the horizon.
+    /// or where its disc is not wholly above the horizon.
     #[must_use]
     pub fn angles_deg(&self) -> Option<(f64, f64)> {
         match &self.position {
             None => self.zenith_deg.map(|zenith| (zenith, self.azimuth_deg)),
-            Some(_) => self.placed().ok(),
+            Some(_) => self.placed().ok().filter(|(zenith, _)| *zenith < self.lowest_deg()),
         }
     }
 
-    /// Zenith angle and azimuth from place and time.
+    /// Azimuth clockwise from north, degrees, above and below the horizon; `None` where the scene does
+    /// not say.
+    #[must_use]
+    pub fn known_azimuth_deg(&self) -> Option<f64> {
+        match &self.position {
+            None => self.zenith_deg.map(|_| self.azimuth_deg),
+            Some(_) => self.placed().ok().map(|(_, azimuth)| azimuth),
+        }
+    }
+
+    /// Angle of its middle below the horizon, degrees; `None` where its disc is wholly above it, or where
+    /// no place and time are known.
+    #[must_use]
+    pub fn depth_deg(&self) -> Option<f64> {
+        let (zenith, _) = self.position.is_some().then(|| self.placed().ok())??;
+        (zenith >= self.lowest_deg()).then_some(zenith - HORIZON_DEG)
+    }
+
+    /// Zenith angle at which its disc touches the horizon, degrees.
+    fn lowest_deg(&self) -> f64 {
+        HORIZON_DEG - 0.5 * self.disc_deg
+    }
+
+    /// Time of day of its position, hours of its clock.
+    #[must_use]
+    pub fn hour(&self) -> Option<f64> {
+        let SunPosition::Spa { time: (hour, minute, second), .. } = self.position.as_ref()?;
+        Some(hour + minute / 60.0 + second / 3600.0)
+    }
+
+    /// The same sun at another time of its day, hours of its clock.
+    #[must_use]
+    pub fn at_hour(&self, new_hour: f64) -> Self {
+        let mut sun = self.clone();
+        if let Some(SunPosition::Spa { time, .. }) = &mut sun.position {
+            // A clock may show 24 hours and some minutes.
+            *time = (new_hour.min(24.0), 60.0 * (new_hour - 24.0).max(0.0), 0.0);
+        }
+        sun
+    }
+
+    /// Time of day between `low` and `high` at which it crosses the horizon, by bisection; it is above the
+    /// horizon at one of the two.
+    #[must_use]
+    pub fn hour_of_horizon(&self, low: f64, high: f64) -> f64 {
+        let is_up = |hour: f64| self.at_hour(hour).depth_deg().is_none();
+        let is_up_first = is_up(low);
+        let (mut low, mut high) = (low, high);
+        // 2⁻⁴⁰ of a day is less than a microsecond.
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if is_up(middle) == is_up_first {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+
+    /// Zenith angle and azimuth from place and time, degrees, also below the horizon.
     pub(super) fn placed(&self) -> Result<(f64, f64), Box<Diagnostic>> {
         let Some(position) = &self.position else {
             return Err(Box::new(Diagnostic::error(AT, "there is no position")));
         };
-        let (zenith, azimuth) = spa(position)?;
-        if zenith >= 90.0 {
-            let below = zenith - 90.0;
-            let message = format!("the sun is {below:.2}° below the horizon then");
+        spa(position)
+    }
+}
+
+impl Scene {
+    /// Returns whether there is light to measure without the sun: a sky with an irradiance of its own, or
+    /// emission in the bands.
+    #[must_use]
+    pub fn has_light_at_night(&self) -> bool {
+        matches!(self.sky, Sky::Isotropic { .. }) || self.measures_emission()
+    }
+
+    /// A diagnostic if the sun is below the horizon: a warning where other light is left, an error where
+    /// none is.
+    pub(super) fn night(&self) -> Option<Diagnostic> {
+        let below = self.sun.as_ref().and_then(Sun::depth_deg)?;
+        let message = if below < 0.0 {
+            "the horizon cuts the disc of the sun then".to_owned()
+        } else {
+            format!("the sun is {below:.2}° below the horizon then")
+        };
+        Some(if self.has_light_at_night() {
+            let message = format!("{message}: the scene is traced without it");
+            Diagnostic::warning(AT, message).help(
+                "sky and emission are what is left; where neither lights a band, reflectance factors, albedo \
+                 and absorbed fractions have no value",
+            )
+        } else {
             let help = "write a time of day, or leave the sun out and write a sky";
-            return Err(Box::new(Diagnostic::error(AT, message).help(help)));
-        }
-        Ok((zenith, azimuth))
+            Diagnostic::error(AT, message).help(help)
+        })
+    }
+}
+
+impl Reading {
+    /// Returns why a scene without any other error cannot be traced at night: the sun is below the horizon
+    /// and nothing else gives light.
+    #[must_use]
+    pub fn darkness(&self) -> Option<String> {
+        let mut errors = self.diagnostics.iter().filter(|one| one.is_error());
+        let (first, None) = (errors.next()?, errors.next()) else { return None };
+        let night = self.scene.night().filter(Diagnostic::is_error)?;
+        (first.path == AT && first.message == night.message).then_some(night.message)
+    }
+
+    /// Returns what a scene that is traced without its sun warns of.
+    #[must_use]
+    pub fn night_warning(&self) -> Option<String> {
+        self.scene.night().filter(|night| !night.is_error()).map(|night| night.message)
     }
 }
 

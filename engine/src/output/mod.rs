@@ -8,6 +8,7 @@ mod axes;
 mod chart;
 mod classification;
 mod colour;
+mod daily;
 mod envi;
 mod exr;
 mod figure;
@@ -38,6 +39,7 @@ use envi::Raster;
 use crate::products::{Image, Product, Report};
 
 pub use axes::{Axes, Place};
+pub use daily::{DailySums, daily_sums};
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
 pub use picture::Picture;

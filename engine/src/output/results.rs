@@ -3,11 +3,12 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use super::daily::{self, DailySums};
 use super::manifest::{Manifest, relative};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
 use super::{OutputError, names, put_products, summary};
-use crate::products::{Origin, Report};
+use crate::products::{Origin, Point, Report};
 
 /// A folder that results of a command for a scene are written to, as one set of files.
 ///
@@ -110,6 +111,32 @@ impl Results {
             let head = Head::of(report, self.command, way);
             let head = head.with_files(staging.names());
             staging.file("summary.json", |file| summary::write_head(&head, file))?;
+            Ok(replaced(staging, folder, self.command, report))
+        })
+    }
+
+    /// Writes the table of a sweep, its sums over days if there are any, and a `summary.json` that holds
+    /// the sums and says where there are no data.
+    ///
+    /// # Errors
+    /// If a file cannot be written; then the folder is as it was.
+    pub fn write_sweep(
+        &self,
+        report: &Report,
+        points: &[Point],
+        table: &str,
+        daily: Option<&DailySums>,
+    ) -> Result<Written, OutputError> {
+        self.put(|folder, staging| {
+            staging.file("sweep.csv", |file| file.write_all(table.as_bytes()))?;
+            if let Some(daily) = daily {
+                staging.file(daily::FILE, |file| daily.write(file))?;
+            }
+            let way = self.way_to_scene(staging, report.origin.as_ref());
+            let head = Head::of(report, self.command, way);
+            let head = head.with_files(staging.names());
+            let write = |file: &mut _| summary::write_sweep(&head, points, daily, file);
+            staging.file("summary.json", write)?;
             Ok(replaced(staging, folder, self.command, report))
         })
     }

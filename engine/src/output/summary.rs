@@ -5,13 +5,14 @@ use std::io::{self, Write};
 use serde::{Serialize, Serializer};
 use serde_json::ser::Formatter;
 
+use super::daily::DailySums;
 use super::length;
 use super::lines::Lines;
 use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
 use super::rows::columns;
 use crate::document::Param;
-use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport};
+use crate::products::{AxisPoints, Forecast, Point, Product, Report, SensorReport};
 
 /// Names and sizes of a report's files.
 pub(super) struct Sizes<'a> {
@@ -122,6 +123,29 @@ pub(super) fn write(
 /// Writes where files come from, and no results.
 pub(super) fn write_head(head: &Head<'_>, file: &mut impl Write) -> io::Result<()> {
     write_json(head, file)
+}
+
+/// Writes where a sweep comes from, why points have no data, and its sums over days.
+pub(super) fn write_sweep(
+    head: &Head<'_>,
+    points: &[Point],
+    daily: Option<&DailySums>,
+    file: &mut impl Write,
+) -> io::Result<()> {
+    let dark = points.iter().filter_map(|point| Some((point.name(), point.darkness()?)));
+    let no_data: serde_json::Map<_, _> = dark.map(|(name, why)| (name, why.into())).collect();
+    write_json(&SweepSummary { head, no_data, daily: daily.map(DailySums::json) }, file)
+}
+
+#[derive(Serialize)]
+struct SweepSummary<'a> {
+    #[serde(flatten)]
+    head: &'a Head<'a>,
+    /// Reason by the name of each point where nothing was traced.
+    #[serde(skip_serializing_if = "serde_json::Map::is_empty")]
+    no_data: serde_json::Map<String, serde_json::Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    daily: Option<serde_json::Value>,
 }
 
 fn write_json(value: &impl Serialize, file: &mut impl Write) -> io::Result<()> {

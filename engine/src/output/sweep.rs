@@ -3,6 +3,7 @@
 //! `points/sza=30,lai=2/` holds what [`write()`](super::write()) writes, and `point.csv`: where it bears the
 //! point's key, the point is complete.
 
+use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -18,6 +19,9 @@ use crate::products::{Point, Report};
 const LENGTH: usize = 100;
 
 const TABLE: &str = "point.csv";
+
+/// Start of the comment line of a point's table that holds the irradiance on the horizontal plane by band.
+const IRRADIANCE: &str = "# irradiance_w_m2_nm: ";
 
 /// Whether `folder` holds all results of this very point.
 #[must_use]
@@ -44,7 +48,8 @@ pub fn write_point(
 }
 
 /// Rows of all points as one table: a column a parameter, then sensor, product, unit, a column an axis,
-/// band, value and standard error.
+/// band, value and standard error. A point that was not traced has one row of its parameters alone, and a
+/// `note` that says why.
 ///
 /// # Errors
 /// If a point is not complete.
@@ -84,14 +89,32 @@ pub fn sweep_table(points: &[Point], folder: &Path) -> Result<String, OutputErro
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// Irradiance on the horizontal plane at a point, W m⁻² nm⁻¹, by the name of the band; empty where its table
+/// does not say.
+pub(super) fn irradiance(path: &Path) -> Result<HashMap<String, f64>, OutputError> {
+    let error = |source| OutputError::Read { path: path.to_owned(), source };
+    let file = BufReader::new(File::open(path).map_err(error)?);
+    for line in file.lines().take(2) {
+        if let Some(values) = line.map_err(error)?.strip_prefix(IRRADIANCE) {
+            return serde_json::from_str(values).map_err(|source| error(source.into()));
+        }
+    }
+    Ok(HashMap::new())
+}
+
+/// File of a point's table.
+pub(super) fn table_file(point: &Point, folder: &Path) -> PathBuf {
+    folder_of(point, folder).join(TABLE)
+}
+
 /// Reader of a point's table.
-fn table(path: &Path) -> Result<csv::Reader<File>, OutputError> {
+pub(super) fn table(path: &Path) -> Result<csv::Reader<File>, OutputError> {
     let file =
         File::open(path).map_err(|source| OutputError::Read { path: path.to_owned(), source })?;
     Ok(csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(file))
 }
 
-fn unreadable(path: &Path, error: csv::Error) -> OutputError {
+pub(super) fn unreadable(path: &Path, error: csv::Error) -> OutputError {
     OutputError::Read { path: path.to_owned(), source: error.into() }
 }
 
@@ -126,6 +149,10 @@ fn heading(point: &Point) -> String {
 
 fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{}", heading(point))?;
+    let lit: BTreeMap<_, _> = report.bands.iter().zip(&report.irradiance).collect();
+    if !lit.is_empty() {
+        writeln!(file, "{IRRADIANCE}{}", serde_json::to_string(&lit)?)?;
+    }
     let products = || {
         report
             .sensors
@@ -137,12 +164,19 @@ fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Resu
     let names = point.params.iter().map(|(name, _)| harmless(name));
     let before = ["sensor", "product", "unit"].map(str::to_owned);
     let after = ["band", "value", "standard_error"].map(str::to_owned);
-    writer.write_record(names.chain(before).chain(axes.names().map(harmless)).chain(after))?;
+    // A column that tables of points with results do not have.
+    let note = point.darkness().map(|_| "note".to_owned());
+    let columns = names.chain(before).chain(axes.names().map(harmless)).chain(after).chain(note);
+    writer.write_record(columns)?;
     let shown = |(_, value): &(String, Param)| match value {
         Param::Number(value) => number(*value),
         Param::Text(text) => harmless(text),
     };
     let params: Vec<_> = point.params.iter().map(shown).collect();
+    if let Some(why) = point.darkness() {
+        let empty = vec![String::new(); 6];
+        writer.write_record(params.iter().cloned().chain(empty).chain([harmless(why)]))?;
+    }
     for (sensor, product) in products() {
         for (row, (value, error)) in product.values.iter().zip(&product.standard_error).enumerate()
         {

@@ -90,6 +90,7 @@ fn report(sensors: Vec<SensorReport>) -> Report {
         warnings: Vec::new(),
         sensors,
         params: vec![("sza".to_owned(), 30.0.into())],
+        irradiance: vec![1.0; 2],
         sun_azimuth_deg: Some(250.0),
         origin: None,
     }

@@ -25,8 +25,8 @@ pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rin
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    Axis, AxisPoints, Class, Forecast, Georeference, Image, Origin, Point, Product, Rendering,
-    Report, SensorReport, data_size,
+    Axis, AxisPoints, Class, Day, Forecast, Georeference, Image, Night, Origin, Point, Product,
+    Rendering, Report, SensorReport, data_size,
 };
 pub use sources::{brightness_of, of_sources};
 pub use thermal::{brightness, radiance_of_sources};

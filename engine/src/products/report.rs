@@ -272,6 +272,8 @@ pub struct Report {
     pub bands: Vec<String>,
     /// The bands' centre wavelengths, nm.
     pub wavelengths: Vec<f64>,
+    /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`; empty without results.
+    pub irradiance: Vec<f64>,
     /// Wall time of each stage, s.
     pub stages: Vec<(String, f64)>,
     /// What the scene did not need and was not built.
@@ -311,6 +313,52 @@ pub struct Point {
     /// Hash of all that decides the results: the scene as it is at this point, the content of every
     /// file that it names, the number of samples and this version of sunfleck. Hexadecimal.
     pub key: String,
+    /// Consequence of a sun below the horizon, where it is.
+    pub night: Option<Night>,
+}
+
+/// Consequence of a sun below the horizon at a point of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Night {
+    /// Nothing else gives light: nothing is traced, for this reason.
+    Dark(String),
+    /// Other light is left: the scene is traced without the sun, with this warning.
+    WithoutSun(String),
+}
+
+impl Night {
+    /// Its reason or its warning.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Dark(text) | Self::WithoutSun(text) => text,
+        }
+    }
+}
+
+/// Weights of the points of a sweep for integrals over the hours of one day.
+///
+/// The integral of a value over time is the sum of value times weight: the trapezoidal rule, in which
+/// points without any light count as 0, and which ends at sunrise and sunset beside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Day {
+    /// The swept parameters that do not move the sun's clock, and their values.
+    pub params: Vec<(String, Param)>,
+    /// First and last hour of the sun's clock, h.
+    pub span_h: (f64, f64),
+    /// Place of each point that was traced in the list of all points, with its weight, h.
+    pub weights_h: Vec<(usize, f64)>,
+}
+
+impl Point {
+    /// Returns why nothing was traced here, if that is so.
+    #[must_use]
+    pub fn darkness(&self) -> Option<&str> {
+        match &self.night {
+            Some(Night::Dark(why)) => Some(why),
+            Some(Night::WithoutSun(_)) | None => None,
+        }
+    }
 }
 
 impl Point {

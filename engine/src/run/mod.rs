@@ -4,6 +4,7 @@ mod advice;
 mod again;
 mod check;
 mod checkpoint;
+mod day;
 mod enclosed;
 mod facts;
 mod failure;
@@ -323,6 +324,7 @@ fn run_kept(
         rays: reports.iter().map(|report| report.rays).sum(),
         bands: context.bands,
         wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
+        irradiance: context.irradiance,
         stages: clock.laps,
         skipped: spawned.skipped.clone(),
         notes: spawned.notes.clone(),
@@ -337,7 +339,7 @@ fn run_kept(
             .collect(),
         sensors: reports,
         params: params(scene),
-        sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::angles_deg).map(|(_, azimuth)| azimuth),
+        sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
         origin: None,
     };
     *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
@@ -405,8 +407,13 @@ fn measure(
 }
 
 fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
-    let mut reading = document::read_file(path, &options.document)
+    let reading = document::read_file(path, &options.document)
         .map_err(|error| Failure::Scene(error.to_string()))?;
+    sound(reading, path, options)
+}
+
+/// A scene without errors, with the sensors that are asked for.
+fn sound(mut reading: Reading, path: &Path, options: &Options) -> Result<Reading, Failure> {
     if reading.is_sound() {
         let unknown = choose_sensors(&mut reading.scene, &options.sensors);
         return if unknown.is_empty() {

@@ -5,10 +5,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::provenance::content;
-use super::{Failure, Options, Progress, folder_of, in_pool, origin, params, read, run_kept};
+use super::{
+    Failure, Options, Progress, choose_sensors, day, folder_of, in_pool, origin, params, read,
+    run_kept, sound,
+};
 use crate::accel;
-use crate::document::{Map, Material, Scene, Sensor, Sky, Spectrum, ThermalSky};
-use crate::products::{Point, Report};
+use crate::document::{
+    self, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
+};
+use crate::products::{Day, Night, Point, Report};
 use crate::spawn::{Spawned, named_files};
 
 /// A scene file that has been read at every point of its sweep, and what its runs share.
@@ -22,6 +27,7 @@ pub struct Sweep {
     scene: Scene,
     points: Vec<Point>,
     order: Vec<usize>,
+    suns: Vec<Option<Sun>>,
     kept: Option<Kept>,
     builds: usize,
 }
@@ -32,7 +38,7 @@ impl Sweep {
     /// # Errors
     /// What is wrong with it at the first point where anything is.
     pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
-        let scene = read(file, options)?.scene;
+        let (Reading { scene, .. }, _) = read_point(file, options)?;
         let Some(sweep) = &scene.sweep else {
             let example = "sweep: Grid({ \"sza\": [0.0, 30.0, 60.0] })";
             let text =
@@ -44,19 +50,21 @@ impl Sweep {
         let mut points = Vec::with_capacity(sweep.len());
         // The first point of the same geometry as each.
         let (mut alike, mut firsts) = (Vec::with_capacity(sweep.len()), HashMap::new());
+        let mut suns = Vec::with_capacity(sweep.len());
         for index in 0..sweep.len() {
             let params = sweep.point(index);
-            let mut point = Point { params, key: String::new() };
-            let found = keys(file, &at(options, &point), &mut contents);
-            let (key, geometry) = found.map_err(|source| wrong_at(&point, source))?;
-            point.key = key;
+            let mut point = Point { params, key: String::new(), night: None };
+            let found = look_at(file, &at(options, &point), &mut contents);
+            let found = found.map_err(|source| wrong_at(&point, source))?;
+            (point.key, point.night) = (found.key, found.night);
             points.push(point);
-            alike.push(*firsts.entry(geometry).or_insert(index));
+            suns.push(found.sun);
+            alike.push(*firsts.entry(found.geometry).or_insert(index));
         }
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(|&index| alike[index]);
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, scene, points, order, kept: None, builds: 0 })
+        Ok(Self { file, options, scene, points, order, suns, kept: None, builds: 0 })
     }
 
     /// All points, the last parameter fastest.
@@ -78,11 +86,25 @@ impl Sweep {
         self.builds
     }
 
-    /// Runs the scene at one of its points.
+    /// Days over whose hours the points can be summed; none if no parameter moves the sun's clock within
+    /// one date.
+    #[must_use]
+    pub fn days(&self) -> Vec<Day> {
+        match &self.scene.sweep {
+            Some(document::Sweep::Grid(_)) => day::days(&self.points, &self.suns),
+            Some(document::Sweep::Zip(_)) | None => Vec::new(),
+        }
+    }
+
+    /// Runs the scene at one of its points; a point without any light has a report without sensors.
     ///
     /// # Errors
     /// All that is wrong with the scene there.
     pub fn run(&mut self, point: &Point, progress: &dyn Progress) -> Result<Report, Failure> {
+        if let Some(why) = point.darkness() {
+            let params = point.params.clone();
+            return Ok(Report { notes: vec![why.to_owned()], params, ..self.report() });
+        }
         let options = at(&self.options, point);
         let (file, mut kept) = (&self.file, self.kept.take());
         let report = in_pool(&options, || {
@@ -95,7 +117,12 @@ impl Sweep {
         });
         self.kept = kept;
         report
-            .map(|report| Report { origin: Some(origin(file, &self.options)), ..report })
+            .map(|mut report| {
+                if let Some(Night::WithoutSun(warning)) = &point.night {
+                    report.warnings.insert(0, warning.clone());
+                }
+                Report { origin: Some(origin(file, &self.options)), ..report }
+            })
             .map_err(|source| wrong_at(point, source))
     }
 
@@ -116,6 +143,7 @@ impl Sweep {
             rays: 0,
             bands: Vec::new(),
             wavelengths: Vec::new(),
+            irradiance: Vec::new(),
             stages: Vec::new(),
             skipped: Vec::new(),
             notes: Vec::new(),
@@ -141,18 +169,41 @@ fn wrong_at(point: &Point, source: Failure) -> Failure {
 /// Content hashes of files by path, so that each file is read once.
 type Contents = HashMap<PathBuf, blake3::Hash>;
 
-/// Hashes of all that decides the results at a point, and of its geometry.
-fn keys(
-    file: &Path,
-    options: &Options,
-    contents: &mut Contents,
-) -> Result<(String, blake3::Hash), Failure> {
-    let reading = read(file, options)?;
+/// Properties of a point that need no run.
+struct Glance {
+    /// Hash of all that decides its results.
+    key: String,
+    /// Hash of its geometry.
+    geometry: blake3::Hash,
+    sun: Option<Sun>,
+    night: Option<Night>,
+}
+
+/// Reads a scene, which may be dark at night.
+fn read_point(file: &Path, options: &Options) -> Result<(Reading, Option<Night>), Failure> {
+    let mut reading = document::read_file(file, &options.document)
+        .map_err(|error| Failure::Scene(error.to_string()))?;
+    let Some(why) = reading.darkness() else {
+        let reading = sound(reading, file, options)?;
+        let night = reading.night_warning().map(Night::WithoutSun);
+        return Ok((reading, night));
+    };
+    let unknown = choose_sensors(&mut reading.scene, &options.sensors);
+    if unknown.is_empty() {
+        Ok((reading, Some(Night::Dark(why))))
+    } else {
+        Err(Failure::Scene(reading.source.render(&unknown)))
+    }
+}
+
+/// Reads a scene at a point.
+fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Glance, Failure> {
+    let (reading, night) = read_point(file, options)?;
     let swept = |path: &str| {
         let name = path.strip_prefix("params.")?;
         options.document.point.iter().any(|(swept, _)| swept == name).then_some(())
     };
-    // Nothing but a warning can be left, and a point that changes nothing is no point.
+    // A point that changes nothing is no point.
     let unused: Vec<_> =
         reading.diagnostics.iter().filter(|one| swept(&one.path).is_some()).cloned().collect();
     if !unused.is_empty() {
@@ -175,7 +226,8 @@ fn keys(
         hasher.update(hash.as_bytes());
     }
     let geometry = blake3::hash(form(&reading.scene).to_ron().as_bytes());
-    Ok((hasher.finalize().to_hex().to_string(), geometry))
+    let key = hasher.finalize().to_hex().to_string();
+    Ok(Glance { key, geometry, sun: reading.scene.sun, night })
 }
 
 /// Geometry that was built, and the scene that it is of.

@@ -13,7 +13,7 @@ impl Spawner<'_> {
             let irradiance =
                 self.spectrum(&sun.irradiance, Quantity::Irradiance, "sun.irradiance")?;
             self.note_irradiance(&sun.irradiance, &irradiance);
-            // `document::check` asks for a position.
+            // `document::check` asks for a position; below the horizon the sun gives no light.
             let (zenith, azimuth) = sun.angles_deg()?;
             let view = View { zenith: zenith.to_radians(), azimuth: azimuth.to_radians() };
             let radius = 0.5 * sun.disc_deg.to_radians();
@@ -27,7 +27,7 @@ impl Spawner<'_> {
                 (sun, irradiance.map(|irradiance| Sky { irradiance }))
             }
             document::Sky::Fraction(fractions) => {
-                // `document::check` asks for a sun and for one fraction a band.
+                // `document::check` asks for a sun and for one fraction a band; the sky is dark at night.
                 let sky = sun.as_ref().map(|sun| Sky {
                     irradiance: fractions
                         .iter()

@@ -145,7 +145,7 @@ impl Spawner<'_> {
             Views::PrincipalPlane { max_deg, step_deg } => (*max_deg, *step_deg, 0.0),
             Views::CrossPlane { max_deg, step_deg } => (*max_deg, *step_deg, FRAC_PI_2),
         };
-        let Some((_, azimuth)) = self.scene.sun.as_ref().and_then(Sun::angles_deg) else {
+        let Some(azimuth) = self.scene.sun.as_ref().and_then(Sun::known_azimuth_deg) else {
             self.problems.push(
                 Diagnostic::error(path, "this plane is the sun's, and the scene has no sun")
                     .help("write List([(zenith, azimuth), ..]), or give the scene a sun"),

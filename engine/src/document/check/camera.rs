@@ -35,7 +35,7 @@ pub(super) fn check_orthographic(
     };
     check_plane(path, virtual_plane.as_ref(), scene, report);
     let at = |key: &str| format!("{path}.{key}");
-    check_pixels(path, (*size_px, *pixel_m), *extent_m, (scene, report));
+    check_pixels(path, *size_px, *pixel_m, *extent_m, scene, report);
     check_picture(path, picture, scene, report);
     if let Some((width, height)) = extent_m {
         report.above_zero(&at("extent_m[0]"), *width);

@@ -7,11 +7,11 @@ use super::thermal::needs_light;
 
 pub(super) fn check_sun(scene: &Scene, report: &mut Report<'_>) {
     let Some(sun) = &scene.sun else { return };
-    check_position(sun, report);
+    check_position(sun, scene, report);
     check_spectrum("sun.irradiance", &sun.irradiance, Quantity::Irradiance, scene, report);
 }
 
-fn check_position(sun: &Sun, report: &mut Report<'_>) {
+fn check_position(sun: &Sun, scene: &Scene, report: &mut Report<'_>) {
     report.azimuth("sun.azimuth_deg", sun.azimuth_deg);
     match (&sun.zenith_deg, &sun.position) {
         (Some(zenith), None) => report.zenith("sun.zenith_deg", *zenith),
@@ -26,11 +26,11 @@ fn check_position(sun: &Sun, report: &mut Report<'_>) {
             report.error("sun.position", message, "take one of the two out");
         }
     }
-    if sun.position.is_some()
-        && report.is_whole("sun.position")
-        && let Err(problem) = sun.placed()
-    {
-        report.push(*problem);
+    if sun.position.is_some() && report.is_whole("sun.position") {
+        match sun.placed() {
+            Err(problem) => report.push(*problem),
+            Ok(_) => scene.night().into_iter().for_each(|night| report.push(night)),
+        }
     }
     let disc = sun.disc_deg;
     if !(0.0..=10.0).contains(&disc) {

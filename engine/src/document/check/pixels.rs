@@ -39,9 +39,11 @@ pub(super) fn check_size(
 /// their number if the extent is written.
 pub(super) fn check_pixels(
     path: &str,
-    (size_px, pixel_m): (Option<(u32, u32)>, Option<f64>),
+    size_px: Option<(u32, u32)>,
+    pixel_m: Option<f64>,
     extent_m: Option<(f64, f64)>,
-    (scene, report): (&Scene, &mut Report<'_>),
+    scene: &Scene,
+    report: &mut Report<'_>,
 ) {
     let at = format!("{path}.pixel_m");
     if let Some(size) = size_px {
