@@ -110,7 +110,7 @@ impl Spawner<'_> {
             let Some((low, high)) = prototype.mesh.bounds() else { continue };
             let size = (high - low).max_element();
             if unit < 1.0 && size < SMALLEST {
-                let message = format!("`{name}` is {:.3} m large, with a unit of {unit} m", size);
+                let message = format!("`{name}` is {size:.3} m large, with a unit of {unit} m");
                 let help = "if the coordinates of its file are in metres, leave `unit_m` out";
                 let path = format!("meshes.{name}");
                 self.problems.push(Diagnostic::warning(path, message).help(help));
