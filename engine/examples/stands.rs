@@ -50,6 +50,7 @@ fn stand(leaf_area_m2: f64, trees_a_side: u32) -> Result<Scene, Box<dyn std::err
         leaf_angle: LeafAngle::Spherical,
         leaf: LeafShape::Disc { radius_m: 0.08 },
         overlap: true,
+        min_distance_m: 0.0,
         leaf_material: "leaf".to_owned(),
         trunk: None,
         branches: None,
