@@ -42,7 +42,7 @@ impl<'a> PhotonRun<'a> {
         let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
             (!asked.is_empty()).then(|| {
                 let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter> {
-                    let counter = kinds[index].1.playing(stage, source, key);
+                    let counter = kinds[index].1.with_roulette(source, key);
                     match part {
                         None => counter,
                         Some(part) => Box::new(PartCounter { counter, part }),
@@ -272,9 +272,9 @@ impl Kind {
     }
 
     /// Its counter for packets of a source.
-    fn playing(&self, stage: &Stage, source: Source, key: Key) -> Box<dyn Counter> {
+    fn with_roulette(&self, source: Source, key: Key) -> Box<dyn Counter> {
         match self {
-            Self::Views(counter, _) => Box::new(counter.clone().playing(stage, source, key)),
+            Self::Views(counter, _) => Box::new(counter.clone().with_roulette(source, key)),
             _ => self.counter(),
         }
     }

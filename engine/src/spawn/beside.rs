@@ -37,6 +37,14 @@ pub(super) fn problem_of_camera_beside(
         return None;
     }
     let reaches = relief.extent_text();
+    let looks_beside = match camera.target {
+        // A camera may look at the scene from its side.
+        Some(target) => relief.gap(target.truncate()) > 0.0,
+        None => true,
+    };
+    if !looks_beside {
+        return None;
+    }
     if camera.is_above_ground {
         let help = format!(
             "{reaches}: move the camera, or leave `above_ground` out and write the height in the local frame"
@@ -44,12 +52,7 @@ pub(super) fn problem_of_camera_beside(
         let message = format!("{message}, so that its height above the ground has no meaning");
         return Some(Diagnostic::error(path, message).help(help));
     }
-    let looks_beside = match camera.target {
-        // A camera may look at the scene from its side.
-        Some(target) => relief.gap(target.truncate()) > 0.0,
-        None => true,
-    };
-    looks_beside.then(|| Diagnostic::warning(path, message).help(format!("{reaches}: move it")))
+    Some(Diagnostic::warning(path, message).help(format!("{reaches}: move it")))
 }
 
 /// Advice for a camera that is far from the ground: its place in the local frame, if that is on the ground.

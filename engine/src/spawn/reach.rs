@@ -17,10 +17,10 @@ use crate::geometry::Bounds;
 pub(super) const MOST_TILES_HIGH: f64 = 2000.0;
 
 /// Images that one instance may have in a periodic tile: a ray may meet the boxes of all of them.
-const MOST_IMAGES: f64 = 1e4;
+const MOST_IMAGES: f64 = 2000.0;
 
 /// Images of one instance from which on the scene is slow.
-const MANY_IMAGES: f64 = 1e3;
+const MANY_IMAGES: f64 = 200.0;
 
 /// Instances that may stand in one place, turned and scaled alike: a ray there meets all of them.
 const MOST_ALIKE: usize = 1000;

@@ -100,7 +100,7 @@ impl<'a> DirectionsFilm<'a> {
                 view_film((stage, projections), columns, key, path)
             }
             (System::Forward | System::Analog, _) => {
-                let counter = ViewCounter::new(projections).playing(stage, source, key);
+                let counter = ViewCounter::new(projections).with_roulette(source, key);
                 let place = |(projection, cell): (&Projection, &usize)| {
                     (cell * bands..(cell + 1) * bands, projection.radiance_of_count(stage))
                 };

@@ -52,6 +52,12 @@ impl Tracer for Packets<'_> {
         self.counters.iter().map(|counter| (counter.cells(), self.stage.bands)).collect()
     }
 
+    fn prepare(&self) {
+        for counter in &self.counters {
+            counter.prepare(self.stage);
+        }
+    }
+
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
         let is_emitted = self.source == Source::Emitted;
         let glow = is_emitted.then(|| Glow::of(self.stage, &self.emission)).flatten();

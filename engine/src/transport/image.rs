@@ -52,7 +52,7 @@ impl<'a> PacketImage<'a> {
         (source, orders): (Source, bool),
         key: Key,
     ) -> Self {
-        let counter = ViewCounter::new(vec![projection.clone()]).playing(stage, source, key);
+        let counter = ViewCounter::new(vec![projection.clone()]).with_roulette(source, key);
         let plane = ReferencePlane::of(None, stage);
         let of = (source, Grain::Packet(Roulette::Firm), plane);
         let rows = photon_film(stage, of, in_parts(counter, orders), key);

@@ -63,6 +63,10 @@ impl Counter for PartCounter<'_> {
         self.counter.cells()
     }
 
+    fn prepare(&self, stage: &Stage) {
+        self.counter.prepare(stage);
+    }
+
     fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64 {
         let part = match event {
             Event::Escape { order, met_ground, .. } => Part::of(*order, *met_ground),

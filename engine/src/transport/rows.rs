@@ -12,6 +12,9 @@ pub(super) trait Tracer: Sync {
     /// Cells and columns of each of its sums.
     fn shapes(&self) -> Vec<(usize, usize)>;
 
+    /// Does once, before any sample is traced, what all of them need.
+    fn prepare(&self) {}
+
     /// Traces these samples of a randomisation; returns its sums and the number of rays.
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64);
 
@@ -130,6 +133,7 @@ impl Film for Rows<'_> {
         assert_eq!(blocks::last_end(from), from, "a block that ended too early ends a run");
         assert!(from == 0 || self.can_grow().is_ok(), "what is folded cannot grow");
         self.set_up(self.share);
+        self.tracer.prepare();
         let Self { tracer, store, rays, share, .. } = self;
         let own = (0..u64::from(RANDOMISATIONS)).filter(|row| share.owns(*row as usize));
         let (mut traced, all) = (0, (to - from) * own.clone().count() as u64);

@@ -25,7 +25,7 @@ use sunfleck_tests::fuzz::{
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 /// A reader that has not answered after so many seconds of processor time hangs.
-const HANG: u64 = 60;
+const HANG: u64 = 240;
 
 /// Most files that are kept to start from.
 const MOST_SEEDS: usize = 4096;

@@ -193,7 +193,7 @@ fn what_a_scene_makes_of_memory_is_counted_before() {
             scene: "70-hostile/near_sheet_of_20_km.ron",
             right: &[Right::Fails(&[
                 "tiles of 8 x 8 m",
-                "at most 10000 are allowed",
+                "at most 2000 are allowed",
                 "instances[0].at_m[0]",
             ])],
         },

@@ -98,6 +98,9 @@ pub trait Counter: Sync {
     /// Number of cells.
     fn cells(&self) -> usize;
 
+    /// Does once, before any packet is traced, what counting needs.
+    fn prepare(&self, _: &Stage) {}
+
     /// Counts an event; returns the number of rays that this took.
     fn count<'a>(&self, stage: &'a Stage, event: &Event<'_, 'a>, tally: &mut Tally<'a>) -> u64;
 }

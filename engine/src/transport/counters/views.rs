@@ -1,4 +1,5 @@
 use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -20,7 +21,16 @@ pub struct ViewCounter {
     projections: Vec<Projection>,
     first_cells: Vec<usize>,
     cells: usize,
-    stakes: Option<Stakes>,
+    /// Russian roulette of virtual photons, if it is played: shared by the parts of the light.
+    roulette: Option<Arc<PendingRoulette>>,
+}
+
+/// Source and random stream of a pilot run, and what it found once it has run.
+#[derive(Debug)]
+struct PendingRoulette {
+    source: Source,
+    key: Key,
+    stakes: OnceLock<Stakes>,
 }
 
 impl ViewCounter {
@@ -36,13 +46,15 @@ impl ViewCounter {
                 first
             })
             .collect();
-        Self { projections, first_cells, cells, stakes: None }
+        Self { projections, first_cells, cells, roulette: None }
     }
 
-    /// The same, which plays for virtual photons of a source; a few packets tell for how much.
+    /// The counter with Russian roulette of virtual photons of a source. A pilot run of a few packets finds its
+    /// threshold before the first packet is traced.
     #[must_use]
-    pub fn playing(self, stage: &Stage, source: Source, key: Key) -> Self {
-        Self { stakes: Some(Stakes::pilot(stage, source, key)), ..self }
+    pub fn with_roulette(self, source: Source, key: Key) -> Self {
+        let roulette = PendingRoulette { source, key, stakes: OnceLock::new() };
+        Self { roulette: Some(Arc::new(roulette)), ..self }
     }
 
     /// The projections.
@@ -59,6 +71,12 @@ impl ViewCounter {
 }
 
 impl Counter for ViewCounter {
+    fn prepare(&self, stage: &Stage) {
+        if let Some(PendingRoulette { source, key, stakes }) = self.roulette.as_deref() {
+            stakes.get_or_init(|| Stakes::pilot(stage, *source, *key));
+        }
+    }
+
     fn cells(&self) -> usize {
         self.cells
     }
@@ -88,7 +106,8 @@ impl Counter for ViewCounter {
         for (projection, &first) in self.projections.iter().zip(&self.first_cells) {
             let Some(share) = sent(projection.towards) else { continue };
             let cosine = hit.normal.dot(projection.towards).abs();
-            let chance = self.stakes.as_ref().map_or(1.0, |stakes| {
+            let stakes = self.roulette.as_ref().and_then(|roulette| roulette.stakes.get());
+            let chance = stakes.map_or(1.0, |stakes| {
                 let (_, of_mean) =
                     known.filter(|(known, _)| known.is(share)).unwrap_or_else(|| {
                         let of_mean = f64::from(stakes.share(outline, share));
