@@ -12,6 +12,8 @@ mod formatting;
 mod hostile;
 #[path = "language/include.rs"]
 mod include;
+#[path = "language/misread.rs"]
+mod misread;
 #[path = "language/reading.rs"]
 mod reading;
 #[path = "language/writing.rs"]

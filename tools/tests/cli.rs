@@ -390,7 +390,7 @@ fn a_sweep_that_is_wrong_somewhere_runs_nowhere() {
     let folder = folder_with(&swept().replace("60.0]", "60.0, 95.0]"));
     let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);
     assert_eq!(code, 1);
-    assert!(stderr.starts_with("error: at sza=95: error: expected an angle"), "{stderr}");
+    assert!(stderr.starts_with("error: at sza=95: expected an angle"), "{stderr}");
     assert_eq!(names(folder.path()), ["soil.ron"]);
     let folder = folder_with(SOIL);
     let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron"]);

@@ -76,7 +76,7 @@ fn a_sweep_stops_at_the_point_that_does_not_fit() {
     let folder = folder_with(&SOIL.replace("(500, 500)", "(20, 20)"));
     let (code, _, stderr) = outcome(folder.path(), &["sweep", "soil.ron", "--memory", "16MiB"]);
     assert_eq!(code, 1);
-    let message = "error: at pixel=0.02: error: films and results take";
+    let message = "error: at pixel=0.02: films and results take";
     assert!(stderr.starts_with(message), "{stderr}");
     assert!(folder.path().join("out/soil_sweep/points/pixel=2.5/point.csv").is_file());
 }

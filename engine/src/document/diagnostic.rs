@@ -35,6 +35,8 @@ pub struct Diagnostic {
     pub message: String,
     /// What to write instead.
     pub help: Option<String>,
+    /// True if the key at the end of the path is wrong, not its value.
+    pub is_of_key: bool,
     /// Where; if absent, where [`super::Source::place`] finds `path`.
     pub place: Option<Place>,
 }
@@ -47,6 +49,7 @@ impl Diagnostic {
             path: path.into(),
             message: message.into(),
             help: None,
+            is_of_key: false,
             place: None,
         }
     }
@@ -106,7 +109,9 @@ pub fn unknown_name<'a>(
     } else {
         suggestion(name, &known, "this scene defines")
     };
-    Diagnostic::error(path, format!("no {kind} `{name}`")).help(help)
+    let error = Diagnostic::error(path, format!("no {kind} `{name}`")).help(help);
+    let is_of_key = error.path.strip_suffix(name).is_some_and(|parent| parent.ends_with('.'));
+    Diagnostic { is_of_key, ..error }
 }
 
 /// ``did you mean `leaf`? this scene defines: leaf, bark``.
@@ -117,9 +122,13 @@ pub(crate) fn suggestion(wrong: &str, known: &[&str], introduction: &str) -> Str
         count if count > SHOWN => format!(", and {} more", count - SHOWN),
         _ => String::new(),
     };
+    let list = format!("{introduction}: {list}{more}");
+    if let Some(parameter) = wrong.strip_prefix('=') {
+        return format!("`={parameter}` is no formula here: write the name itself; {list}");
+    }
     match nearest(wrong, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`? {introduction}: {list}{more}"),
-        None => format!("{introduction}: {list}{more}"),
+        Some(near) => format!("did you mean `{near}`? {list}"),
+        None => list,
     }
 }
 

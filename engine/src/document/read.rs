@@ -162,6 +162,7 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
     let mut reader = Reader::new(&source);
     reader.start_with(diagnostics, &lost);
     let params = settle_params(&tree, options, lost, &mut reader);
+    reader.advise_from(&tree, params.values.keys());
     survey(&tree, &params, &mut reader);
     let mut scene = Scene::decode(&tree, &mut reader);
     let Findings { mut diagnostics, dropped, broken } = reader.finish();
@@ -176,8 +177,8 @@ pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, R
         diagnostics.extend(unused.iter().map(|name| unused_param(name)));
     }
     for diagnostic in &mut diagnostics {
-        if diagnostic.place.is_none() && !diagnostic.path.is_empty() {
-            diagnostic.place = source.place(&diagnostic.path);
+        if diagnostic.place.is_none() {
+            diagnostic.place = source.place_of_path(diagnostic);
         }
     }
     // What has no place of its own stands last.

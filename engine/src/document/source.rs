@@ -117,6 +117,39 @@ impl Source {
         Some(node.head(&self.text))
     }
 
+    /// Bytes of the key at the end of a path of a map or a record.
+    fn locate_key(&self, path: &str) -> Option<Span> {
+        let mut node = self.tree.as_ref()?;
+        let mut rest = path;
+        loop {
+            let inner = node.inner();
+            let key = match &inner.value {
+                Value::Map(entries) => entries
+                    .iter()
+                    .find(|(key, _)| matches!(&key.value, Value::Text(key) if key == rest))
+                    .map(|(key, _)| key.span),
+                Value::Record(fields) => {
+                    fields.iter().find(|field| field.name == rest).map(|field| field.name_span)
+                }
+                _ => None,
+            };
+            if key.is_some() {
+                return key;
+            }
+            (node, rest) = step(inner, rest)?;
+        }
+    }
+
+    /// Place that a diagnostic is about.
+    pub(super) fn place_of_path(&self, diagnostic: &Diagnostic) -> Option<Place> {
+        let Diagnostic { path, is_of_key, .. } = diagnostic;
+        if path.is_empty() {
+            return None;
+        }
+        let key = if *is_of_key { self.locate_key(path) } else { None };
+        key.map(|span| self.place_of(span)).or_else(|| self.place(path))
+    }
+
     /// Place of a path of the document, or of its nearest ancestor that exists.
     #[must_use]
     pub fn place(&self, path: &str) -> Option<Place> {
@@ -160,8 +193,7 @@ impl Source {
         } else {
             format!(" ({})", shortened(&legible(path), NAME))
         };
-        let path_place = || if path.is_empty() { None } else { self.place(path) };
-        let place = diagnostic.place.clone().or_else(path_place);
+        let place = diagnostic.place.clone().or_else(|| self.place_of_path(diagnostic));
         let mut gutter = "     ".to_owned();
         match place {
             Some(Place { file, line, column, span }) => {

@@ -17,7 +17,7 @@ pub enum Failure {
     #[error("{0}")]
     Sweep(String),
     /// At one point of a sweep, something is wrong.
-    #[error("at {point}: {source}")]
+    #[error("at {point}: {}", without_severity(&source.to_string()))]
     Point { point: String, source: Box<Self> },
     #[error("{}: could not be read again: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
@@ -36,6 +36,11 @@ impl Failure {
             other => other,
         }
     }
+}
+
+/// A rendered text without `error: ` at its start, which whoever shows the failure writes.
+fn without_severity(text: &str) -> &str {
+    text.strip_prefix("error: ").unwrap_or(text)
 }
 
 /// A problem without the line of text that it stands in.

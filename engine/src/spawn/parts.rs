@@ -77,7 +77,9 @@ impl Spawner<'_> {
         let unknown: Vec<&String> = named.keys().filter(|name| !is_known(name)).collect();
         for name in unknown.iter().take(MOST_SHOWN) {
             let at = format!("{path}.parts.{name}");
-            self.problems.push(unknown_name(at, "part", name, known()));
+            let error = unknown_name(at, "part", name, known());
+            let help = error.help.map(|help| help.replace("this scene defines", "its file has"));
+            self.problems.push(Diagnostic { help, ..error });
         }
         if let Some(more) = unknown.len().checked_sub(MOST_SHOWN).filter(|more| *more > 0) {
             let message = format!("{more} more names in `parts` are names of no part");

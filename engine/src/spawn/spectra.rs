@@ -174,7 +174,10 @@ impl Spawner<'_> {
             let (center, width) = (band.center_nm, band.width_nm);
             let mean = solar_irradiance(center, width).map_err(|error| {
                 let message = format!("band `{}`: {error}", band.name);
-                Box::new(Diagnostic::error(path, message).help("write `irradiance` of its own"))
+                Box::new(
+                    Diagnostic::error(path, message)
+                        .help("move the band, or write `irradiance` of the sun's own"),
+                )
             })?;
             if band.reflects() && center + 0.5 * width > ASTM_G173_END_NM {
                 beyond.push(format!("{mean:.3e} in band `{}`", band.name));

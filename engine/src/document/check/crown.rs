@@ -37,12 +37,7 @@ pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut 
     }
     report.finite(&format!("{path}.base_m"), &[*base_m]);
     report.at_least(&format!("{path}.min_distance_m"), *min_distance_m, 0.0);
-    // A bare tree is a tree; a crown of nothing is not.
-    if trunk.is_some() {
-        report.at_least(&format!("{path}.leaf_area_m2"), *leaf_area_m2, 0.0);
-    } else {
-        report.above_zero(&format!("{path}.leaf_area_m2"), *leaf_area_m2);
-    }
+    report.at_least(&format!("{path}.leaf_area_m2"), *leaf_area_m2, 0.0);
     check_material(path, "leaf_material", leaf_material, scene, report);
     check_wood(path, trunk.as_ref(), branches.as_ref(), wood_material.as_deref(), scene, report);
 }

@@ -8,6 +8,9 @@ use super::{Report, count};
 /// A spectrum may name one that names one, and so on, so often.
 const CHAIN: usize = 16;
 
+/// Shortest wavelength of a band, nm: the far ultraviolet.
+const SHORTEST_NM: f64 = 100.0;
+
 /// What a spectrum is the spectrum of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -36,6 +39,10 @@ pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
             report.error(&path("name"), message, help);
         }
         report.above_zero(&path("center_nm"), *center_nm);
+        if *center_nm > 0.0 && *center_nm < SHORTEST_NM {
+            refuse_micrometres(*center_nm, *width_nm, &path("center_nm"), report);
+            continue;
+        }
         report.at_least(&path("width_nm"), *width_nm, 0.0);
         if *center_nm > 0.0 && *width_nm >= 2.0 * center_nm {
             let message = format!(
@@ -44,6 +51,18 @@ pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
             report.error(&path("width_nm"), message, "the width is that from edge to edge");
         }
     }
+}
+
+/// Refuses a band whose wavelengths are no light in nanometres.
+fn refuse_micrometres(center: f64, width: f64, path: &str, report: &mut Report<'_>) {
+    let message = format!("a wavelength of {center} nm is no light");
+    let nanometres = |micrometres: f64| (1e6 * micrometres).round() / 1e3;
+    let mut help =
+        format!("wavelengths are in nm: {center} µm is `center_nm: {:?}`", nanometres(center));
+    if width > 0.0 && width < center {
+        help += &format!(", and {width} µm is `width_nm: {:?}`", nanometres(width));
+    }
+    report.error(path, &message, &help);
 }
 
 pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {

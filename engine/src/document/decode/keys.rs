@@ -1,8 +1,14 @@
 //! Keys of records, and variants of choices.
 
 use super::super::diagnostic::{nearest, suggestion};
+use super::super::params::plain_number;
 use super::super::syntax::{Field, Node, Span, Step, Value};
+use super::advice::other_name;
 use super::{Decode, ERRORS, Reader};
+
+/// Names of the angle of the sun above the horizon.
+const ELEVATIONS: [&str; 6] =
+    ["elevation_deg", "elevation", "altitude_deg", "altitude", "height_deg", "elevation_angle"];
 
 /// The keys of a record or of a variant.
 pub(in super::super) struct Fields<'a> {
@@ -53,6 +59,17 @@ impl<'a> Fields<'a> {
                     "a `Lambertian(..)` surface is opaque: it has no transmittance".to_owned(),
                     "write `Leaf(..)` for one that light passes through".to_owned(),
                 ),
+                "the sun" if ELEVATIONS.contains(&name) => {
+                    let zenith = plain_number(&field.value).map(|elevation| 90.0 - elevation);
+                    let zenith =
+                        zenith.map_or_else(|| "..".to_owned(), |zenith| format!("{zenith:?}"));
+                    (
+                        format!("no key `{name}` in the sun"),
+                        format!(
+                            "write `zenith_deg: {zenith}`: the zenith angle is 90° less the elevation"
+                        ),
+                    )
+                }
                 "`Plane(..)`" | "`Mesh(..)`" if name == "land_cover" => (
                     format!("no land cover on {}: classes lie on a raster of heights", self.owner),
                     "write `Raster(file: \"heights.asc\", land_cover: ..)`, where all heights may \
@@ -221,6 +238,10 @@ impl<'a> Variant<'a> {
         let expected = T::expected();
         let message = format!("expected {expected}, found `{}`", self.name);
         let help = suggestion(self.name, known, "choices here");
+        let help = match other_name(&expected, self.name) {
+            Some(advice) => format!("{advice}; choices here: {}", known.join(", ")),
+            None => help,
+        };
         reader.error(self.name_span, message, Some(help));
         T::placeholder()
     }

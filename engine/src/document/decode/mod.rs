@@ -1,10 +1,11 @@
 //! Tree to types: always a value, and every error on the way.
 
+mod advice;
 mod keys;
 mod plain;
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 pub(super) use keys::{Fields, Variant, example_of_keys};
 
@@ -53,6 +54,9 @@ pub(super) struct Reader<'a> {
     computed: HashMap<u32, Option<Param>>,
     /// Paths without a value, beside those of `diagnostics`.
     broken: Vec<String>,
+    /// The scene, and the names of its parameters, for advice.
+    tree: Option<&'a Node>,
+    params: HashSet<String>,
     /// How the value of the key at this depth is written.
     example: Option<(usize, &'static str)>,
 }
@@ -75,6 +79,8 @@ impl<'a> Reader<'a> {
             dropped: 0,
             computed: HashMap::new(),
             broken: Vec::new(),
+            tree: None,
+            params: HashSet::new(),
             example: None,
         }
     }
@@ -162,6 +168,16 @@ impl<'a> Reader<'a> {
         self.source.place_of(span)
     }
 
+    /// Notes the scene and the names of its parameters, for advice.
+    pub(super) fn advise_from<'p>(
+        &mut self,
+        tree: &'a Node,
+        params: impl Iterator<Item = &'p String>,
+    ) {
+        self.tree = Some(tree);
+        self.params = params.cloned().collect();
+    }
+
     /// What a formula came to; none where it was wrong, which has been reported.
     pub(super) fn set_computed(&mut self, formula: &Node, value: Option<Param>) {
         self.computed.insert(formula.span.start, value);
@@ -198,7 +214,9 @@ impl<'a> Reader<'a> {
                 Some((depth, example)) if depth == self.path.len() => example.to_owned(),
                 _ => T::example(),
             };
-            let help = format!("write, for example, `{example}`");
+            let help = self
+                .advice(&T::expected(), node)
+                .unwrap_or_else(|| format!("write, for example, `{example}`"));
             self.error(node.head(self.text()), message, Some(help));
         }
         T::placeholder()

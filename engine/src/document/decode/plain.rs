@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::super::describe::Book;
 use super::super::scene::Param;
-use super::super::syntax::{Node, Step, Value};
+use super::super::syntax::{Node, Step, Value, decimal_advice};
 use super::{Decode, Reader};
 
 impl Decode for f64 {
@@ -241,7 +241,16 @@ impl<T: Decode> Decode for IndexMap<String, T> {
         let mut map = Self::with_capacity(entries.len());
         for (key, value) in entries {
             let Value::Text(name) = &key.value else {
-                reader.mismatch::<String>(key);
+                match &key.value {
+                    Value::Named(named) if named.body.is_none() => {
+                        let message = format!("the key `{}` of a map needs quotes", named.name);
+                        let help = format!("write `\"{}\": ..`", named.name);
+                        reader.error(key.span, message, Some(help));
+                    }
+                    _ => {
+                        reader.mismatch::<String>(key);
+                    }
+                }
                 continue;
             };
             let value = reader.within(Step::Key(name), |reader| T::decode(value, reader));
@@ -290,7 +299,13 @@ macro_rules! decode_tuple {
                             concat!("expected ", stringify!($count), " values, found {}"),
                             items.len()
                         );
-                        let help = format!("write, for example, `{}`", Self::example());
+                        let text = reader.text();
+                        let comma = items.iter().find_map(|item| {
+                            decimal_advice(text, item.span.start as usize)
+                        });
+                        let help = comma
+                            .filter(|_| items.len() > $count)
+                            .unwrap_or_else(|| format!("write, for example, `{}`", Self::example()));
                         reader.error(node.head(reader.text()), message, Some(help));
                         Self::placeholder()
                     }

@@ -96,6 +96,14 @@ impl Including<'_> {
         for (name, node, passed) in written {
             let at = format!("include.{name}");
             let full = format!("{namespace}{name}.");
+            if let Value::Formula(formula) = &node.value {
+                let message = format!("`={formula}` cannot name an included file");
+                let help = "files are included before parameters have values: write the name of the file, \
+                            and pass parameters to it by `params: { .. }` or choose its `variant`";
+                self.error(node.span, &at, message, help.to_owned());
+                self.included.lost.push(full);
+                continue;
+            }
             let Some(include) = map
                 .get(&name)
                 .filter(|_| !broken.iter().any(|path| path == "include" || path.starts_with(&at)))
@@ -362,7 +370,7 @@ fn simplify(includes: &mut Node) -> Vec<(String, Node, Passed)> {
         let Value::Text(name) = &key.value else { continue };
         let mut passed = Vec::new();
         let mut place = node.clone();
-        if let Value::Text(_) = node.value {
+        if let Value::Text(_) | Value::Formula(_) = node.value {
             let name = "file".to_owned();
             let file = Field { name, name_span: node.span, value: node.clone() };
             node.value = Value::Record(vec![file]);

@@ -66,7 +66,7 @@ choice! {
             shape: CrownShape => "Ellipsoid(diameter_m: 3.0, height_m: 5.0)",
             /// Height of the crown's lowest point above the ground, m.
             base_m: f64 => "2.0",
-            /// One-sided area of all leaves, m².
+            /// One-sided area of all leaves, m²; 0 for none.
             leaf_area_m2: f64 => "30.0",
             /// How leaf area changes with height.
             leaf_profile: LeafProfile = LeafProfile::Even,

@@ -1,5 +1,6 @@
 //! Text to tokens.
 
+use super::strange::advice_for;
 use super::{BadNumber, Span};
 
 /// A token and where it stands.
@@ -105,10 +106,12 @@ impl<'a> Lexer<'a> {
             _ => {
                 self.at += first.len_utf8();
                 let shown = first.escape_debug();
-                return Err(SyntaxError::new(
-                    Span::new(start, self.at),
-                    format!("unexpected character `{shown}`"),
-                ));
+                let message = format!("unexpected character `{shown}`");
+                let error = SyntaxError::new(Span::new(start, self.at), message);
+                return Err(match advice_for(first) {
+                    Some(advice) => error.help(advice),
+                    None => error,
+                });
             }
         };
         Ok(Token { span: Span::new(start, self.at), kind })

@@ -6,11 +6,13 @@
 mod comments;
 mod lexer;
 mod parser;
+mod strange;
 #[cfg(test)]
 mod tests;
 
 pub(super) use comments::{Comment, comments};
 pub(super) use parser::parse;
+pub(super) use strange::decimal_advice;
 
 /// Bytes of the text, from `start` up to but without `end`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

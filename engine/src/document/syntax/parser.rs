@@ -1,6 +1,7 @@
 //! Tokens to a tree.
 
 use super::lexer::{Kind, Lexer, SyntaxError, Token};
+use super::strange::{bracket_advice, decimal_advice};
 use super::{Field, Named, Node, Span, Value};
 
 type Result<T> = std::result::Result<T, SyntaxError>;
@@ -60,11 +61,21 @@ impl Parser<'_> {
     }
 
     fn named(&mut self, name: String, name_span: Span) -> Result<Node> {
-        let body = if self.lexer.first()? == Some('(') {
-            let open = self.lexer.next()?;
-            Some(self.parentheses(open.span)?)
-        } else {
-            None
+        let body = match self.lexer.first()? {
+            Some('(') => {
+                let open = self.lexer.next()?;
+                Some(self.parentheses(open.span)?)
+            }
+            Some(bracket @ ('{' | '[')) => {
+                let token = self.lexer.next()?;
+                let message = format!("expected `(` after `{name}`, found `{bracket}`");
+                let error = SyntaxError::new(token.span, message);
+                return Err(match bracket_advice(&name, bracket) {
+                    Some(advice) => error.help(advice),
+                    None => error,
+                });
+            }
+            _ => None,
         };
         let end = body.as_ref().map_or(name_span.end, |body| body.span.end);
         let span = Span { start: name_span.start, end };
@@ -95,7 +106,13 @@ impl Parser<'_> {
                 return Err(SyntaxError::new(token.span, "keys in parentheses have no quotes")
                     .help(format!("write `{text}: ..`, or `{{ \"{text}\": .. }}` for a map")));
             }
-            _ => return Err(self.unexpected(&token, "a key")),
+            _ => {
+                let error = self.unexpected(&token, "a key");
+                return Err(match decimal_advice(self.text, token.span.start as usize) {
+                    Some(advice) => error.help(advice),
+                    None => error,
+                });
+            }
         };
         self.colon(&name)?;
         Ok(Field { name, name_span: token.span, value: self.value()? })
@@ -113,7 +130,12 @@ impl Parser<'_> {
                 // A name is a name, whatever it starts with.
                 key.value = Value::Text(format!("={text}"));
             }
-            parser.colon("this key")?;
+            parser.colon("this key").map_err(|error| {
+                match decimal_advice(parser.text, key.span.start as usize) {
+                    Some(advice) => error.help(advice),
+                    None => error,
+                }
+            })?;
             Ok((key, parser.value()?))
         })?;
         Ok(Node { span, value: Value::Map(items) })
