@@ -1,14 +1,15 @@
 //! Polygons of stands, plots and clearings.
 
-use std::path::Path;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, JsonObject, Position};
 use glam::DVec2;
 
-use super::AssetError;
-use super::crs::{Axes, Crs, from_name};
+use super::crs::{Axes, Crs, TargetSystem, from_name};
 use super::table::{Table, known_columns, missing};
 use super::text;
+use super::{AssetError, foreign};
 use crate::geometry::Polygon;
 
 /// Largest GeoJSON file, bytes: corners take some thirty each.
@@ -38,6 +39,7 @@ pub struct Areas {
 /// range; coordinates in another unit than metres.
 pub fn read_geojson(path: &Path) -> Result<Areas, AssetError> {
     let file = || path.to_owned();
+    foreign::check(path, foreign::Reader::GeoJson)?;
     let bytes = text::size(path)?;
     if bytes > MOST_BYTES {
         return Err(AssetError::TooLarge { file: file(), bytes, most: MOST_BYTES });
@@ -47,6 +49,10 @@ pub fn read_geojson(path: &Path) -> Result<Areas, AssetError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") || bytes.contains(&0) {
         return Err(AssetError::NotText { file: file(), line: 1, guess: "it looks like UTF-16" });
+    }
+    if !bytes.trim_ascii_start().starts_with(b"{") && path.extension().is_some_and(is_table) {
+        let reason = "it is a text table: write `Table(file: ..)` in place of `GeoJson`".to_owned();
+        return Err(AssetError::NotGeoJson { file: file(), reason });
     }
     let read = GeoJson::from_reader(bytes)
         .map_err(|error| AssetError::NotGeoJson { file: file(), reason: error.to_string() })?;
@@ -134,7 +140,7 @@ impl Found<'_> {
         let crs = name.map(|name| from_name(name).unwrap_or_else(|| Crs::named(name)));
         match crs.as_ref().map(|crs| &crs.axes) {
             Some(Axes::Degrees) => {
-                return Err(AssetError::InDegrees { file: file(), x: low.x, y: low.y });
+                return Err(in_degrees(file(), low, high));
             }
             Some(Axes::Metres | Axes::Unknown) => {}
             Some(axes) => {
@@ -144,20 +150,31 @@ impl Found<'_> {
                     Axes::World => "metres of a map of the world".to_owned(),
                     _ => "distances from the centre of the Earth".to_owned(),
                 };
-                return Err(AssetError::NotInMetres { file: file(), what, system });
+                let target = TargetSystem::of_map(axes, 0.5 * (low + high));
+                return Err(AssetError::NotInMetres { file: file(), what, system, target });
             }
             None => {
                 let globe = DVec2::new(180.0, 90.0);
-                let in_degrees = low.cmpge(-globe).all()
+                let is_in_degrees = low.cmpge(-globe).all()
                     && high.cmple(globe).all()
                     && (high - low).max_element() < NARROWEST;
-                if in_degrees {
-                    return Err(AssetError::InDegrees { file: file(), x: low.x, y: low.y });
+                if is_in_degrees {
+                    return Err(in_degrees(file(), low, high));
                 }
             }
         }
         Ok(Areas { polygons, crs })
     }
+}
+
+/// Returns whether an ending is one of text tables.
+fn is_table(ending: &OsStr) -> bool {
+    ["csv", "tsv", "txt"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+fn in_degrees(file: PathBuf, low: DVec2, high: DVec2) -> AssetError {
+    let target = TargetSystem::of_degrees(0.5 * (low + high));
+    AssetError::InDegrees { file, x: low.x, y: low.y, target }
 }
 
 /// Polygons from a text table, in its order: columns `x_m` and `y_m`, and perhaps `ring` (another

@@ -2,6 +2,7 @@ use std::io;
 use std::path::PathBuf;
 
 use super::crown::CrownError;
+use super::crs::TargetSystem;
 use super::gltf::GltfError;
 use super::raster::RasterError;
 
@@ -174,17 +175,16 @@ pub enum AssetError {
     HoleOfNothing { file: PathBuf, line: usize },
     #[error(
         "{}: is in degrees (from {x:.5}, {y:.5}), but a scene is in metres; convert it to a projected \
-         system: `ogr2ogr -t_srs EPSG:32633 metres.geojson {}` (UTM zone 33 north, for example), or \
-         `Export > Save Features As` in QGIS",
-        .file.display(), .file.display()
+         system: `ogr2ogr -t_srs EPSG:{} metres.geojson {}` ({}), or `Export > Save Features As` in QGIS",
+        .file.display(), .target.code, .file.display(), .target.reason
     )]
-    InDegrees { file: PathBuf, x: f64, y: f64 },
+    InDegrees { file: PathBuf, x: f64, y: f64, target: TargetSystem },
     #[error(
         "{}: is in {what} ({system}), but a scene is in metres on the ground; convert it: `ogr2ogr \
-         -t_srs EPSG:32633 metres.geojson {}` (UTM zone 33 north, for example)",
-        .file.display(), .file.display()
+         -t_srs EPSG:{} metres.geojson {}` ({})",
+        .file.display(), .target.code, .file.display(), .target.reason
     )]
-    NotInMetres { file: PathBuf, what: String, system: String },
+    NotInMetres { file: PathBuf, what: String, system: String, target: TargetSystem },
 
     #[error("{}: {problem}", .file.display())]
     Gltf { file: PathBuf, problem: GltfError },

@@ -17,6 +17,7 @@ pub(crate) mod crs;
 mod discs;
 mod error;
 mod faces;
+mod foreign;
 mod format;
 mod gltf;
 mod import;
@@ -31,7 +32,7 @@ mod text;
 
 pub use areas::{Areas, read_geojson, read_polygons};
 pub use crown::{CrownError, CrownSpec, grow_crown};
-pub use crs::{Axes, Crs, Heights, Length, UtmZone};
+pub use crs::{Axes, Crs, Heights, Length, TargetSystem, UtmZone};
 pub use discs::read_discs;
 pub use error::AssetError;
 pub use faces::mesh_of_faces;

@@ -182,8 +182,13 @@ fn find_columns(
                 has_word || unit_of_name(name).is_some()
             };
             let abscissa = known.iter().find(is_abscissa).filter(|_| key == "wavelength");
+            // The column of wavelengths is no column of values.
+            let others: Vec<&str> = match key {
+                "value" => known.iter().copied().filter(|n| *n != columns.wavelength).collect(),
+                _ => known.clone(),
+            };
             let nearest =
-                abscissa.map_or_else(|| nearest(name, &known), |&abscissa| abscissa.to_owned());
+                abscissa.map_or_else(|| nearest(name, &others), |&abscissa| abscissa.to_owned());
             let (file, column) = (file.clone(), name.to_owned());
             AssetError::NoSuchColumn { file, line, column, found: names.clone(), key, nearest }
         };

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::AssetError;
 use super::numbers::{Decimals, NotANumber, Separator, is_missing, looks_like_number};
 use super::text::Lines;
+use super::{AssetError, foreign};
 
 /// Most title lines that are kept.
 const MOST_TITLES: usize = 100;
@@ -45,6 +45,7 @@ impl Table {
     /// Opens a table and looks at its first row; that row is read again as the first row of numbers
     /// unless the caller skips it.
     pub(super) fn open(path: &Path) -> Result<Self, AssetError> {
+        foreign::check(path, foreign::Reader::Table)?;
         let mut lines = Lines::open(path)?;
         let Some((first_line, line)) = lines.next()? else {
             return Err(AssetError::NoRows { file: path.to_owned() });

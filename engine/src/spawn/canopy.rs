@@ -5,7 +5,7 @@ use super::georaster::{Quantity, RasterSource};
 use super::meshes::Prototype;
 use crate::components::Placement;
 use crate::document::{Diagnostic, Instances};
-use crate::geometry::Rectangle;
+use crate::geometry::{Rectangle, millimetres, place_text};
 use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
 use crate::terrain::Ground;
 
@@ -74,8 +74,10 @@ impl Spawner<'_> {
             let high = model.values.iter().copied().fold(0.0, f64::max);
             let end = model.corner + model.size;
             let help = format!(
-                "its highest cell is {high} m, and it reaches from ({}, {}) to ({}, {})",
-                model.corner.x, model.corner.y, end.x, end.y
+                "its highest cell is {} m, and it reaches from {} to {} m",
+                millimetres(high),
+                place_text(model.corner),
+                place_text(end)
             );
             self.problems.push(Diagnostic::error(at, message).help(help));
         } else if trees.len() < found.len() {

@@ -3,22 +3,18 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, Vec2Swizzles as _, Vec3};
+use glam::{DVec2, DVec3, Vec2Swizzles as _, Vec3};
 
 use super::Spawner;
+use super::astray::{far_from, is_far};
 use super::meshes::Prototype;
 use crate::components::{Placement, TerrainPatch};
 use crate::document::{Cover, Diagnostic, Mesh, Sensor, Terrain};
-use crate::geometry::PixelGrid;
+use crate::geometry::{PixelGrid, place_text};
 use crate::terrain::Ground;
 
 /// Ground that lies less below other ground is the same but for rounding, m.
 const OVERHANG: f64 = 1e-3;
-
-/// Instances that are further than both of these from the ground cannot be meant: this, m, and this
-/// many times the ground's larger extent.
-const FAR_M: f64 = 1000.0;
-const FAR_EXTENTS: f64 = 20.0;
 
 /// A mesh that a unit below a metre makes smaller than this, m, was most likely in metres.
 const SMALLEST: f32 = 0.3;
@@ -35,47 +31,69 @@ impl Spawner<'_> {
         meshes: &BTreeMap<u32, Prototype>,
         ground: &Ground,
     ) {
-        let (low, high) = (ground.corner(), ground.corner() + ground.size());
-        if self.refuse_far_places(placements, low, high) || self.is_periodic() {
+        if self.refuse_far_places(placements, ground) || self.is_periodic() {
             return;
         }
-        let mut beside: BTreeMap<u32, (usize, DVec2)> = BTreeMap::new();
-        for placement in placements {
+        let (low, high) = (ground.corner(), ground.corner() + ground.size());
+        let mut beside: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (instance, placement) in placements.iter().enumerate() {
             let at = placement.position.truncate();
             if at.cmplt(low).any() || at.cmpgt(high).any() {
-                beside.entry(placement.prototype.0).or_insert((0, at)).0 += 1;
+                beside.entry(placement.prototype.0).or_default().push(instance);
             }
         }
-        for (prototype, (count, at)) in beside {
+        for (prototype, strays) in beside {
             let Some(prototype) = meshes.get(&prototype) else { continue };
-            let message = format!("{count} of `{}` stand beside the ground", prototype.name.0);
-            let help = format!(
-                "one stands at ({}, {}), and the ground reaches from ({}, {}) to ({}, {}) m: make \
-                 it larger, or move them",
-                at.x, at.y, low.x, low.y, high.x, high.y
-            );
+            let message =
+                format!("{} of `{}` stand beside the ground", strays.len(), prototype.name.0);
+            let help = self.stray_help(placements, &strays, ground).unwrap_or_default();
             self.problems.push(Diagnostic::warning("instances", message).help(help));
         }
     }
 
     /// Refuses instances that are far from the ground's rectangle; returns whether there are any.
-    fn refuse_far_places(&mut self, placements: &[Placement], low: DVec2, high: DVec2) -> bool {
-        let far = FAR_M.max(FAR_EXTENTS * (high - low).max_element());
-        let gap = |at: DVec2| (low - at).max(at - high).max_element();
-        let places = placements.iter().map(|placement| placement.position.truncate());
-        let mut away = places.filter(|&at| gap(at) > far);
-        let Some(first) = away.next() else { return false };
-        let count = 1 + away.clone().count();
-        let south_west = away.fold(first, DVec2::min);
-        let message = format!("{count} instances stand more than {far:.0} m from the ground");
-        let origin = ((south_west - low) / 10.0).floor() * 10.0;
-        let help = format!(
-            "one stands at ({}, {}), and the ground reaches from ({}, {}) to ({}, {}) m: if these are \
-             coordinates of a map, write `frame: (origin_m: ({}, {}, 0))`",
-            first.x, first.y, low.x, low.y, high.x, high.y, origin.x, origin.y
-        );
-        self.problems.push(Diagnostic::error("instances", message).help(help));
+    fn refuse_far_places(&mut self, placements: &[Placement], ground: &Ground) -> bool {
+        let is_far = |placement: &Placement| is_far(placement.position.truncate(), ground);
+        let away: Vec<usize> =
+            (0..).zip(placements).filter(|(_, p)| is_far(p)).map(|(i, _)| i).collect();
+        let Some(&first) = away.first() else { return false };
+        let (count, far) = (away.len(), far_from(ground));
+        let message = match count {
+            1 => format!("an instance stands more than {far:.0} m from the ground"),
+            _ => format!("{count} instances stand more than {far:.0} m from the ground"),
+        };
+        let help = self.stray_help(placements, &away, ground).unwrap_or_default();
+        let (path, _) = self.origins.place(self.scene, first);
+        self.problems.push(Diagnostic::error(path, message).help(help));
         true
+    }
+
+    /// Advice for instances off the ground, by their numbers.
+    fn stray_help(
+        &self,
+        placements: &[Placement],
+        strays: &[usize],
+        ground: &Ground,
+    ) -> Option<String> {
+        let first = *strays.first()?;
+        let entry = self.origins.entry(self.scene, first)?;
+        let is_of_entry = |stray: &&usize| {
+            self.origins.entry(self.scene, **stray).is_some_and(|other| std::ptr::eq(entry, other))
+        };
+        let places: Vec<DVec3> =
+            strays.iter().filter(is_of_entry).map(|&stray| placements[stray].position).collect();
+        let (low, high) = (ground.corner(), ground.corner() + ground.size());
+        let advice = self.other_coordinates(entry, &places, ground).unwrap_or_else(|| {
+            "move it, or make the ground larger; coordinates of a map are those of the local frame plus \
+             `frame.origin_m`"
+                .to_owned()
+        });
+        Some(format!(
+            "one stands at {}, and the ground reaches from {} to {} m: {advice}",
+            place_text(places.first()?.truncate()),
+            place_text(low),
+            place_text(high)
+        ))
     }
 
     /// Warns of a mesh as ground of which triangles lie under others.
@@ -148,10 +166,8 @@ impl Spawner<'_> {
             };
             let center = center_m.map_or(corner + 0.5 * size, DVec2::from);
             let path = format!("sensors.{name}.extent_m");
-            let ground = format!(
-                "the ground reaches from ({}, {}) to ({}, {}) m",
-                low.x, low.y, high.x, high.y
-            );
+            let ground =
+                format!("the ground reaches from {} to {} m", place_text(low), place_text(high));
             if center.cmplt(low).any() || center.cmpgt(high).any() {
                 let message = "the middle of the image lies beside the ground";
                 let warning = Diagnostic::warning(path, message).help(ground);

@@ -5,6 +5,7 @@ use glam::DVec2;
 
 use super::Spawner;
 use super::lay::Georeference;
+use crate::assets::crs::TargetSystem;
 use crate::assets::{
     AssetError, Assumed, Axes, Extent, Heights, Length, Place, Raster, RasterError, read_raster,
 };
@@ -105,20 +106,24 @@ impl Spawner<'_> {
         if source.has_size || source.coordinates.is_some() || is_as_terrain {
             return Some(());
         }
-        let name = &place.crs.name;
+        let (name, target) = (&place.crs.name, self.target_of(raster));
         let (message, help) = match &place.crs.axes {
             Axes::Metres | Axes::Degrees | Axes::Unknown => return Some(()),
             Axes::Length(unit) => (
                 in_unit(unit, name),
-                "a scene is in metres: reproject it to UTM (`gdalwarp -t_srs EPSG:326.. -r bilinear in \
-                 out`); heights stay as they are, so where they are in feet too, write \
-                 `height_unit_m: 0.3048006` as well"
-                    .to_owned(),
+                format!(
+                    "a scene is in metres: reproject it to UTM (`gdalwarp -t_srs {target} -r bilinear in \
+                     out`); heights stay as they are, so where they are in feet too, write \
+                     `height_unit_m: 0.3048006` as well"
+                ),
             ),
-            Axes::World => (world_message(place, raster), WORLD_HELP.to_owned()),
+            Axes::World => (
+                world_message(place, raster),
+                format!("reproject it to UTM (`gdalwarp -t_srs {target} -r bilinear in out`)"),
+            ),
             Axes::Geocentric => (
                 format!("its coordinates are distances from the centre of the Earth ({name})"),
-                "reproject it to UTM (`gdalwarp -t_srs EPSG:326.. in out`)".to_owned(),
+                format!("reproject it to UTM (`gdalwarp -t_srs {target} in out`)"),
             ),
         };
         let help = if source.path == "terrain.file" {
@@ -128,6 +133,20 @@ impl Spawner<'_> {
         };
         self.problems.push(Diagnostic::error(source.path, message).help(help));
         None
+    }
+
+    /// The system in metres to reproject a raster to: that of the scene, or the zone of UTM that it lies in.
+    pub(super) fn target_of(&self, raster: &Raster) -> String {
+        if let Some(code) = self.system.as_ref().and_then(|system| system.crs.code) {
+            return format!("EPSG:{code}");
+        }
+        let target = raster.place.as_ref().and_then(|place| {
+            let middle = place.corner + 0.5 * place.cell * raster.size_in_cells();
+            let is_known = raster.is_in_degrees() || place.crs.axes == Axes::World;
+            let axes = if raster.is_in_degrees() { &Axes::Degrees } else { &place.crs.axes };
+            is_known.then(|| TargetSystem::of_map(axes, middle))
+        });
+        target.map_or_else(|| "EPSG:326..".to_owned(), |target| format!("EPSG:{}", target.code))
     }
 
     /// Makes metres of heights.
@@ -185,8 +204,6 @@ fn in_unit(unit: &Length, system: &str) -> String {
     let kind = if name.contains("foot") { "feet" } else { "another unit than metres" };
     format!("its coordinates are in {kind}: {name}{length}{system}")
 }
-
-const WORLD_HELP: &str = "reproject it to UTM (`gdalwarp -t_srs EPSG:326.. -r bilinear in out`)";
 
 /// How much longer a metre of the map is than one on the ground, where that is known.
 fn world_message(place: &Place, raster: &Raster) -> String {

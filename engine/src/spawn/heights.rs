@@ -346,6 +346,7 @@ fn top(world: &World) -> f64 {
 
 /// A length with centimetres, or with three digits if it is short.
 pub(super) fn metres(length: f64) -> String {
+    let length = if length.abs() < 1e-9 { 0.0 } else { length };
     let text = if length.abs() < 0.1 { format!("{length:.2e}") } else { format!("{length:.2}") };
     match text.split_once('.') {
         Some(_) if length.abs() >= 0.1 => {

@@ -7,6 +7,7 @@ use super::meshes::Prototype;
 use crate::assets::Row;
 use crate::components::{Placement, PrototypeId, SceneId};
 use crate::document::{Diagnostic, Instances, Scene, suggestion, unknown_name};
+use crate::geometry::place_text;
 use crate::placement::Pattern;
 use crate::terrain::Ground;
 
@@ -31,7 +32,8 @@ impl Spawner<'_> {
                     let ground = ground.filter(|_| *on_terrain);
                     match self.prototype(of, format!("{path}.of")) {
                         Some(prototype) => {
-                            self.rows(&rows, &vec![prototype; rows.len()], ground, &path)
+                            let prototypes = vec![prototype; rows.len()];
+                            self.rows(instances, &rows, &prototypes, ground, &path)
                         }
                         None => Vec::new(),
                     }
@@ -49,7 +51,14 @@ impl Spawner<'_> {
             let shown: Vec<usize> = shown(scene, index, instances)
                 .filter_map(|name| scene.meshes.get_index_of(name))
                 .collect();
-            placed.retain(|placement| shown.contains(&(placement.prototype.0 as usize)));
+            // Nothing stands of crowns without leaves and wood.
+            let is_empty = |prototype: PrototypeId| {
+                meshes.get(&prototype.0).is_some_and(|one| one.mesh.parts.is_empty())
+            };
+            placed.retain(|placement| {
+                let prototype = placement.prototype;
+                shown.contains(&(prototype.0 as usize)) && !is_empty(prototype)
+            });
             if placements.len() + placed.len() > MOST_INSTANCES {
                 self.problems.push(
                     Diagnostic::error(path, format!("more than {MOST_INSTANCES} instances"))
@@ -80,6 +89,7 @@ impl Spawner<'_> {
     /// Rows of a table or a list; their heights count from the ground where it is given.
     pub(super) fn rows(
         &mut self,
+        instances: &Instances,
         rows: &[Row],
         prototypes: &[PrototypeId],
         ground: Option<&Ground>,
@@ -101,10 +111,13 @@ impl Spawner<'_> {
                 Some(placement(row, base, prototype))
             })
             .collect();
-        if let Some(DVec3 { x, y, .. }) = beside.first() {
+        if let (Some(first), Some(ground)) = (beside.first(), ground) {
             let message =
                 format!("{} of {} places have no terrain below", beside.len(), rows.len());
-            let help = format!("({x}, {y}) is one; move it, or take out `on_terrain`");
+            let advice = self
+                .other_coordinates(instances, &beside, ground)
+                .unwrap_or_else(|| "move it, or take out `on_terrain`".to_owned());
+            let help = format!("{} is one: {advice}", place_text(first.truncate()));
             self.problems.push(Diagnostic::error(path, message).help(help));
         }
         placed

@@ -6,8 +6,11 @@ use super::Spawner;
 use super::georaster::{Quantity, RasterSource};
 use crate::assets::Raster;
 use crate::document::{Diagnostic, LandCover, unknown_name};
-use crate::geometry::Rectangle;
+use crate::geometry::{Rectangle, millimetres, place_text};
 use crate::terrain::{Cells, Parts};
+
+/// Classes that an error names.
+const MOST_NAMED: usize = 8;
 
 impl Spawner<'_> {
     /// The part of each cell of a land cover, and the parts.
@@ -33,9 +36,11 @@ impl Spawner<'_> {
         if !(low.cmple(terrain.min + room).all() && high.cmpge(terrain.max - room).all()) {
             let Rectangle { min, max } = terrain;
             let message = format!(
-                "the land cover reaches from ({}, {}) to ({}, {}) m, the heights from ({}, {}) to \
-                 ({}, {}) m",
-                low.x, low.y, high.x, high.y, min.x, min.y, max.x, max.y
+                "the land cover reaches from {} to {} m, the heights from {} to {} m",
+                place_text(low),
+                place_text(high),
+                place_text(min),
+                place_text(max)
             );
             let help = "give every place a class, or cut the heights";
             self.problems.push(Diagnostic::error("terrain.land_cover.file", message).help(help));
@@ -43,14 +48,21 @@ impl Spawner<'_> {
         }
         let mut parts: Parts = Vec::new();
         let mut known: BTreeMap<i64, Option<u16>> = BTreeMap::new();
+        let mut missing = Vec::new();
         let mut values = Vec::with_capacity(raster.values.len());
         for &class in &raster.values {
             // Classes are whole numbers; what has no data is a class without a number.
             let key = if class.is_nan() { i64::MIN } else { class as i64 };
-            let part =
-                known.entry(key).or_insert_with(|| self.class(class, cover, &raster, &mut parts));
+            let part = known.entry(key).or_insert_with(|| {
+                let Some(material) = material_of(class, cover, &raster) else {
+                    missing.push(class);
+                    return None;
+                };
+                self.class(class, material, &mut parts)
+            });
             values.push(part.unwrap_or(0));
         }
+        self.refuse_missing(missing, &raster);
         if known.values().any(Option::is_none) {
             return None;
         }
@@ -58,43 +70,66 @@ impl Spawner<'_> {
         Some((Cells { columns, rows, values, corner: low, size }, parts))
     }
 
-    /// The part of a class; a note if it has no material.
-    fn class(
-        &mut self,
-        class: f64,
-        cover: &LandCover,
-        raster: &Raster,
-        parts: &mut Parts,
-    ) -> Option<u16> {
-        let path = "terrain.land_cover.classes";
-        let number = class.to_string();
-        let name = raster.class_names.get(class as usize).filter(|_| class >= 0.0);
-        let written = |text: &str| text.parse::<f64>().ok() == Some(class);
-        let material = cover
-            .classes
-            .iter()
-            .find(|(key, _)| written(key) || Some(*key) == name)
-            .map(|(_, material)| material);
-        let Some(material) = material else {
-            let message = match name {
-                _ if class.is_nan() => "the land cover has cells without data".to_owned(),
-                Some(name) => format!("class {number} (`{name}`) has no material"),
-                None => format!("class {number} has no material"),
-            };
-            let help = if class.is_nan() {
-                "give them a class".to_owned()
-            } else {
-                format!("add `\"{number}\": \"..\"` with the name of a material")
-            };
-            self.problems.push(Diagnostic::error(path, message).help(help));
-            return None;
-        };
-        let id = self.known_material(material, &format!("{path}.{number}"))?;
+    /// The part of a class with this material; `None` if a problem was noted.
+    fn class(&mut self, class: f64, material: &str, parts: &mut Parts) -> Option<u16> {
+        let id = self.known_material(material, &format!("terrain.land_cover.classes.{class}"))?;
         // Classes of one material need no border between them.
         let part = parts.iter().position(|(_, known)| *known == id).unwrap_or_else(|| {
-            parts.push((material.clone(), id));
+            parts.push((material.to_owned(), id));
             parts.len() - 1
         });
         Some(part as u16)
     }
+
+    /// Refuses classes that have no material, all in one error.
+    fn refuse_missing(&mut self, mut missing: Vec<f64>, raster: &Raster) {
+        let path = "terrain.land_cover.classes";
+        if missing.iter().any(|class| class.is_nan()) {
+            let message = "the land cover has cells without data";
+            let help = "give them a class";
+            self.problems.push(Diagnostic::error(path, message).help(help));
+            missing.retain(|class| !class.is_nan());
+        }
+        missing.sort_by(f64::total_cmp);
+        let Some(first) = missing.first() else { return };
+        let shown: Vec<String> =
+            missing.iter().take(MOST_NAMED).map(|&class| class_text(class, raster)).collect();
+        let more = match missing.len() - shown.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let message = match missing.len() {
+            1 => format!("class {} has no material", shown[0]),
+            count => format!("{count} classes have no material: {}{more}", shown.join(", ")),
+        };
+        let help = if missing.iter().any(|class| class.fract() != 0.0) {
+            "classes are whole numbers: is this a raster of heights or of another quantity?"
+                .to_owned()
+        } else if missing.len() == 1 {
+            format!("add `\"{first}\": \"..\"` with the name of a material")
+        } else {
+            format!("add `\"{first}\": \"..\"` with the name of a material, and so on for each")
+        };
+        self.problems.push(Diagnostic::error(path, message).help(help));
+    }
+}
+
+/// Name of the material of a class.
+fn material_of<'c>(class: f64, cover: &'c LandCover, raster: &Raster) -> Option<&'c str> {
+    let name = class_name(class, raster);
+    let is_written = |text: &str| text.parse::<f64>().ok() == Some(class);
+    let entry = cover.classes.iter().find(|(key, _)| is_written(key) || Some(key.as_str()) == name);
+    entry.map(|(_, material)| material.as_str())
+}
+
+/// Name of a class in the raster's file.
+fn class_name(class: f64, raster: &Raster) -> Option<&str> {
+    raster.class_names.get(class as usize).filter(|_| class >= 0.0).map(String::as_str)
+}
+
+/// A class for a message, with its name.
+fn class_text(class: f64, raster: &Raster) -> String {
+    let number = millimetres(class);
+    class_name(class, raster)
+        .map_or_else(|| number.to_string(), |name| format!("{number} (`{name}`)"))
 }

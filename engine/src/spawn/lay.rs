@@ -4,7 +4,7 @@ use super::Spawner;
 use super::georaster::RasterSource;
 use crate::assets::Raster;
 use crate::document::Diagnostic;
-use crate::geometry::Rectangle;
+use crate::geometry::{Rectangle, place_text};
 use crate::terrain::Cells;
 
 /// How the coordinates of rasters become those of the scene: `to + (place - from) scale`, m.
@@ -37,8 +37,14 @@ impl Spawner<'_> {
                 ("degrees", "a scene is in metres")
             };
             let message = format!("its coordinates are {own}, but {others}");
-            let help = "reproject it to the coordinates of the others, for example \
-                        `gdalwarp -t_srs EPSG:32633 -r near in out` (UTM zone 33 north)";
+            let target = if reference.is_of_degrees {
+                "EPSG:4326".to_owned()
+            } else {
+                self.target_of(raster)
+            };
+            let help = format!(
+                "reproject it to the coordinates of the others: `gdalwarp -t_srs {target} -r near in out`"
+            );
             self.problems.push(Diagnostic::error(path, message).help(help));
             return None;
         }
@@ -58,15 +64,11 @@ impl Spawner<'_> {
         let end = corner + size;
         if !(corner.cmplt(terrain.max).all() && end.cmpgt(terrain.min).all()) {
             let message = format!(
-                "it reaches from ({}, {}) to ({}, {}) m, the terrain from ({}, {}) to ({}, {}) m",
-                corner.x,
-                corner.y,
-                end.x,
-                end.y,
-                terrain.min.x,
-                terrain.min.y,
-                terrain.max.x,
-                terrain.max.y
+                "it reaches from {} to {} m, the terrain from {} to {} m",
+                place_text(corner),
+                place_text(end),
+                place_text(terrain.min),
+                place_text(terrain.max)
             );
             let help = "rasters lie where their files say, less `frame.origin_m`";
             self.problems.push(Diagnostic::error(path, message).help(help));

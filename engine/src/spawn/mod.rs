@@ -1,5 +1,6 @@
 //! Document and assets to entities; every error of the scene in one pass, each with its place.
 
+mod astray;
 mod beside;
 mod canopy;
 mod crossing;

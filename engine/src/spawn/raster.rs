@@ -143,19 +143,15 @@ impl Spawner<'_> {
             _ if size.is_some() => String::new(),
             None if raster.is_in_degrees() => {
                 let DVec2 { x, y } = place.corner;
-                format!("its coordinates are degrees: ({x}, {y}), in cells of {}", place.cell.x)
+                format!(
+                    "its coordinates are degrees: ({x:.6}, {y:.6}), in cells of {:.9}",
+                    place.cell.x
+                )
             }
             _ => String::new(),
         };
         if !problem.is_empty() {
-            // Six degrees a zone, from the date line eastwards.
-            let zone = ((place.corner.x + 0.5 * extent.x + 180.0) / 6.0).floor() as i64 + 1;
-            let half = if place.corner.y < 0.0 { 7 } else { 6 };
-            let code = if (1..=60).contains(&zone) && raster.is_in_degrees() {
-                format!("EPSG:32{half}{zone:02}")
-            } else {
-                "EPSG:326..".to_owned()
-            };
+            let code = self.target_of(raster);
             let help = format!(
                 "a scene is in metres: reproject it to UTM (`gdalwarp -t_srs {code} -r bilinear in \
                  out`), or write `coordinates: Degrees` to take small rasters for metres as in \

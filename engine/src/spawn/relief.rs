@@ -4,8 +4,8 @@
 use glam::DVec2;
 
 use super::Spawner;
-use crate::document::{Diagnostic, Terrain};
-use crate::geometry::{Polygon, Rectangle};
+use crate::document::{Area, Diagnostic, Terrain};
+use crate::geometry::{Polygon, Rectangle, place_text};
 use crate::terrain::{Cells, Ground};
 
 /// Steps along a seam that are lower may be meant, m.
@@ -73,7 +73,13 @@ impl Spawner<'_> {
     }
 
     /// Warns of an area that lies beside the terrain.
-    pub(super) fn doubt_area(&mut self, polygons: &[Polygon], terrain: Rectangle, path: &str) {
+    pub(super) fn doubt_area(
+        &mut self,
+        area: &Area,
+        polygons: &[Polygon],
+        terrain: Rectangle,
+        path: &str,
+    ) {
         let corners = || polygons.iter().flat_map(|polygon| &polygon.rings).flatten().copied();
         let low = corners().fold(DVec2::INFINITY, DVec2::min);
         let high = corners().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -83,9 +89,12 @@ impl Spawner<'_> {
         }
         let message = "the area lies beside the terrain and has no effect";
         let help = format!(
-            "it reaches from ({}, {}) to ({}, {}) m, the terrain from ({}, {}) to ({}, {}) m, local frame; \
-             see `frame.origin_m`, which is subtracted where an area is `georeferenced`",
-            low.x, low.y, high.x, high.y, min.x, min.y, max.x, max.y
+            "it reaches from {} to {} m, the terrain from {} to {} m, local frame: {}",
+            place_text(low),
+            place_text(high),
+            place_text(min),
+            place_text(max),
+            self.area_advice(area, polygons, terrain)
         );
         self.problems.push(Diagnostic::warning(path, message).help(help));
     }
@@ -100,10 +109,10 @@ impl Spawner<'_> {
                         centimetres, 0.1 for decimetres, 0.3048 for feet";
             self.problems.push(Diagnostic::warning("terrain.file", message).help(help));
         } else if steps.highest > CLIFF {
-            let DVec2 { x, y } = heights.center(steps.at);
             let message = format!(
-                "the ground rises or falls by {:.1} m from the cell at ({x}, {y}) to the next",
-                steps.highest
+                "the ground rises or falls by {:.1} m from the cell at {} to the next",
+                steps.highest,
+                place_text(heights.center(steps.at))
             );
             let help = "a cell without data may hold a height that the file does not name as such: name it \
                         (`gdal_edit.py -a_nodata 0`) and write `no_data: Neighbours`";

@@ -8,7 +8,7 @@ use super::meshes::Prototype;
 use crate::assets;
 use crate::components::Placement;
 use crate::document::{Area, Boundary, Diagnostic, Instances, Map, Stems};
-use crate::geometry::{Polygon, Rectangle};
+use crate::geometry::{Polygon, Rectangle, place_text};
 use crate::placement::{Amount, Habit, PlacementError, Region, Species, places, stand};
 use crate::sampling::Key;
 use crate::terrain::{Cells, Ground};
@@ -146,15 +146,11 @@ impl Spawner<'_> {
         let (low, high, room) = (cells.corner, cells.corner + cells.size, 1e-6 * needed.size());
         if !(low.cmple(needed.min + room).all() && high.cmpge(needed.max - room).all()) {
             let message = format!(
-                "it reaches from ({}, {}) to ({}, {}) m, but stems may stand from ({}, {}) to ({}, {}) m",
-                low.x,
-                low.y,
-                high.x,
-                high.y,
-                needed.min.x,
-                needed.min.y,
-                needed.max.x,
-                needed.max.y
+                "it reaches from {} to {} m, but stems may stand from {} to {} m",
+                place_text(low),
+                place_text(high),
+                place_text(needed.min),
+                place_text(needed.max)
             );
             let help = "nothing stands beside it";
             self.problems.push(Diagnostic::warning(path, message).help(help));
@@ -176,7 +172,7 @@ impl Spawner<'_> {
             for (index, area) in areas.iter().enumerate() {
                 let path = format!("{path}.{key}[{index}]");
                 let found = spawner.polygons(area, &path)?;
-                spawner.doubt_area(&found, terrain, &path);
+                spawner.doubt_area(area, &found, terrain, &path);
                 owners.extend(found.iter().map(|_| path.clone()));
                 polygons.extend(found);
             }
@@ -194,8 +190,9 @@ impl Spawner<'_> {
                     PlacementError::NoGround => {
                         let Rectangle { min, max } = terrain;
                         let help = format!(
-                            "the terrain reaches from ({}, {}) to ({}, {}); see also `georeferenced`",
-                            min.x, min.y, max.x, max.y
+                            "the terrain reaches from {} to {} m, local frame",
+                            place_text(min),
+                            place_text(max)
                         );
                         (path.to_owned(), help)
                     }
@@ -243,7 +240,8 @@ impl Spawner<'_> {
                 }
                 Some(polygons)
             }
-            Err(error) => {
+            Err(mut error) => {
+                self.name_target(&mut error);
                 self.problems.push(Diagnostic::error(format!("{path}.file"), error.to_string()));
                 None
             }

@@ -6,6 +6,7 @@ use super::Spawner;
 use super::meshes::Prototype;
 use crate::components::Placement;
 use crate::document::Diagnostic;
+use crate::geometry::place_text;
 use crate::terrain::Ground;
 
 /// Height of bodies that are flat, and gap over which those do not float, m.
@@ -50,12 +51,13 @@ impl Spawner<'_> {
             if !floats && high - below >= 0.5 * height {
                 continue;
             }
-            let DVec3 { x, y, .. } = placement.position;
             let case = cases.entry((placement.prototype.0, floats)).or_insert_with(|| Case {
                 count: 0,
                 example: format!(
-                    "at ({x}, {y}) the ground is {below:.2} m high, and it reaches from {low:.2} to \
-                     {high:.2} m"
+                    "at {} the ground is {below:.2} m high, and it reaches from {low:.2} to \
+                     {high:.2} m{}",
+                    place_text(placement.position.truncate()),
+                    self.terrain_advice(placement, [low, high])
                 ),
             });
             case.count += 1;

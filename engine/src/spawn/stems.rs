@@ -10,6 +10,7 @@ use super::meshes::Prototype;
 use crate::assets::{Row, StemTable, read_instances};
 use crate::components::{Placement, PrototypeId};
 use crate::document::{Diagnostic, Instances, SpeciesMeshes, TableCoordinates, suggestion};
+use crate::geometry::place_text;
 use crate::terrain::Ground;
 
 /// A plant's diameter below this part of its height is that of its stem, not of its crown.
@@ -81,7 +82,7 @@ impl Spawner<'_> {
                 return Vec::new();
             }
         }
-        self.rows(&rows, &prototypes, ground.filter(|_| *on_terrain), path)
+        self.rows(instances, &rows, &prototypes, ground.filter(|_| *on_terrain), path)
     }
 
     /// Warns of rows that lie so near to each other that their coordinates may be degrees.
@@ -241,10 +242,12 @@ impl Spawner<'_> {
                 let other = map.apply(first);
                 (
                     format!(
-                        "{file}: no row lies on the terrain: the first is at ({}, {}) m as it is \
-                         written, at ({}, {}) m less `frame.origin_m`, and the terrain reaches from \
-                         ({}, {}) to ({}, {}) m",
-                        first.x, first.y, other.x, other.y, low.x, low.y, high.x, high.y
+                        "{file}: no row lies on the terrain: the first is at {} m as it is written, at {} m \
+                         less `frame.origin_m`, and the terrain reaches from {} to {} m",
+                        place_text(first),
+                        place_text(other),
+                        place_text(low),
+                        place_text(high)
                     ),
                     "correct `frame.origin_m`, or write `coordinates: Local` or `coordinates: Map`",
                 )
@@ -255,7 +258,7 @@ impl Spawner<'_> {
     }
 
     /// How coordinates of the map become those of the scene.
-    fn map(&self) -> Georeference {
+    pub(super) fn map(&self) -> Georeference {
         let (x, y, _) = self.scene.frame.origin_m;
         self.georeference.unwrap_or(Georeference {
             from: DVec2::new(x, y),
@@ -277,7 +280,7 @@ impl Spawner<'_> {
 
 impl Georeference {
     /// Place in the scene of a place on the map, m.
-    fn apply(&self, place: DVec2) -> DVec2 {
+    pub(super) fn apply(&self, place: DVec2) -> DVec2 {
         self.to + (place - self.from) * self.scale
     }
 }

@@ -1,8 +1,8 @@
 //! Coordinate reference systems of the scene and of its files.
 
 use super::Spawner;
-use crate::assets::crs::{Agreement, compare, from_name};
-use crate::assets::{Axes, Crs};
+use crate::assets::crs::{Agreement, TargetSystem, compare, from_name};
+use crate::assets::{AssetError, Axes, Crs};
 use crate::components::Projection;
 use crate::document::Diagnostic;
 
@@ -59,10 +59,17 @@ impl Spawner<'_> {
         let names = format!("it is in {}, but {owner} in {}", crs.name, reference.name);
         let target =
             reference.code.map_or_else(|| "EPSG:..".to_owned(), |code| format!("EPSG:{code}"));
-        let tool = if path.contains("inside") || path.contains("outside") {
-            format!("`ogr2ogr -t_srs {target} out.geojson in.geojson`")
+        let is_area = path.contains("inside") || path.contains("outside");
+        let (tool, correct) = if is_area {
+            (
+                format!("`ogr2ogr -t_srs {target} out.geojson in.geojson`"),
+                format!("`ogr2ogr -a_srs {target} out.geojson in.geojson`"),
+            )
         } else {
-            format!("`gdalwarp -t_srs {target} in.tif out.tif`")
+            (
+                format!("`gdalwarp -t_srs {target} in.tif out.tif`"),
+                format!("`gdal_edit.py -a_srs {target} in.tif`"),
+            )
         };
         match compare(crs, reference) {
             Agreement::Same => Some(()),
@@ -74,11 +81,24 @@ impl Spawner<'_> {
             Agreement::Differ(reason) => {
                 let help = format!(
                     "{reason}, so that the same coordinates are other places: reproject it ({tool}), or \
-                     correct what it says of itself (`gdal_edit.py -a_srs`)"
+                     correct what it says of itself ({correct})"
                 );
                 self.problems.push(Diagnostic::error(path, names).help(help));
                 None
             }
+        }
+    }
+
+    /// Names the system of the scene as that to convert an area to, where it is known.
+    pub(super) fn name_target(&self, error: &mut AssetError) {
+        let (AssetError::InDegrees { target, .. } | AssetError::NotInMetres { target, .. }) = error
+        else {
+            return;
+        };
+        if let Some(System { crs, owner }) = &self.system
+            && let Some(code) = crs.code
+        {
+            *target = TargetSystem { code, reason: format!("that of {owner}") };
         }
     }
 

@@ -14,7 +14,10 @@ impl Spawner<'_> {
             return;
         }
         let sky = match &scene.thermal_sky {
-            ThermalSky::None => Some(vec![0.0; scene.bands.len()]),
+            ThermalSky::None => {
+                self.note_cold_sky();
+                Some(vec![0.0; scene.bands.len()])
+            }
             ThermalSky::BlackBody(kelvin) => Some(black(&scene.bands, *kelvin)),
             ThermalSky::Radiance(radiance) => {
                 self.spectrum(radiance, Quantity::Irradiance, "thermal_sky")
@@ -23,6 +26,20 @@ impl Spawner<'_> {
         if let Some(sky) = sky {
             let bands = scene.bands.iter().map(Band::emits).collect();
             world.spawn((SceneId(0), Emission { bands, sky }));
+        }
+    }
+
+    /// Says that the sky emits nothing, which lowers brightness temperatures.
+    fn note_cold_sky(&mut self) {
+        let bands = self.scene.bands.iter().filter(|band| band.emits());
+        let names: Vec<String> = bands.map(|band| format!("`{}`", band.name)).collect();
+        if !names.is_empty() {
+            self.notes.push(format!(
+                "no `thermal_sky` is given: the sky emits nothing in {} {}, as if it were at 0 K, and surfaces \
+                 reflect none of it; a clear sky is about `thermal_sky: BlackBody(250.0)`",
+                if names.len() == 1 { "band" } else { "bands" },
+                names.join(", ")
+            ));
         }
     }
 

@@ -12,3 +12,4 @@ mod spectra;
 mod tables;
 mod transport;
 mod views;
+mod words;

@@ -34,8 +34,6 @@ pub enum CrownError {
          crown or larger clumps"
     )]
     NoRoomAtDistance { placed: u64, count: u64, distance: f64, possible: f64 },
-    #[error("the crown has neither leaves nor a trunk; give leaf_area_m2 above 0 or a trunk")]
-    Nothing,
     #[error("trunk.tip_diameter_m is {tip}; write 0 up to trunk.diameter_m = {foot}")]
     TipThickerThanFoot { tip: f64, foot: f64 },
     #[error(

@@ -126,6 +126,8 @@ impl CrownSpec {
 /// are tapered, closed prisms, their corners on the circles of the given diameters; branches start
 /// on the trunk's axis and end near the outline.
 ///
+/// A crown without leaves and without a trunk is an empty mesh, such as the bare reference of a sweep.
+///
 /// The same specification always gives the same mesh, bit for bit.
 ///
 /// # Errors
@@ -182,7 +184,7 @@ fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
         return Err(CrownError::BadArea { value: area });
     }
     if area == 0.0 {
-        return if crown.trunk.is_some() { Ok(0) } else { Err(CrownError::Nothing) };
+        return Ok(0);
     }
     let leaf = leaves::area(&crown.leaf);
     let count = (area / leaf).round();

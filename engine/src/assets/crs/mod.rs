@@ -4,6 +4,7 @@
 mod compare;
 mod name;
 mod registry;
+mod target;
 mod wkt;
 
 #[cfg(test)]
@@ -12,6 +13,7 @@ mod tests;
 pub(crate) use compare::{Agreement, compare};
 pub(crate) use name::from_name;
 pub(crate) use registry::from_code;
+pub use target::TargetSystem;
 pub(crate) use wkt::from_wkt;
 
 /// Coordinate reference system, as far as a file or a scene says.

@@ -20,9 +20,9 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::AssetError;
 use super::crs::{Axes, Crs, Heights};
 use super::text::open;
+use super::{AssetError, foreign};
 
 pub use error::RasterError;
 pub(crate) use sidecar::companions;
@@ -147,10 +147,12 @@ pub fn read_raster(path: &Path, extent: Option<&Extent>) -> Result<Raster, Asset
         Err(problem)
     } else if let Some(header) = esri::header_of(path) {
         esri::read(path, &header, extent)
-    } else if strange::is_binary(&start) {
-        Err(RasterError::Binary)
     } else {
-        return ascii::read(path, extent);
+        foreign::check(path, foreign::Reader::Raster)?;
+        if !strange::is_binary(&start) {
+            return ascii::read(path, extent);
+        }
+        Err(RasterError::Binary)
     };
     raster.and_then(Raster::checked).map_err(wrong)
 }

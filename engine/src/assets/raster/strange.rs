@@ -3,7 +3,7 @@
 use super::RasterError;
 
 /// Formats by their first bytes, with what they are.
-const FORMATS: [(&[u8], &str); 16] = [
+const FORMATS: [(&[u8], &str); 14] = [
     (b"EHFA_HEADER_TAG", "an ERDAS Imagine file"),
     (b"\x89HDF", "an HDF5 or netCDF file"),
     (b"CDF\x01", "a netCDF file"),
@@ -13,8 +13,6 @@ const FORMATS: [(&[u8], &str); 16] = [
     (b"\xff\xd8\xff", "a JPEG picture"),
     (b"\x00\x00\x00\x0cjP", "a JPEG 2000 file"),
     (b"GRIB", "a GRIB file"),
-    (b"PK\x03\x04", "a ZIP archive"),
-    (b"\x1f\x8b", "a gzip archive"),
     (b"<VRTDataset", "a virtual raster (VRT)"),
     (b"DSAA", "a Surfer grid"),
     (b"DSBB", "a Surfer grid"),

@@ -300,6 +300,8 @@ fn winter_trees_have_wood_alone() {
     let names: Vec<_> = tree.parts.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["leaf", "wood"]);
     assert_eq!(tree.parts[1].discs.start as usize, tree.discs.len());
+    let bare = CrownSpec { trunk: None, branches: None, ..crown };
+    assert_eq!(grow_crown(&bare).unwrap().bounds(), None, "neither leaves nor wood");
 }
 
 #[test]
@@ -315,7 +317,6 @@ fn what_cannot_grow_is_an_error() {
         (CrownSpec { leaf_area_m2: f64::INFINITY, ..good.clone() }, "leaf_area_m2 is inf"),
         (CrownSpec { leaf_area_m2: 1e6, ..good.clone() }, "more than 5e7"),
         (CrownSpec { leaf_area_m2: 1e-4, ..good.clone() }, "less than half of one leaf"),
-        (CrownSpec { leaf_area_m2: 0.0, trunk: None, branches: None, ..good.clone() }, "neither"),
         (CrownSpec { base_m: nan, ..good.clone() }, "base_m is NaN"),
         (
             CrownSpec { leaf: LeafShape::Disc { radius_m: 0.0 }, ..good.clone() },
