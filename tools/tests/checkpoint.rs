@@ -241,6 +241,28 @@ fn what_does_not_fit_together_is_an_error() {
     assert!(!Path::new("out").exists(), "no result was written");
 }
 
+/// *Expected*: parts that were traced with some sensors come out as a run with those, without naming them again.
+#[test]
+fn parts_of_some_sensors_are_united() {
+    let place = Place::new("some", SCENE);
+    let some = ["--quality", "0.02", "--sensor", "photons", "--sensor", "image"];
+    let whole = place.summary(&[&["run", "scene.ron"], &some[..]].concat());
+    for (part, file) in [("1/2", "a"), ("2/2", "b")] {
+        let part = ["--part", part, "--checkpoint", file];
+        let out = place.run(&[&["run", "scene.ron"], &some[..], &part[..]].concat());
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    }
+    let united = place.summary(&["merge", "scene.ron", "a", "b", "--quality", "0.02", "--force"]);
+    assert!(united.contains("photons") && !united.contains("\"views\""), "{united}");
+    assert_eq!(united, whole);
+    // Parts of other sensors are no parts of one run.
+    let other = ["run", "scene.ron", "--quality", "0.02", "--sensor", "eye"];
+    let out = place.run(&[&other[..], &["--part", "2/2", "--checkpoint", "c"]].concat());
+    assert!(out.status.success());
+    let error = place.error(&["merge", "scene.ron", "a", "c", "--out", "out"]);
+    assert!(error.contains("c: is of another scene or of other sensors"), "{error}");
+}
+
 /// *Expected*: what cannot be a checkpoint is an error before anything is traced, and nothing of it is
 /// read to an end that it may not have.
 #[test]

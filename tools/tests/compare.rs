@@ -126,6 +126,31 @@ fn the_reference_may_be_any_of_the_systems() {
     assert_eq!(products, ["brf_uc", "brf_co_sgl"]);
 }
 
+/// *Scene*: few photons, each of which is counted whole or not at all, so that many directions count none.
+/// *Expected*: those have no z-score, the table and the picture say how many they are, and the others agree.
+#[test]
+fn what_counted_nothing_has_no_score() {
+    let folder = tempdir().unwrap();
+    let cells = "Photons(per_m2: 500.0, measure: [BrfCells(150)])";
+    let scene = LEAVES.replace("Photons(per_m2: 500.0)", cells);
+    fs::write(folder.path().join("leaves.ron"), scene).unwrap();
+    let arguments =
+        ["--systems", "forward,analog", "--sensor", "photons", "--reference", "forward"];
+    let (code, stdout, stderr) = outcome(folder.path(), &arguments);
+    assert_eq!((code, stderr.as_str()), (0, ""));
+    let rows = rows(&folder.path().join("out/leaves_compare/compare_summary.csv"));
+    let analog = rows.iter().find(|row| {
+        row["product"].starts_with("brf_cells")
+            && row["system"] == "analog"
+            && !row["remark"].is_empty()
+    });
+    let analog = analog.unwrap_or_else(|| panic!("{stdout}"));
+    assert!(analog["remark"].ends_with("without a count, not in z"), "{analog:?}");
+    assert!(analog["rms z"].parse::<f64>().unwrap() < 2.0, "{analog:?}");
+    let svg = fs::read_to_string(folder.path().join("out/leaves_compare/compare.svg")).unwrap();
+    assert!(svg.contains("without a count left out"), "{svg}");
+}
+
 /// A limit for a product that a system does not measure is one for those that it does.
 #[test]
 fn limits_by_name_hold_for_what_a_system_measures() {

@@ -60,7 +60,7 @@ impl Figure {
         let is_blank = picture.rgba.chunks_exact(4).all(|pixel| pixel[3] == 0);
         layout.legend(legend, caption.unit);
         if is_blank {
-            layout.text("no pixel has data");
+            layout.text("no pixel shows anything of the scene");
         } else if has_holes {
             layout.rows.push(Row::NoData);
         }

@@ -77,6 +77,10 @@ impl Lines {
         }
         let each: usize =
             others.iter().map(|axes| axes.first().map_or(1, |axis| axis.points.len())).product();
+        // Lines of a material, say, belong together: they differ in the dimensions behind it.
+        let first =
+            others.first().and_then(|axes| axes.first()).map_or(1, |axis| axis.points.len());
+        let of_group = if others.len() > 1 { each / first.max(1) } else { each }.max(1);
         let mut lines = Vec::new();
         for other in 0..each {
             for track in &tracks {
@@ -91,26 +95,66 @@ impl Lines {
                     points.into_iter().filter(|point| point.value.is_finite()).collect();
                 let mut names = names_of(others, other);
                 names.extend(Some(track.name.clone()).filter(|name| !name.is_empty()));
-                lines.push(Line { name: names.join(", "), points });
+                let line = Line { name: names.join(", "), points };
+                lines.push(GroupedLine { group: other / of_group, line });
             }
         }
         // What is 0 throughout, as a material that absorbs nothing, hides nothing else.
-        lines.retain(|line| !line.points.is_empty());
-        let is_lit = |line: &Line| line.points.iter().any(|point| point.value != 0.0);
+        lines.retain(|one| !one.line.points.is_empty());
+        let is_lit = |one: &GroupedLine| one.line.points.iter().any(|point| point.value != 0.0);
         if lines.len() > MOST_LINES && lines.iter().any(is_lit) {
             lines.retain(is_lit);
         }
-        let hidden = lines.len().saturating_sub(MOST_LINES);
-        let count = lines.len();
-        if hidden > 0 {
-            let kept = |index: usize| index * (count - 1) / (MOST_LINES - 1);
-            lines = (0..MOST_LINES).map(|index| lines[kept(index)].clone()).collect();
-        }
+        let (mut lines, hidden) = thinned(lines);
         if let [line] = &mut lines[..] {
             line.name.clear();
         }
         (!lines.is_empty()).then_some(Self { axis, is_profile, curves: lines, hidden })
     }
+}
+
+/// A line and the point of the first dimension behind that of the axis that it belongs to.
+struct GroupedLine {
+    group: usize,
+    line: Line,
+}
+
+/// At most [`MOST_LINES`] lines, and the number of those that are left out. Groups are kept whole, those with
+/// the largest values first; of a single group, and of one that is too large, lines are taken evenly.
+fn thinned(lines: Vec<GroupedLine>) -> (Vec<Line>, usize) {
+    let count = lines.len();
+    if count <= MOST_LINES {
+        return (lines.into_iter().map(|one| one.line).collect(), 0);
+    }
+    let peak = |line: &Line| line.points.iter().map(|point| point.value.abs()).fold(0.0, f64::max);
+    let mut groups: Vec<(usize, f64, usize)> = Vec::new();
+    for GroupedLine { group, line } in &lines {
+        match groups.last_mut() {
+            Some((last, highest, members)) if last == group => {
+                *highest = highest.max(peak(line));
+                *members += 1;
+            }
+            _ => groups.push((*group, peak(line), 1)),
+        }
+    }
+    groups.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut room = MOST_LINES;
+    let mut kept = Vec::new();
+    for (group, _, members) in groups {
+        if kept.is_empty() || members <= room {
+            kept.push(group);
+            room = room.saturating_sub(members);
+        }
+    }
+    let lines = lines.into_iter().filter(|one| kept.contains(&one.group)).map(|one| one.line);
+    let mut lines: Vec<Line> = lines.collect();
+    if lines.len() > MOST_LINES {
+        let last = lines.len() - 1;
+        let even = (0..MOST_LINES).map(|number| lines[number * last / (MOST_LINES - 1)].clone());
+        lines = even.collect();
+    }
+    let hidden = count - lines.len();
+    (lines, hidden)
 }
 
 fn numbers<'a>(axes: &'a [Axis], name: &str) -> Option<&'a [f64]> {
@@ -280,5 +324,22 @@ mod tests {
         let lines = lines.expect("a chart");
         assert_eq!((lines.curves.len(), lines.hidden), (8, 12));
         assert_eq!((lines.curves[0].name.as_str(), lines.curves[7].name.as_str()), ("b0", "b19"));
+    }
+
+    #[test]
+    fn the_materials_that_are_kept_have_lines_for_all_bands() {
+        let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
+        let materials = ["grass", "soil", "leaf", "bark"].map(str::to_owned).to_vec();
+        let material =
+            vec![Axis { name: "material".to_owned(), points: AxisPoints::Labels(materials) }];
+        // Of 4 materials the first and the third absorb most.
+        let values: Vec<f64> = (0..24).map(|at| [4.0, 1.0, 3.0, 2.0][at / 3 % 4]).collect();
+        let all = product(vec![layers, material, bands(&["blue", "red", "nir"])], &values);
+        let lines = Lines::of(&all).expect("a chart");
+        let names: Vec<&str> = lines.curves.iter().map(|line| line.name.as_str()).collect();
+        let [grass, leaf] = ["grass", "leaf"]
+            .map(|material| ["blue", "red", "nir"].map(|band| format!("{material}, {band}")));
+        assert_eq!(names, [grass, leaf].concat());
+        assert_eq!(lines.hidden, 6);
     }
 }

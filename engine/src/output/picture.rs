@@ -251,9 +251,11 @@ impl Composite {
             bars.push(Bar { name, wavelength, channels, low: stretch.low, high: stretch.high });
             shown.push(band);
         }
+        let has_data = image.values.iter().any(|value| value.is_finite());
         let is_dark = |(band, name): (usize, &String)| {
             let mut values = image.values.iter().skip(band).step_by(image.bands.len());
-            let is_dark = values.all(|value| !value.is_finite() || *value == 0.0);
+            // Pixels without data tell nothing of the light.
+            let is_dark = has_data && values.all(|value| !value.is_finite() || *value == 0.0);
             is_dark.then(|| name.clone())
         };
         let dark = image.bands.iter().enumerate().filter_map(is_dark).collect();
@@ -438,5 +440,24 @@ mod tests {
         };
         let picture = Picture::quicklook(&image, &[660.0]);
         assert_eq!(picture.rgba, [186, 186, 186, 255, 0, 0, 0, 0, 186, 186, 186, 128]);
+    }
+
+    /// An image that shows nothing of the scene is not dark.
+    #[test]
+    fn only_bands_with_data_are_dark() {
+        let dark = |value: f32| {
+            let image = Image {
+                width: 1,
+                height: 1,
+                bands: vec!["red".to_owned()],
+                values: vec![value],
+                standard_error: vec![f32::NAN],
+                coverage: vec![1.0],
+                rendering: Rendering::Quicklook,
+                georeference: None,
+            };
+            Picture::with_legend(&image, &[660.0]).1.dark
+        };
+        assert_eq!((dark(f32::NAN), dark(0.0)), (Vec::new(), vec!["red".to_owned()]));
     }
 }

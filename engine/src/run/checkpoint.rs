@@ -161,6 +161,18 @@ impl Keeper {
         Ok(Self { hash, read, ..Self::idle() })
     }
 
+    /// Names of the sensors that a checkpoint holds, if it is of another scene than that with this hash.
+    ///
+    /// # Errors
+    /// If it cannot be read or is damaged.
+    pub(super) fn other_sensors(file: &Path, hash: [u8; 32]) -> Result<Vec<String>, Failure> {
+        let Traced { scene, sections, .. } = read(file)?;
+        if scene == hash {
+            return Ok(Vec::new());
+        }
+        Ok(sections.into_iter().map(|section| section.name).collect())
+    }
+
     /// Which share is traced.
     pub(super) fn share(&self) -> Share {
         self.to.as_ref().map_or(Share::ALL, |to| to.share)
@@ -325,12 +337,32 @@ fn no_file(file: &Path) -> Failure {
     wrong(file, "is no regular file but a folder, a pipe or a device", "name a file")
 }
 
+/// All that a checkpoint holds.
+struct Traced {
+    /// Hash of the scene.
+    scene: [u8; 32],
+    share: Share,
+    sections: Vec<Section>,
+}
+
 /// Reads a checkpoint of a scene.
 fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
+    let Traced { scene, share, sections } = read(file)?;
+    if scene != hash {
+        let found = "is of another scene or of other sensors: only `until`, `samples_per_px`, `samples_per_m2`, \
+                     `per_m2` and the quality may differ";
+        return Err(wrong(file, found, START_AGAIN));
+    }
+    Ok((share, sections))
+}
+
+const START_AGAIN: &str = "take the file away to trace from the start";
+
+/// Reads a checkpoint.
+fn read(file: &Path) -> Result<Traced, Failure> {
     let bytes = bytes_of(file)?;
-    let start_again = "take the file away to trace from the start";
     let damaged =
-        || wrong(file, "is damaged: its checksum is not that of what it holds", start_again);
+        || wrong(file, "is damaged: its checksum is not that of what it holds", START_AGAIN);
     let (all, sum) = bytes.split_last_chunk::<32>().ok_or_else(damaged)?;
     if blake3::hash(all) != *sum {
         return Err(damaged());
@@ -339,7 +371,7 @@ fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
     let version = number(&mut rest).map_err(|_short| damaged())?;
     if version != VERSION {
         let found = format!("has format {version}, and this version reads format {VERSION}");
-        return Err(wrong(file, &found, start_again));
+        return Err(wrong(file, &found, START_AGAIN));
     }
     let sunfleck = string(&mut rest).map_err(|_short| damaged())?;
     if sunfleck != env!("CARGO_PKG_VERSION") {
@@ -347,7 +379,7 @@ fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
             "was written by sunfleck {sunfleck}, and this is {}, which may draw other numbers",
             env!("CARGO_PKG_VERSION")
         );
-        return Err(wrong(file, &found, start_again));
+        return Err(wrong(file, &found, START_AGAIN));
     }
     let body = (|| -> io::Result<([u8; 32], Share, Vec<Section>)> {
         let scene = array(&mut rest)?;
@@ -357,15 +389,10 @@ fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
         Ok((scene, share, sections))
     })();
     let (scene, share, sections) = body.map_err(|_short| damaged())?;
-    if scene != hash {
-        let found = "is of another scene: only `until`, `samples_per_px`, `samples_per_m2`, `per_m2` and \
-                     the quality may differ";
-        return Err(wrong(file, found, start_again));
-    }
     if share.index >= share.of {
         return Err(damaged());
     }
-    Ok((share, sections))
+    Ok(Traced { scene, share, sections })
 }
 
 fn section(input: &mut &[u8]) -> io::Result<Section> {

@@ -298,6 +298,12 @@ fn run_kept(
         }
         None => (spawn(scene, folder).map_err(Failure::Problems)?, None),
     };
+    // Parts that were traced with some sensors are united with those.
+    let chosen = sensors_of_parts(scene, options, &spawned.files)?;
+    let (scene, spawned) = match &chosen {
+        Some(chosen) => (chosen, respawn(spawned, chosen, folder).map_err(Failure::Problems)?),
+        None => (scene, spawned),
+    };
     let hash = provenance::hash(scene, &spawned.files)?;
     let mut keeper = match &options.checkpoint {
         Some(to) => Keeper::open(to, provenance::stream_hash(scene, &spawned.files)?)?,
@@ -344,6 +350,26 @@ fn run_kept(
     };
     *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
     Ok(report)
+}
+
+/// The scene with those sensors alone that parts of a run were traced with; `None` if they were traced with all,
+/// or if these are not parts of this scene.
+fn sensors_of_parts(
+    scene: &Scene,
+    options: &Options,
+    files: &[PathBuf],
+) -> Result<Option<Scene>, Failure> {
+    let Some(first) = options.unite.first().filter(|_| options.checkpoint.is_none()) else {
+        return Ok(None);
+    };
+    let names = Keeper::other_sensors(first, provenance::stream_hash(scene, files)?)?;
+    let is_known = |name: &String| scene.sensors.contains_key(name);
+    if names.is_empty() || !names.iter().all(is_known) || names.len() == scene.sensors.len() {
+        return Ok(None);
+    }
+    let mut chosen = scene.clone();
+    chosen.sensors.retain(|name, _| names.contains(name));
+    Ok(Some(chosen))
 }
 
 /// Values of a scene's parameters.

@@ -53,6 +53,8 @@ pub(crate) struct Statistics {
 pub(crate) struct Scores {
     /// How many there are.
     pub(crate) count: usize,
+    /// Number of values that nothing was counted for, whose error is unknown, and that have no z-score.
+    pub(crate) uncounted: usize,
     pub(crate) rms: f64,
     /// The largest |z|.
     pub(crate) largest: f64,
@@ -92,23 +94,46 @@ impl<'a> Finding<'a> {
         findings
     }
 
-    /// z-scores of an estimate against the reference, NaN where either has no value; `None` for the
-    /// reference itself. Of the pixels if asked for.
+    /// z-scores of an estimate against the reference, NaN where either has no value or counted nothing;
+    /// `None` for the reference itself. Of the pixels if asked for.
     pub(crate) fn scores(&self, index: usize, pixels: bool) -> Option<Vec<f64>> {
         if index == self.reference {
             return None;
         }
+        let pairs = self.pairs(index, pixels)?;
+        let score = |(a, b): (f64, f64), (c, d): (f64, f64)| {
+            if is_uncounted((a, b), (c, d)) { f64::NAN } else { z_score((a, b), (c, d)) }
+        };
+        Some(pairs.into_iter().map(|[this, other]| score(this, other)).collect())
+    }
+
+    /// Values and errors of an estimate and of the reference side by side.
+    fn pairs(&self, index: usize, pixels: bool) -> Option<Vec<[(f64, f64); 2]>> {
         let of = |index: usize| self.estimates[index].values(pixels);
         let (this, other) = (of(index)?, of(self.reference)?);
-        let estimates =
-            |all: &Values| all.values.iter().copied().zip(all.errors.iter().copied()).collect();
-        let (this, other): (Vec<_>, Vec<_>) = (estimates(&this), estimates(&other));
-        // A pixel that few packets could reach and none did has a value of 0, and an unknown error.
-        let is_unknown = |(value, error): (f64, f64)| pixels && value == 0.0 && error == 0.0;
-        let score = |(&a, &b)| {
-            if is_unknown(a) || is_unknown(b) { f64::NAN } else { z_score(a, b) }
+        let estimates = |all: &Values| -> Vec<(f64, f64)> {
+            all.values.iter().copied().zip(all.errors.iter().copied()).collect()
         };
-        Some(this.iter().zip(&other).map(score).collect())
+        let pairs = estimates(&this).into_iter().zip(estimates(&other));
+        Some(pairs.map(|(this, other)| [this, other]).collect())
+    }
+
+    /// Number of values of an estimate that have no z-score because it or the reference counted nothing.
+    fn uncounted(&self, index: usize, pixels: bool) -> usize {
+        if index == self.reference {
+            return 0;
+        }
+        let pairs = self.pairs(index, pixels).unwrap_or_default();
+        pairs.into_iter().filter(|[this, other]| is_uncounted(*this, *other)).count()
+    }
+
+    /// Text for a title that says how many values have no z-score; empty if all have one.
+    pub(crate) fn left_out(&self, pixels: bool) -> String {
+        let counts = (0..self.estimates.len()).map(|index| self.uncounted(index, pixels));
+        match counts.sum() {
+            0 => String::new(),
+            count => format!("; {count} without a count left out"),
+        }
     }
 
     /// What an estimate's values, or pixels, tell together; `None` if there are no pixels.
@@ -122,7 +147,10 @@ impl<'a> Finding<'a> {
             mean: finite.iter().sum::<f64>() / finite.len() as f64,
             relative_error,
             efficiency: 1.0 / (relative_error.powi(2) * estimate.seconds),
-            z: self.scores(index, pixels).map(|scores| Scores::of(&scores)),
+            z: self.scores(index, pixels).map(|scores| Scores {
+                uncounted: self.uncounted(index, pixels),
+                ..Scores::of(&scores)
+            }),
         })
     }
 }
@@ -191,6 +219,7 @@ impl Scores {
         let count = z.len() as f64;
         Self {
             count: z.len(),
+            uncounted: 0,
             rms: (z.iter().map(|z| z * z).sum::<f64>() / count).sqrt(),
             largest: z.iter().map(|z| z.abs()).fold(f64::NAN, f64::max),
             beyond_3: z.iter().filter(|z| z.abs() > 3.0).count() as f64 / count,
@@ -200,6 +229,13 @@ impl Scores {
 
 /// Weights of light are f32: relative differences below this are their rounding.
 const ROUNDING: f64 = 1e-6;
+
+/// Returns whether one of two estimates counted nothing and the other something: 0 without an error is what an
+/// analog count has where few photons could arrive and none did, and its error is unknown.
+fn is_uncounted(a: (f64, f64), b: (f64, f64)) -> bool {
+    let is_nothing = |(value, error): (f64, f64)| value == 0.0 && (error == 0.0 || error.is_nan());
+    is_nothing(a) != is_nothing(b) && !a.0.is_nan() && !b.0.is_nan()
+}
 
 /// Difference of two independent estimates in standard errors of it; NaN if either is unknown.
 fn z_score((a, error_a): (f64, f64), (b, error_b): (f64, f64)) -> f64 {
@@ -224,6 +260,16 @@ mod tests {
         // Exact in both, but for f32.
         assert!(z_score((1.0, 0.0), (1.0 + 1e-7, 0.0)).abs() < 0.2);
         assert!(z_score((1.0, 0.0), (1.1, 0.0)).abs() > 1e4);
+    }
+
+    #[test]
+    fn a_count_of_nothing_has_no_known_error() {
+        assert!(is_uncounted((0.0, 0.0), (0.3, 0.01)));
+        assert!(is_uncounted((0.3, 0.01), (0.0, f64::NAN)));
+        // Nothing in both agrees, and a value of 0 with an error is an estimate.
+        assert!(!is_uncounted((0.0, 0.0), (0.0, 0.0)));
+        assert!(!is_uncounted((0.0, 0.1), (0.3, 0.01)));
+        assert!(!is_uncounted((0.0, 0.0), (f64::NAN, 0.0)));
     }
 
     #[test]

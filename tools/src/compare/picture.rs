@@ -183,7 +183,7 @@ fn draw_scores(area: &Area<'_>, finding: &Finding<'_>, curves: &Curves) -> anyho
     let finite = scores.iter().flat_map(|(_, z)| z).filter(|z| z.is_finite());
     let most = finite.fold(3.6, |most: f64, z| most.max(1.1 * z.abs())).min(LARGEST);
     let reference = finding.estimates[finding.reference].system.name();
-    let title = format!("difference to {reference} (standard errors)");
+    let title = format!("difference to {reference} (standard errors){}", finding.left_out(false));
     let mut chart = panel(area, &title, curves, (-most..most, 20), &tick)?;
     chart.draw_series([band(curves.range.clone(), -3.0..3.0)])?;
     chart.draw_series(LineSeries::new(
@@ -225,8 +225,9 @@ fn draw_histogram(area: &Area<'_>, finding: &Finding<'_>) -> anyhow::Result<()> 
         .collect();
     let most = spreads.iter().flat_map(|(_, d)| d).copied().fold(0.42, f64::max) * 1.08;
     let reference = finding.estimates[finding.reference].system.name();
-    let title = format!("pixels: difference to {reference} (standard errors)");
-    let mut chart = frame(area, &title, (-5.0..5.0, 0.0..most), 20)?;
+    let title =
+        format!("pixels: difference to {reference} (standard errors){}", finding.left_out(true));
+    let mut chart = frame(area, &title, (-5.0..5.0, 0.0..most), (20, 40))?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -256,12 +257,27 @@ fn band(x: Range<f64>, y: Range<f64>) -> Rectangle<(f64, f64)> {
     Rectangle::new([(x.start, y.start), (x.end, y.end)], SHADE.filled())
 }
 
+/// Letters of an upright label, and room above it, px.
+const LONGEST: usize = 16;
+const ABOVE_LABELS: u32 = 12;
+
+/// A label with its middle left out where it is long: what tells labels apart stands at either end.
+fn shortened(label: &str) -> String {
+    let count = label.chars().count();
+    if count <= LONGEST {
+        return label.to_owned();
+    }
+    let head: String = label.chars().take(6).collect();
+    let tail: String = label.chars().skip(count - (LONGEST - 7)).collect();
+    format!("{head}…{tail}")
+}
+
 /// A panel with its title.
 fn frame<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
     (x, y): (Range<f64>, Range<f64>),
-    right: u32,
+    (right, below): (u32, u32),
 ) -> anyhow::Result<Chart<'a, 'b>> {
     Ok(ChartBuilder::on(area)
         .margin_top(6)
@@ -269,7 +285,7 @@ fn frame<'a, 'b>(
         .margin_left(14)
         .margin_right(right)
         .caption(title, letters(14))
-        .x_label_area_size(40)
+        .x_label_area_size(below)
         .y_label_area_size(58)
         .build_cartesian_2d(x, y)?)
 }
@@ -283,7 +299,11 @@ fn panel<'a, 'b>(
     format: &dyn Fn(f64) -> String,
 ) -> anyhow::Result<Chart<'a, 'b>> {
     let low = y.start;
-    let mut chart = frame(area, title, (curves.range.clone(), y), right)?;
+    let names = curves.labels.iter().flatten().map(|label| label.chars().count());
+    let longest = names.max().unwrap_or(0);
+    let is_slanted = longest * curves.labels.as_ref().map_or(0, Vec::len) > 80;
+    let below = if is_slanted { ABOVE_LABELS + 6 * longest.min(LONGEST) as u32 } else { 40 };
+    let mut chart = frame(area, title, (curves.range.clone(), y), (right, below))?;
     let (x_format, y_format) = (|value: &f64| tick(*value), |value: &f64| format(*value));
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
@@ -300,14 +320,11 @@ fn panel<'a, 'b>(
     };
     mesh.disable_x_mesh().x_labels(0).draw()?;
     let (left, top) = area.get_base_pixel();
-    let slant =
-        labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) * labels.len() > 80;
     for (place, label) in labels.iter().enumerate() {
         let at = chart.backend_coord(&(place as f64, low));
         let at = (at.0 - left, at.1 - top + 7);
-        if slant {
-            let short: String = label.chars().take(7).collect();
-            let short = if short.len() < label.len() { format!("{short}.") } else { short };
+        if is_slanted {
+            let short = shortened(label);
             let style =
                 upwards(10).pos(plotters::style::text_anchor::Pos::new(HPos::Right, VPos::Center));
             area.draw_text(&short, &style, at)?;

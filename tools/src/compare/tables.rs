@@ -81,9 +81,12 @@ fn rows(findings: &[Finding<'_>], cell: impl Fn(Kind, f64) -> String) -> Vec<Vec
                         .map_or_else(String::new, |z| cell(kind, of(z)))
                 };
                 let remark = match (finding.estimates.len(), index == finding.reference) {
-                    (1, _) => "no other system measures it",
-                    (_, true) => "reference",
-                    _ => "",
+                    (1, _) => "no other system measures it".to_owned(),
+                    (_, true) => "reference".to_owned(),
+                    _ => match z.map_or(0, |z| z.uncounted) {
+                        0 => String::new(),
+                        count => format!("{count} without a count, not in z"),
+                    },
                 };
                 let what = if pixels { ", pixels" } else { "" };
                 rows.push(vec![
@@ -98,7 +101,7 @@ fn rows(findings: &[Finding<'_>], cell: impl Fn(Kind, f64) -> String) -> Vec<Vec
                     of_z(Kind::Share, |z| z.beyond_3),
                     cell(Kind::Seconds, estimate.seconds),
                     cell(Kind::Value, efficiency),
-                    remark.to_owned(),
+                    remark,
                 ]);
             }
         }
