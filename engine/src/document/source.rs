@@ -117,7 +117,7 @@ impl Source {
         Some(node.head(&self.text))
     }
 
-    /// Bytes of the key at the end of a path of a map or a record.
+    /// Bytes of the key of a map at the end of a path.
     fn locate_key(&self, path: &str) -> Option<Span> {
         let mut node = self.tree.as_ref()?;
         let mut rest = path;
@@ -128,9 +128,6 @@ impl Source {
                     .iter()
                     .find(|(key, _)| matches!(&key.value, Value::Text(key) if key == rest))
                     .map(|(key, _)| key.span),
-                Value::Record(fields) => {
-                    fields.iter().find(|field| field.name == rest).map(|field| field.name_span)
-                }
                 _ => None,
             };
             if key.is_some() {

@@ -24,7 +24,7 @@ fn scene(entries: &str) -> String {
             meshes: {{ "pole": Faces(faces_m: [[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 9.0)]], material: "soil") }},
             sun: (zenith_deg: 30.0, azimuth_deg: 180.0),
             boundary: Isolated,
-            sensors: {{}},
+            sensors: {{ "view": Orthographic(size_px: (2, 2), extent_m: (2.0, 2.0)) }},
             {entries}
         )"#
     )
@@ -300,7 +300,7 @@ fn a_thermal_sky_that_emits_nothing_is_noted() {
         .replace("center_nm: 660.0", "center_nm: 10500.0")
         .replace("Constant(0.2))", "Constant(0.2), temperature: Uniform(300.0))")
         .replace(
-            "sensors: {}",
+            "sensors: { \"view\": Orthographic(size_px: (2, 2), extent_m: (2.0, 2.0)) }",
             "sensors: { \"t\": Orthographic(size_px: (2, 2), extent_m: (2.0, 2.0), measure: [BrightnessTemperature]) }",
         );
     let folder = tempfile::tempdir().expect("a folder");

@@ -53,7 +53,7 @@ fn geojson_that_is_no_area_in_metres_is_refused() {
         format!(r#"{{"type":"{kind}","coordinates":{coordinates}}}"#)
     };
     let degrees = ": is in degrees (from 7.10000, 51.20000), but a scene is in metres; convert it to \
-                   a projected system: `ogr2ogr -t_srs EPSG:32633 metres.geojson ";
+                   a projected system: `ogr2ogr -t_srs EPSG:326";
     for (text, expected) in [
         (of("Polygon", small), degrees),
         (crs("urn:ogc:def:crs:OGC:1.3:CRS84", wide), degrees),

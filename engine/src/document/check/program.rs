@@ -34,7 +34,8 @@ pub(super) fn check_params(scene: &Scene, report: &mut Report<'_>) {
                 } else {
                     suggestion(name, &known, "a variant may change")
                 };
-                report.error(&path, format!("no parameter `{name}` to change"), help);
+                let error = Diagnostic::error(&path, format!("no parameter `{name}` to change"));
+                report.push(Diagnostic { is_of_key: true, ..error.help(help) });
             }
         }
     }

@@ -14,7 +14,7 @@ const OTHER_NAMES: [(&str, &[&str], &str); 14] = [
     ),
     (
         "a sensor",
-        &["camera", "pinhole", "frame", "photo", "thinlens"],
+        &["camera", "pinhole", "frame", "thinlens"],
         "`Perspective(..)` is a camera, `Fisheye(..)` one that looks at the whole hemisphere",
     ),
     (
@@ -52,11 +52,7 @@ const OTHER_NAMES: [(&str, &[&str], &str); 14] = [
         "`Crown(shape: ..)` grows a tree",
     ),
     ("a mesh", &["ply", "stl", "fbx"], "convert the file to OBJ or glTF"),
-    (
-        "a rule of placement",
-        &["random", "poisson"],
-        "`Uniform` is random, `PoissonDisc(..)` keeps a distance",
-    ),
+    ("a rule of placement", &["random"], "`Uniform` is random, `PoissonDisc(..)` keeps a distance"),
 ];
 
 /// Advice for a name of another program.
@@ -106,13 +102,13 @@ impl Reader<'_> {
         if text.parse::<f64>().is_ok_and(f64::is_finite) {
             return Some(format!("write `{text}`, without quotes"));
         }
-        let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
-        if !digits.is_empty() && digits.parse::<f64>().is_ok_and(f64::is_finite) {
-            return Some(format!("write `{digits}`: units are in the names of keys"));
+        let mut words = text.split(|c: char| c != '_' && c != '.' && !c.is_alphanumeric());
+        if words.any(|word| self.is_param(word, node)) {
+            return Some(format!("write `\"={text}\"`: a formula starts with `=`"));
         }
-        let words = text.split(|c: char| c != '_' && c != '.' && !c.is_alphanumeric());
-        let is_formula = words.into_iter().any(|word| self.is_param(word, node));
-        is_formula.then(|| format!("write `\"={text}\"`: a formula starts with `=`"))
+        let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+        let is_number = digits.parse::<f64>().is_ok_and(f64::is_finite);
+        is_number.then(|| format!("write `{digits}`: units are in the names of keys"))
     }
 
     fn spectrum_advice(&self, text: &str, node: &Node) -> Option<String> {
