@@ -57,7 +57,7 @@ fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
     assert_eq!(
         places(dir.path()),
         [
-            "8:79 (meshes.tree.parts.laef)",
+            "8:71 (meshes.tree.parts.laef)",
             "8:23 (meshes.tree)",
             "5:17 (materials.leaf)",
             "6:53 (materials.soil.reflectance.file)"

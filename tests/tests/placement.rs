@@ -158,7 +158,7 @@ fn heights_of_lists_and_tables_may_count_from_the_terrain() {
     let beside = list(", on_terrain: true").replace("(5.0, 5.0", "(-5.0, 5.0");
     let message = wrong(&beside, Path::new("."));
     assert!(message.contains("1 of 1 places have no terrain below"), "{message}");
-    assert!(message.contains("(-5, 5) is one; move it, or take out `on_terrain`"), "{message}");
+    assert!(message.contains("(-5, 5) is one: move it, or take out `on_terrain`"), "{message}");
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn what_cannot_be_placed_says_why() {
             r#"inside: [GeoJson(file: "local.geojson")]"#,
             &[
                 "no ground of the terrain is left where a stem may stand",
-                "the terrain reaches from (0, 0) to (200, 100); see also `georeferenced`",
+                "if they are local, write `georeferenced: false`",
             ],
         ),
         (

@@ -4,12 +4,14 @@ use glam::DVec2;
 
 /// A length rounded to whole millimetres, without the digits that sums and differences of coordinates of
 /// a map leave behind.
+#[must_use]
 pub fn millimetres(length: f64) -> f64 {
     // The sum makes 0 of -0.
     (1e3 * length).round() / 1e3 + 0.0
 }
 
 /// A place for a message, `(432110.5, 5412310)`.
+#[must_use]
 pub fn place_text(place: DVec2) -> String {
     format!("({}, {})", millimetres(place.x), millimetres(place.y))
 }

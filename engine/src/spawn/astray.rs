@@ -55,7 +55,7 @@ impl Spawner<'_> {
         }
         self.less_origin(instances, strays, ground)
             .or_else(|| self.raster_corner(instances, strays, ground))
-            .or_else(|| self.origin_of(instances, strays, ground))
+            .or_else(|| frame_advice(instances, strays, ground))
     }
 
     /// Advice where subtracting `frame.origin_m` would put the places on the ground.
@@ -116,42 +116,6 @@ impl Spawner<'_> {
              the south-west corner of the raster",
             triple(origin)
         ))
-    }
-
-    /// Advice where the places are so far from local ground that they are those of a map.
-    fn origin_of(
-        &self,
-        instances: &Instances,
-        strays: &[DVec3],
-        ground: &Ground,
-    ) -> Option<String> {
-        let first = strays.first().filter(|stray| is_far(stray.truncate(), ground))?;
-        let places = || strays.iter().map(|stray| stray.truncate());
-        let (low, high) = places()
-            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), place| {
-                (low.min(place), high.max(place))
-            });
-        let middle = 0.5 * (low + high) - (ground.corner() + 0.5 * ground.size());
-        let round = |place: DVec2, step: f64| (place / step).floor() * step;
-        let origin = [100.0, 10.0, 1.0]
-            .map(|step| round(middle, step))
-            .into_iter()
-            .find(|origin| lie_on(ground, places().map(|place| place - origin)))
-            .unwrap_or_else(|| round(low - ground.corner(), 10.0));
-        let local = first.truncate() - origin;
-        let above = first.z - ground.height(local).unwrap_or(0.0);
-        let height = if above > ABOVE_SEA { above.floor() } else { 0.0 };
-        let frame = format!("`frame: (origin_m: {})`", triple(origin.extend(height)));
-        Some(match instances {
-            Instances::List { .. } => format!(
-                "if these are coordinates of a map, write {frame}, and the places of a `List` less it: {}",
-                triple(local.extend(first.z - height))
-            ),
-            Instances::Table { coordinates: Some(_), .. } => {
-                format!("if these are coordinates of a map, write {frame} and `coordinates: Map`")
-            }
-            _ => format!("if these are coordinates of a map, write {frame}"),
-        })
     }
 
     /// Advice for an area beside the terrain, as it was read and where it lies in the local frame.
@@ -217,6 +181,37 @@ impl Spawner<'_> {
             ""
         }
     }
+}
+
+/// Advice where the places are so far from local ground that they are those of a map.
+fn frame_advice(instances: &Instances, strays: &[DVec3], ground: &Ground) -> Option<String> {
+    let first = strays.first().filter(|stray| is_far(stray.truncate(), ground))?;
+    let places = || strays.iter().map(|stray| stray.truncate());
+    let (low, high) = places()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), place| {
+            (low.min(place), high.max(place))
+        });
+    let middle = 0.5 * (low + high) - (ground.corner() + 0.5 * ground.size());
+    let round = |place: DVec2, step: f64| (place / step).floor() * step;
+    let origin = [100.0, 10.0, 1.0]
+        .map(|step| round(middle, step))
+        .into_iter()
+        .find(|origin| lie_on(ground, places().map(|place| place - origin)))
+        .unwrap_or_else(|| round(low - ground.corner(), 10.0));
+    let local = first.truncate() - origin;
+    let above = first.z - ground.height(local).unwrap_or(0.0);
+    let height = if above > ABOVE_SEA { above.floor() } else { 0.0 };
+    let frame = format!("`frame: (origin_m: {})`", triple(origin.extend(height)));
+    Some(match instances {
+        Instances::List { .. } => format!(
+            "if these are coordinates of a map, write {frame}, and the places of a `List` less it: {}",
+            triple(local.extend(first.z - height))
+        ),
+        Instances::Table { coordinates: Some(_), .. } => {
+            format!("if these are coordinates of a map, write {frame} and `coordinates: Map`")
+        }
+        _ => format!("if these are coordinates of a map, write {frame}"),
+    })
 }
 
 /// Height of the lowest of some points of the ground, m; 0 if none has ground below.

@@ -83,11 +83,8 @@ impl Spawner<'_> {
         let places: Vec<DVec3> =
             strays.iter().filter(is_of_entry).map(|&stray| placements[stray].position).collect();
         let (low, high) = (ground.corner(), ground.corner() + ground.size());
-        let advice = self.other_coordinates(entry, &places, ground).unwrap_or_else(|| {
-            "move it, or make the ground larger; coordinates of a map are those of the local frame plus \
-             `frame.origin_m`"
-                .to_owned()
-        });
+        let advice = self.other_coordinates(entry, &places, ground);
+        let advice = advice.unwrap_or_else(|| "make it larger, or move them".to_owned());
         Some(format!(
             "one stands at {}, and the ground reaches from {} to {} m: {advice}",
             place_text(places.first()?.truncate()),

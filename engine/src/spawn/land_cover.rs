@@ -47,12 +47,12 @@ impl Spawner<'_> {
             return None;
         }
         let mut parts: Parts = Vec::new();
-        let mut known: BTreeMap<i64, Option<u16>> = BTreeMap::new();
+        let mut known: BTreeMap<u64, Option<u16>> = BTreeMap::new();
         let mut missing = Vec::new();
         let mut values = Vec::with_capacity(raster.values.len());
         for &class in &raster.values {
-            // Classes are whole numbers; what has no data is a class without a number.
-            let key = if class.is_nan() { i64::MIN } else { class as i64 };
+            // What has no data is a class without a number; the sum makes 0 of -0.
+            let key = if class.is_nan() { f64::NAN.to_bits() } else { (class + 0.0).to_bits() };
             let part = known.entry(key).or_insert_with(|| {
                 let Some(material) = material_of(class, cover, &raster) else {
                     missing.push(class);

@@ -57,12 +57,13 @@ pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
 fn refuse_micrometres(center: f64, width: f64, path: &str, report: &mut Report<'_>) {
     let message = format!("a wavelength of {center} nm is no light");
     let nanometres = |micrometres: f64| (1e6 * micrometres).round() / 1e3;
-    let mut help =
-        format!("wavelengths are in nm: {center} µm is `center_nm: {:?}`", nanometres(center));
-    if width > 0.0 && width < center {
-        help += &format!(", and {width} µm is `width_nm: {:?}`", nanometres(width));
-    }
-    report.error(path, &message, &help);
+    let width = if width > 0.0 && width < center {
+        format!(", and {width} µm is `width_nm: {:?}`", nanometres(width))
+    } else {
+        String::new()
+    };
+    let center = format!("{center} µm is `center_nm: {:?}`", nanometres(center));
+    report.error(path, message, format!("wavelengths are in nm: {center}{width}"));
 }
 
 pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {

@@ -1,7 +1,7 @@
 //! Advice for values of the wrong kind that tell what is meant.
 
 use super::super::params::{entries, key};
-use super::super::syntax::{Named, Node, Value};
+use super::super::syntax::{Node, Value};
 use super::Reader;
 
 /// Names of other programs for choices of the scene language: what is expected, the other name in small
@@ -73,10 +73,6 @@ impl Reader<'_> {
                 self.is_param(&named.name, node).then(|| format!("write `\"={}\"`", named.name))
             }
             (Value::Text(text), "a spectrum") => self.spectrum_advice(text, node),
-            (Value::Named(named), "a spectrum") => {
-                let Named { name, body: None, .. } = &**named else { return None };
-                self.spectrum_advice(name, node)
-            }
             (Value::Integer { .. } | Value::Float(_), "a spectrum") => {
                 let number = self.text().get(node.span.range())?;
                 Some(format!("write `Constant({number})`"))
@@ -125,6 +121,12 @@ impl Reader<'_> {
             return Some(format!("write `Constant({text})`"));
         }
         None
+    }
+
+    /// Advice for a word that is the name of a spectrum; `None` if it is none.
+    pub(super) fn word_advice(&self, expected: &str, word: &str) -> Option<String> {
+        let is_named = expected == "a spectrum" && self.has_spectrum(word);
+        is_named.then(|| format!("write `Named(\"{word}\")`"))
     }
 
     fn has_spectrum(&self, name: &str) -> bool {

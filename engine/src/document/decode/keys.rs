@@ -240,6 +240,7 @@ impl<'a> Variant<'a> {
         let help = suggestion(self.name, known, "choices here");
         let help = match other_name(&expected, self.name) {
             Some(advice) => format!("{advice}; choices here: {}", known.join(", ")),
+            None if self.body.is_none() => reader.word_advice(&expected, self.name).unwrap_or(help),
             None => help,
         };
         reader.error(self.name_span, message, Some(help));

@@ -10,8 +10,9 @@ pub(super) fn advice_for(character: char) -> Option<&'static str> {
             "write the number alone: its unit is in the name of the key (`_deg`, `_m`, `_nm`)"
         }
         '%' => "write the number alone; of fractions 0.1 for 10 %",
-        '“' | '”' | '„' | '«' | '»' | '`' => "write strings in double quotes: \"leaf\"",
-        '‘' | '’' | '‚' => "write strings in double quotes: \"leaf\"",
+        '“' | '”' | '„' | '«' | '»' | '‘' | '’' | '‚' | '`' => {
+            "write strings in double quotes: \"leaf\""
+        }
         '*' | '/' | '^' | '$' | '&' | '!' => {
             "formulas stand in a string that starts with `=`: \"=2 * lai\""
         }
