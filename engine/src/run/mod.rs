@@ -292,7 +292,7 @@ fn run_kept(
     }
     progress.stage("loading");
     let last = kept.take().filter(|kept| kept.serves(scene));
-    let (mut spawned, built) = match last {
+    let (spawned, built) = match last {
         Some(Kept { spawned, geometry, .. }) => {
             (respawn(spawned, scene, folder).map_err(Failure::Problems)?, Some(geometry))
         }
@@ -300,7 +300,7 @@ fn run_kept(
     };
     // Parts that were traced with some sensors are united with those.
     let chosen = sensors_of_parts(scene, options, &spawned.files)?;
-    let (scene, spawned) = match &chosen {
+    let (scene, mut spawned) = match &chosen {
         Some(chosen) => (chosen, respawn(spawned, chosen, folder).map_err(Failure::Problems)?),
         None => (scene, spawned),
     };
