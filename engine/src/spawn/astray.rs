@@ -37,6 +37,13 @@ fn lie_on(ground: &Ground, places: impl ExactSizeIterator<Item = DVec2>) -> bool
 }
 
 impl Spawner<'_> {
+    /// Entry of `instances` that an instance is of.
+    pub(super) fn entry_of(&self, instance: usize) -> Option<&Instances> {
+        let (path, _) = self.origins.place(self.scene, instance);
+        let (entry, _) = path.strip_prefix("instances[")?.split_once(']')?;
+        self.scene.instances.get(entry.parse::<usize>().ok()?)
+    }
+
     /// Advice for places of a list or a table, local frame, that lie off the ground; `None` where no other
     /// coordinates would put them on it.
     pub(super) fn other_coordinates(
@@ -166,7 +173,7 @@ impl Spawner<'_> {
     /// `vertical` is the lowest and the highest point of the instance.
     pub(super) fn terrain_advice(&self, placement: &Placement, vertical: [f64; 2]) -> &'static str {
         // Heights of the map have lost that of the origin.
-        let shifts = match self.origins.entry(self.scene, placement.id.0 as usize) {
+        let shifts = match self.entry_of(placement.id.0 as usize) {
             Some(Instances::List { on_terrain: false, .. }) => [0.0, 0.0],
             Some(Instances::Table { on_terrain: false, .. }) => [0.0, self.scene.frame.origin_m.2],
             _ => return "",

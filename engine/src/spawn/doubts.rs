@@ -76,10 +76,9 @@ impl Spawner<'_> {
         ground: &Ground,
     ) -> Option<String> {
         let first = *strays.first()?;
-        let entry = self.origins.entry(self.scene, first)?;
-        let is_of_entry = |stray: &&usize| {
-            self.origins.entry(self.scene, **stray).is_some_and(|other| std::ptr::eq(entry, other))
-        };
+        let entry = self.entry_of(first)?;
+        let is_of_entry =
+            |stray: &&usize| self.entry_of(**stray).is_some_and(|other| std::ptr::eq(entry, other));
         let places: Vec<DVec3> =
             strays.iter().filter(is_of_entry).map(|&stray| placements[stray].position).collect();
         let (low, high) = (ground.corner(), ground.corner() + ground.size());

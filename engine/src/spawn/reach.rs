@@ -10,7 +10,7 @@ use super::Spawner;
 use super::meshes::Prototype;
 use crate::components::{Placement, TerrainPatch};
 use crate::document::{Diagnostic, HEIGHT, Instances, LENGTH, Range, SCALE, Scene};
-use crate::geometry::{Bounds, millimetres};
+use crate::geometry::Bounds;
 
 /// Tiles that a periodic scene may be high: scattered light crosses one and a half times as many on
 /// average before it leaves.
@@ -59,12 +59,6 @@ impl Origins {
     /// Notes where the instances of an entry end.
     pub(super) fn push(&mut self, entry: usize, end: usize) {
         self.ends.push((entry, end));
-    }
-
-    /// Entry of `instances` that an instance is of.
-    pub(super) fn entry<'s>(&self, scene: &'s Scene, instance: usize) -> Option<&'s Instances> {
-        let at = self.ends.partition_point(|&(_, end)| end <= instance);
-        scene.instances.get(self.ends.get(at)?.0)
     }
 
     /// Path in the document of an instance, and a name for it.
@@ -280,7 +274,7 @@ impl Spawner<'_> {
         let Placement { position, prototype, .. } = placements[instance];
         let (path, _) = self.origins.place(self.scene, instance);
         let name = meshes.get(&prototype.0).map_or("", |prototype| &prototype.name.0);
-        let DVec3 { x, y, z } = position.map(millimetres);
+        let DVec3 { x, y, z } = position;
         if count > MOST_ALIKE {
             let message = format!(
                 "{count} instances of `{name}` stand in one place, ({x}, {y}, {z}), turned and scaled alike"
