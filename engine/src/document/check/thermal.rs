@@ -113,13 +113,11 @@ pub(super) fn needs_light(scene: &Scene) -> bool {
         })
 }
 
-/// Temperatures of ground and plants, and of the sky, below which degrees Celsius may have been meant, K.
-const COLD: f64 = 150.0;
-const COLD_SKY: f64 = 100.0;
+/// Temperature below which degrees Celsius may have been meant, K.
+const COLD: f64 = 100.0;
 
 fn kelvin(path: &str, value: f64, report: &mut Report<'_>) {
-    let cold = if path == "thermal_sky" { COLD_SKY } else { COLD };
-    if value > 0.0 && value < cold {
+    if value > 0.0 && value < COLD {
         let message = format!("{value} K is {:.2} °C", value - 273.15);
         let help = format!("temperatures are in kelvins: {value} °C is {:.2} K", value + 273.15);
         report.warning(path, message, help);
