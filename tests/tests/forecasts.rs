@@ -174,12 +174,17 @@ fn films_hold_what_they_say() {
     }
 }
 
+/// Memory of the threshold of Russian roulette of virtual photons, which a pilot run finds before the first
+/// packet: a spectrum of one group of lanes, and what decisions look at, bytes.
+const THRESHOLD: u64 = 2 * 8 * 4;
+
 fn check_bytes(name: &str, film: &mut dyn Film, share: Share) {
     film.restrict(share);
     let before = PeakAlloc.current_usage();
     film.trace(16, &|_| ());
-    let held = PeakAlloc.current_usage() - before;
-    assert_eq!(film.bytes(), held as u64, "{name}, {share:?}");
+    let held = (PeakAlloc.current_usage() - before) as u64;
+    let beyond = held.checked_sub(film.bytes());
+    assert!(beyond.is_some_and(|beyond| beyond <= THRESHOLD), "{name}, {share:?}: {beyond:?}");
 }
 
 #[test]

@@ -65,6 +65,10 @@ fn total(
     let bands = context.bands.len();
     let wide = |pixel: &[f32]| -> Vec<f64> { pixel.iter().map(|&value| value.into()).collect() };
     let mut outcome = emitted.clone();
+    let has_both = |pixel: usize| {
+        let is_known = |image: &ImageOutcome| image.coverage[pixel] > 0.0;
+        is_known(emitted) && reflected.is_none_or(is_known)
+    };
     for (index, start) in (0..emitted.pixels.len()).step_by(bands).enumerate() {
         // The whole; its parts may stand behind it.
         let of = |image: &ImageOutcome| {
@@ -74,7 +78,13 @@ fn total(
         let reflected = reflected.map(of);
         let reflected = reflected.as_ref().map(|(l, error)| (l.as_slice(), error.as_slice()));
         let (l, error) = of(emitted);
-        let (l, error) = radiance_of_sources(reflected, (&l, &error), context);
+        let (mut l, mut error) = radiance_of_sources(reflected, (&l, &error), context);
+        if !has_both(index) {
+            // Samples of one source alone have met the scene: the sum is not known.
+            outcome.coverage[index] = 0.0;
+            l.fill(f64::NAN);
+            error.fill(f64::NAN);
+        }
         for (band, (l, error)) in l.iter().zip(&error).enumerate() {
             outcome.pixels[start + band] = *l as f32;
             outcome.errors[start + band] = *error as f32;

@@ -36,7 +36,7 @@ pub(super) struct Game<'r> {
 
 /// Orders from which on the constant roulette ends paths whatever they weigh: each comes to an end, even where
 /// nothing is absorbed and nothing gets out.
-const MOST_ORDERS: u32 = 1000;
+const MOST_ORDERS: u32 = 10_000;
 
 /// Minimum probability to end a path at each order from then on, whatever the scene says.
 const FINAL_KILL: f32 = 0.05;

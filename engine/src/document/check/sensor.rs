@@ -198,6 +198,9 @@ fn check_components(path: &str, measures: &[ImageMeasure], scene: &Scene, report
     }
 }
 
+/// Full angle of the narrowest cone, degrees.
+const NARROWEST_DEG: f64 = 1e-3;
+
 fn check_cones(path: &str, cones: &[(f64, f64, f64)], report: &mut Report<'_>) {
     if cones.is_empty() {
         let help = "write zenith, azimuth and full angle: `[(30.0, 90.0, 5.0)]`";
@@ -206,7 +209,11 @@ fn check_cones(path: &str, cones: &[(f64, f64, f64)], report: &mut Report<'_>) {
     for (index, (zenith, azimuth, full)) in cones.iter().enumerate() {
         report.zenith(&format!("{path}[{index}][0]"), *zenith);
         report.azimuth(&format!("{path}[{index}][1]"), *azimuth);
-        report.above_zero(&format!("{path}[{index}][2]"), *full);
+        if !(*full >= NARROWEST_DEG && full.is_finite()) {
+            let message =
+                format!("expected a full angle of at least {NARROWEST_DEG}°, found {full}");
+            report.error(&format!("{path}[{index}][2]"), message, "hardly a photon leaves in less");
+        }
         if (0.0..90.0).contains(zenith) && zenith + 0.5 * full > 90.0 {
             let message =
                 format!("a cone of {full}° about zenith {zenith}° reaches below the horizon");
