@@ -24,7 +24,7 @@ mod tests {
     fn places_are_written_without_the_noise_of_differences() {
         let place = DVec2::new(432_140.91 - 432_100.0, 5_412_302.52 - 5_412_300.0);
         assert_eq!(place_text(place), "(40.91, 2.52)");
-        assert_eq!(place_text(DVec2::new(-2e-17, 15.630000000004657)), "(0, 15.63)");
+        assert_eq!(place_text(DVec2::new(-2e-17, 15.630_000_000_004_657)), "(0, 15.63)");
         assert_eq!(place_text(DVec2::new(432_110.5, 5_412_310.0)), "(432110.5, 5412310)");
     }
 }

@@ -60,7 +60,7 @@ fn tell(files: &[(&str, &[u8])], cases: &[(&str, &[&str])]) {
         for part in *parts {
             match part.strip_prefix('!') {
                 Some(absent) => {
-                    assert!(!found.contains(absent), "{entries} says {absent:?}:\n{found}")
+                    assert!(!found.contains(absent), "{entries} says {absent:?}:\n{found}");
                 }
                 None => assert!(found.contains(part), "{entries} does not say {part:?}:\n{found}"),
             }
