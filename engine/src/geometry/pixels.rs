@@ -15,8 +15,8 @@ pub struct PixelGrid {
 }
 
 impl PixelGrid {
-    /// Returns the fewest pixels of the given side [m] that cover a rectangle of the given width and
-    /// height [m].
+    /// Returns the fewest pixels of the given side, m, that cover a rectangle of the given width and
+    /// height, m.
     #[must_use]
     pub fn covering(extent: DVec2, side: f64) -> Self {
         let exact = extent / side;
