@@ -54,7 +54,7 @@ impl Reader {
         }
     }
 
-    /// What to do with a file of another format, which has this name.
+    /// Advice for a file of another format, which has this name.
     fn remedy(self, kind: Kind, file: &str) -> String {
         let text = match (kind, self) {
             (Kind::Features, Self::GeoJson) => {

@@ -48,7 +48,7 @@ pub(super) struct Scope<'a> {
     pub(super) lost: &'a [String],
     /// Parameters that some formula has used.
     pub(super) used: &'a RefCell<HashSet<String>>,
-    /// What may not be meant in the formula.
+    /// Parts of the formula that are lawful and may not be meant.
     pub(super) doubts: &'a RefCell<Vec<FormulaError>>,
 }
 

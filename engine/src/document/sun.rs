@@ -51,7 +51,7 @@ impl Sun {
         Some(hour + minute / 60.0 + second / 3600.0)
     }
 
-    /// The same sun at another time of its day, hours of its clock.
+    /// Returns the sun at another time of its day, hours of its clock.
     #[must_use]
     pub fn at_hour(&self, new_hour: f64) -> Self {
         let mut sun = self.clone();

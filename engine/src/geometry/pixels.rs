@@ -10,7 +10,7 @@ pub struct PixelGrid {
     pub counts: DVec2,
     /// Width and height of all pixels together, m.
     pub extent: DVec2,
-    /// Whether the pixels cover more than the rectangle, beyond rounding.
+    /// True if the pixels cover more than the rectangle, beyond rounding.
     pub has_grown: bool,
 }
 

@@ -212,7 +212,7 @@ impl DailySums {
         writer.flush()
     }
 
-    /// The same rows as a list of objects; numbers that are none are null.
+    /// Returns the rows as a list of objects; numbers without a value are null.
     pub(super) fn json(&self) -> Value {
         let row = |row: &Row| {
             let params: Map<_, _> =

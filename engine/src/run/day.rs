@@ -21,7 +21,7 @@ pub(super) fn days(points: &[Point], suns: &[Option<Sun>]) -> Vec<Day> {
     groups.into_iter().filter_map(|(params, group)| day(params, &group, points, suns)).collect()
 }
 
-/// Whether a parameter moves the time of day of the sun's position, and neither date nor place.
+/// Returns whether a parameter moves the time of day of the sun's position, and neither date nor place.
 fn is_clock(at: usize, points: &[Point], suns: &[Option<Sun>]) -> bool {
     let others = |point: &Point| {
         let mut params = point.params.clone();
@@ -42,7 +42,7 @@ fn is_clock(at: usize, points: &[Point], suns: &[Option<Sun>]) -> bool {
     moves
 }
 
-/// Whether two suns are at the same date and place.
+/// Returns whether two suns are at the same date and place.
 fn is_same_day(a: &Sun, b: &Sun) -> bool {
     a.position.is_some() && a.at_hour(0.0).position == b.at_hour(0.0).position
 }

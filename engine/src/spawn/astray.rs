@@ -24,8 +24,7 @@ pub(super) fn far_from(ground: &Ground) -> f64 {
 
 /// Returns whether a place is too far from the ground's rectangle to be meant.
 pub(super) fn is_far(place: DVec2, ground: &Ground) -> bool {
-    let (low, high) = (ground.corner(), ground.corner() + ground.size());
-    (low - place).max(place - high).max_element() > far_from(ground)
+    ground.gap(place) > far_from(ground)
 }
 
 /// Returns whether at least half of the places lie on the ground's rectangle.
@@ -39,9 +38,8 @@ fn lie_on(ground: &Ground, places: impl ExactSizeIterator<Item = DVec2>) -> bool
 impl Spawner<'_> {
     /// Entry of `instances` that an instance is of.
     pub(super) fn entry_of(&self, instance: usize) -> Option<&Instances> {
-        let (path, _) = self.origins.place(self.scene, instance);
-        let (entry, _) = path.strip_prefix("instances[")?.split_once(']')?;
-        self.scene.instances.get(entry.parse::<usize>().ok()?)
+        let (entry, _) = self.origins.entry_and_row(instance)?;
+        self.scene.instances.get(entry)
     }
 
     /// Advice for places of a list or a table, local frame, that lie off the ground; `None` where no other

@@ -2,15 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
+use super::astray::far_from;
 use super::heights::{CameraPlace, Relief, metres};
 use crate::document::Diagnostic;
 
-/// Horizontal distance from the ground, over its larger extent and over the height of the camera, from which
-/// other coordinates must be meant: satellites are far away, but high.
-const FAR_EXTENTS: f64 = 20.0;
+/// Horizontal distance from the ground, over the height of the camera, from which other coordinates must be
+/// meant: satellites are far away, but high.
 const FAR_HEIGHTS: f64 = 10.0;
-/// Distance, m, below which no camera is far from the ground.
-const FAR_M: f64 = 1000.0;
 
 /// A problem if a camera stands so far beside the ground that it cannot be meant, and if there is nothing below
 /// a camera that looks at all directions. `frame` is the origin of the scene on the map, m.
@@ -21,14 +19,13 @@ pub(super) fn problem_of_camera_beside(
     frame: DVec2,
 ) -> Option<Diagnostic> {
     let at = camera.position.truncate();
-    let gap = relief.gap(at);
+    let gap = relief.ground.gap(at);
     if gap <= 0.0 {
         return None;
     }
     let path = format!("{path}.position_m");
-    let extent = relief.ground.size().max_element();
     let above = (camera.position.z - relief.highest).max(0.0);
-    let is_far = gap > FAR_M.max(FAR_EXTENTS * extent).max(FAR_HEIGHTS * above);
+    let is_far = gap > far_from(&relief.ground).max(FAR_HEIGHTS * above);
     let message = format!("the camera is {} m beside the ground", metres(gap));
     if is_far {
         return Some(Diagnostic::error(path, message).help(far_help(camera, relief, frame)));
@@ -39,7 +36,7 @@ pub(super) fn problem_of_camera_beside(
     let reaches = relief.extent_text();
     let looks_beside = match camera.target {
         // A camera may look at the scene from its side.
-        Some(target) => relief.gap(target.truncate()) > 0.0,
+        Some(target) => relief.ground.gap(target.truncate()) > 0.0,
         None => true,
     };
     if !looks_beside {
@@ -60,7 +57,7 @@ fn far_help(camera: &CameraPlace, relief: &Relief, frame: DVec2) -> String {
     let DVec3 { x, y, z } = camera.position;
     let local = DVec2::new(x, y) - frame;
     let reaches = relief.extent_text();
-    if frame != DVec2::ZERO && relief.gap(local) <= 0.0 {
+    if frame != DVec2::ZERO && relief.ground.gap(local) <= 0.0 {
         format!(
             "positions of cameras are local: less `frame.origin_m`, it is at `position_m: ({:?}, {:?}, {z:?})`",
             local.x, local.y

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3, Vec2Swizzles as _, Vec3};
 use super::Spawner;
 use super::astray::{far_from, is_far};
 use super::meshes::Prototype;
+use super::plausible::TALLEST;
 use crate::components::{Placement, TerrainPatch};
 use crate::document::{Cover, Diagnostic, Mesh, Sensor, Terrain};
 use crate::geometry::{PixelGrid, place_text};
@@ -18,9 +19,6 @@ const OVERHANG: f64 = 1e-3;
 
 /// A mesh that a unit below a metre makes smaller than this, m, was most likely in metres.
 const SMALLEST: f32 = 0.3;
-
-/// No plant is larger, m.
-const TALLEST: f32 = 200.0;
 
 impl Spawner<'_> {
     /// Refuses instances that stand so far from the ground that other coordinates must be meant, and
@@ -129,7 +127,7 @@ impl Spawner<'_> {
                 let path = format!("meshes.{name}");
                 self.problems.push(Diagnostic::warning(path, message).help(help));
             }
-            if size > TALLEST {
+            if f64::from(size) > TALLEST {
                 let message = format!("`{name}` is {size:.0} m large");
                 let help = "if its file is in centimetres, write `unit_m: 0.01`; in millimetres, \
                             `unit_m: 0.001`";

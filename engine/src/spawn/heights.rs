@@ -76,13 +76,7 @@ impl Relief {
 
     /// Returns whether a place lies beside the ground of an isolated scene.
     fn is_beside(&self, at: DVec2) -> bool {
-        !self.is_periodic && self.gap(at) > 0.0
-    }
-
-    /// Distance of a place from the ground's rectangle along one of the axes, m; negative inside.
-    pub(super) fn gap(&self, at: DVec2) -> f64 {
-        let (low, high) = (self.ground.corner(), self.ground.corner() + self.ground.size());
-        (low - at).max(at - high).max_element()
+        !self.is_periodic && self.ground.gap(at) > 0.0
     }
 
     /// ``the ground reaches from (0, 0) to (20, 20) m``
@@ -140,7 +134,7 @@ impl Spawner<'_> {
             if let Some(camera) = CameraPlace::of(sensor) {
                 let (x, y, _) = scene.frame.origin_m;
                 let frame = DVec2::new(x, y);
-                self.problems.extend(warn_camera(&camera, &path, (&relief, frame)));
+                self.problems.extend(warn_camera(&camera, &path, &relief, frame));
             }
             if let Some(plane) = virtual_plane(sensor) {
                 self.problems.extend(self.check_plane_height(plane, &path, &relief));
@@ -199,11 +193,7 @@ fn virtual_plane(sensor: &Sensor) -> Option<&VirtualPlane> {
     }
 }
 
-fn warn_camera(
-    camera: &CameraPlace,
-    path: &str,
-    (relief, frame): (&Relief, DVec2),
-) -> Vec<Diagnostic> {
+fn warn_camera(camera: &CameraPlace, path: &str, relief: &Relief, frame: DVec2) -> Vec<Diagnostic> {
     let DVec3 { x, y, z } = camera.position;
     if let Some(problem) = problem_of_camera_beside(camera, path, relief, frame) {
         return vec![problem];

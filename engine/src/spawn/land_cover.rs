@@ -51,7 +51,7 @@ impl Spawner<'_> {
         let mut missing = Vec::new();
         let mut values = Vec::with_capacity(raster.values.len());
         for &class in &raster.values {
-            // What has no data is a class without a number; the sum makes 0 of -0.
+            // Cells without data are a class without a number; the sum makes 0 of -0.
             let key = if class.is_nan() { f64::NAN.to_bits() } else { (class + 0.0).to_bits() };
             let part = known.entry(key).or_insert_with(|| {
                 let Some(material) = material_of(class, cover, &raster) else {

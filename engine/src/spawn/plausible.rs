@@ -18,7 +18,7 @@ const STEMS: f64 = 1e5;
 const TREE: f64 = 2.0;
 
 /// Height that no plant reaches, m.
-const TALLEST: f64 = 200.0;
+pub(super) const TALLEST: f64 = 200.0;
 
 /// Sums over the instances of a mesh.
 struct Plants {

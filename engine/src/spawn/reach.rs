@@ -61,14 +61,20 @@ impl Origins {
         self.ends.push((entry, end));
     }
 
-    /// Path in the document of an instance, and a name for it.
-    pub(crate) fn place(&self, scene: &Scene, instance: usize) -> (String, String) {
+    /// Number of the entry that an instance is of, and of the instance within it.
+    pub(super) fn entry_and_row(&self, instance: usize) -> Option<(usize, usize)> {
         let at = self.ends.partition_point(|&(_, end)| end <= instance);
         let start = at.checked_sub(1).map_or(0, |before| self.ends[before].1);
-        let Some(&(entry, _)) = self.ends.get(at) else {
+        let &(entry, _) = self.ends.get(at)?;
+        Some((entry, instance - start))
+    }
+
+    /// Path in the document of an instance, and a name for it.
+    pub(crate) fn place(&self, scene: &Scene, instance: usize) -> (String, String) {
+        let Some((entry, row)) = self.entry_and_row(instance) else {
             return ("instances".to_owned(), "an instance".to_owned());
         };
-        let (path, row) = (format!("instances[{entry}]"), instance - start);
+        let path = format!("instances[{entry}]");
         match scene.instances.get(entry) {
             Some(Instances::List { .. }) => {
                 (format!("{path}.at_m[{row}]"), "this instance".to_owned())

@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::Spawner;
+use super::spectrum_table::edges;
 use crate::document::{Diagnostic, IRRADIANCE, Spectrum, unknown_name};
 use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
 use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
@@ -58,8 +59,7 @@ impl Spawner<'_> {
     /// Warns of a wide band within which a surface differs so much that its mean says little.
     pub(super) fn warn_wide_bands(&mut self, points: &[(f64, f64)], path: &str) {
         for band in &self.scene.bands {
-            let (low, high) =
-                (band.center_nm - 0.5 * band.width_nm, band.center_nm + 0.5 * band.width_nm);
+            let (low, high) = edges(band);
             let within =
                 points.iter().filter(|(nm, value)| (low..=high).contains(nm) && value.is_finite());
             let (least, most) = within

@@ -381,6 +381,6 @@ impl Values<'_> {
 }
 
 /// Edges of a band, nm.
-fn edges(band: &Band) -> (f64, f64) {
+pub(super) fn edges(band: &Band) -> (f64, f64) {
     (band.center_nm - 0.5 * band.width_nm, band.center_nm + 0.5 * band.width_nm)
 }

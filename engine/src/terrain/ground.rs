@@ -62,6 +62,12 @@ impl Ground {
         }
     }
 
+    /// Distance of a place from the rectangle along one of the axes, m; negative inside.
+    #[must_use]
+    pub fn gap(&self, place: DVec2) -> f64 {
+        (self.corner - place).max(place - (self.corner + self.size)).max_element()
+    }
+
     /// South-west corner of its rectangle, m.
     #[must_use]
     pub const fn corner(&self) -> DVec2 {

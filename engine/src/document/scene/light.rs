@@ -14,8 +14,8 @@ record! {
         zenith_deg: Option<f64> => "30.0" = None,
         /// Where the sun is, clockwise from north, degrees.
         azimuth_deg: f64 = 0.0,
-        /// Where the sun is, in place of both angles. Below the horizon it gives no light: an error, or in a
-        /// sweep a row without data, unless a sky of its own or emission is left.
+        /// Place and time that say where the sun is, in place of both angles. Below the horizon it gives no light:
+        /// an error, or in a sweep a row without data, unless a sky of its own or emission is left.
         position: Option<SunPosition> = None,
         /// Angular diameter of the disc, degrees, of even radiance; 0 is a parallel beam, and the real
         /// sun has 0.533.
