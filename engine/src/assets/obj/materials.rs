@@ -1,4 +1,7 @@
-//! Material libraries (`.mtl`): what they say about transparency.
+//! Material libraries (`.mtl`): transparency of materials, read by `tobj`.
+//!
+//! `tobj` is given the statements about transparency alone, in the one form that it reads: it refuses a whole
+//! library for `d -halo 0.5` or text in Latin-1, and panics on `Kd 0.5`, which the format allows.
 
 use std::path::{Path, PathBuf};
 
@@ -8,79 +11,69 @@ use super::super::error::excerpt;
 use super::super::text::{self, Lines, finite};
 use super::words;
 
-/// Largest library that is looked into, bytes.
+/// Size of the largest library that is read, bytes.
 const LARGEST: u64 = 16 << 20;
 
-/// What a library says of one material.
-#[derive(Default)]
-struct Transparency {
-    /// Opacity (`d`), 0 to 1.
-    d: Option<f64>,
-    /// 1 minus the opacity (`Tr`); some programs write it in place of `d`.
-    tr: Option<f64>,
-    /// The line of a texture of opacities.
-    map: Option<String>,
-}
+/// Material of a `newmtl` without a name; no `usemtl` can name it, because `#` starts a comment.
+const UNNAMED: &str = "#";
 
-impl Transparency {
-    /// The words of the library that make the material transparent.
-    fn words(self) -> Option<String> {
-        let Self { d, tr, map } = self;
-        map.or_else(|| match (d, tr) {
-            (Some(d), _) => (d < 1.0).then(|| format!("d {d}")),
-            (None, Some(tr)) => (tr > 0.0).then(|| format!("Tr {tr}")),
-            (None, None) => None,
-        })
-    }
-}
-
-/// Transparent materials, each with the words that make it so. Libraries that cannot be read say nothing.
+/// Returns the transparent materials, each with the statement that makes it so.
+///
+/// Among materials of one name the first transparent one counts. A library that cannot be read has none.
 pub(super) fn transparent(obj: &Path, libraries: &IndexSet<String>) -> IndexMap<String, String> {
-    let mut found = IndexMap::new();
-    for library in libraries.iter().flat_map(|names| files(obj, names)) {
-        read(&library, &mut found);
+    let mut transparent = IndexMap::new();
+    for library in libraries.iter().flat_map(|names| library_paths(obj, names)) {
+        let statements = transparency_statements(&library);
+        let (materials, _) = tobj::load_mtl_buf(&mut statements.as_bytes()).unwrap_or_default();
+        for mut material in materials {
+            let opacity = material.dissolve.map(|opacity| (opacity < 1.0, format!("d {opacity}")));
+            let transparency = material.unknown_param.remove("Tr").and_then(|text| finite(&text));
+            // Some programs write `Tr`, 1 minus the opacity, in place of `d`.
+            let number = opacity.or(transparency.map(|value| (value > 0.0, format!("Tr {value}"))));
+            let number = number.and_then(|(is_transparent, text)| is_transparent.then_some(text));
+            if let Some(statement) = material.dissolve_texture.or(number) {
+                transparent.entry(material.name).or_insert(statement);
+            }
+        }
     }
-    found
+    transparent
 }
 
-/// The files that follow `mtllib`: one, whose name may hold spaces, or several.
-fn files(obj: &Path, names: &str) -> Vec<PathBuf> {
+/// Returns the files that follow `mtllib`: one, whose name may hold spaces, or several.
+fn library_paths(obj: &Path, names: &str) -> Vec<PathBuf> {
     let folder = obj.parent().unwrap_or(Path::new(""));
     let beside = |name: &str| folder.join(name.replace('\\', "/"));
     let whole = beside(names);
     if whole.is_file() { vec![whole] } else { names.split_whitespace().map(beside).collect() }
 }
 
-fn read(library: &Path, found: &mut IndexMap<String, String>) {
-    if text::size(library).is_ok_and(|size| size <= LARGEST)
-        && let Ok(mut lines) = Lines::open(library)
-    {
-        let mut material = (String::new(), Transparency::default());
-        while let Ok(Some((_, line))) = lines.next_bytes() {
-            let line = String::from_utf8_lossy(line);
-            let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((&line, ""));
-            let rest = words(rest.split(" #").next().unwrap_or_default());
-            // `d -halo 0.5` has its number last.
-            let number = rest.rsplit(' ').next().and_then(finite);
-            match keyword.to_ascii_lowercase().as_str() {
-                "newmtl" => {
-                    note(std::mem::replace(&mut material, (rest, Transparency::default())), found);
-                }
-                "d" => material.1.d = number,
-                "tr" => material.1.tr = number,
-                "map_d" | "map_tr" | "map_opacity" => {
-                    material.1.map = Some(excerpt(&format!("{keyword} {rest}")));
-                }
-                _ => {}
+/// Returns the names of a library's materials and what it says about their transparency, in the words of `tobj`.
+///
+/// `map_d` is followed by the whole statement, which may be that of another keyword with this meaning.
+fn transparency_statements(library: &Path) -> String {
+    let mut statements = String::new();
+    let Ok(mut lines) = Lines::open(library) else { return statements };
+    if text::size(library).is_ok_and(|size| size > LARGEST) {
+        return statements;
+    }
+    while let Ok(Some((_, line))) = lines.next_bytes() {
+        let line = String::from_utf8_lossy(line);
+        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((&line, ""));
+        let rest = words(rest.split(" #").next().unwrap_or_default());
+        // The number of `d -halo 0.5` is its last word.
+        let number = rest.rsplit(' ').next().and_then(finite);
+        let statement = match (keyword.to_ascii_lowercase().as_str(), number) {
+            ("newmtl", _) if rest.is_empty() => format!("newmtl {UNNAMED}"),
+            ("newmtl", _) => format!("newmtl {rest}"),
+            ("d", Some(opacity)) => format!("d {opacity}"),
+            ("tr", Some(transparency)) => format!("Tr {transparency}"),
+            ("map_d" | "map_tr" | "map_opacity", _) => {
+                format!("map_d {}", excerpt(&format!("{keyword} {rest}")))
             }
-        }
-        note(material, found);
+            _ => continue,
+        };
+        statements.push_str(&statement);
+        statements.push('\n');
     }
-}
-
-fn note((name, transparency): (String, Transparency), found: &mut IndexMap<String, String>) {
-    if let Some(words) = transparency.words() {
-        // As viewers do, the first material of a name counts.
-        found.entry(name).or_insert(words);
-    }
+    statements
 }

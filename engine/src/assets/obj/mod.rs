@@ -1,4 +1,13 @@
 //! Wavefront OBJ: vertices, faces, groups and material names; the rest of the format is left out.
+//!
+//! `tobj` reads the material libraries ([`materials`]) and is compared with this reader in `assets/tests/obj.rs`. It
+//! does not read the geometry, because it
+//!
+//! - accepts `nan`, numbers beyond f64 and far indices of texture coordinates, makes a face of a line (`l`), and
+//!   says neither line nor word of a fault, so that a layer around it has to parse each statement itself;
+//! - joins parts whose materials no library defines, and finds no vertex that follows behind the next group;
+//! - renumbers vertices by first use. With a layer that cleans its lines it took 1.9 to 2.8 times as long for files
+//!   of 50 and 60 MB, and 2.2 to 3 times the memory.
 
 mod line;
 mod materials;

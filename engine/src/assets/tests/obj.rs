@@ -1,6 +1,6 @@
 use std::fmt::Write as _;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
 use super::*;
@@ -203,8 +203,43 @@ fn errors_name_the_line_and_say_what_to_write() {
     assert!(matches!(error, AssetError::BadUnit { unit_m: 0.0, .. }), "{error}");
 }
 
+/// Warning about a square of material `pane` beside a library with this text.
+fn transparency_warning(library: impl AsRef<[u8]>) -> Option<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("square.obj");
+    let text = format!("mtllib a.mtl\n{SQUARE}usemtl pane\nf 1 2 3 4\nusemtl wall\nf 1 2 3 4\n");
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(folder.path().join("a.mtl"), library).unwrap();
+    let warnings = read_obj(&path, &AS_IS, &PartsBy::Group).unwrap().warnings;
+    assert!(warnings.len() < 2, "{warnings:?}");
+    warnings.first().map(|warning| warning.split(" of this file").next().unwrap().to_owned())
+}
+
+#[test]
+fn libraries_say_which_materials_are_transparent() {
+    for (library, expected) in [
+        ("newmtl pane\nd 0.5\n", Some("`pane` (d 0.5)")),
+        ("newmtl pane\nd -halo 0.5 # half\n", Some("`pane` (d 0.5)")),
+        ("newmtl pane\nTr 0.25\nKd 0.5\nKa spectral leaf.rfl\nillum x\n", Some("`pane` (Tr 0.25)")),
+        ("newmtl pane\ntr 0.25\nd 1\n", None),
+        ("newmtl pane\nTr 0\nnewmtl pane\nd 0.1\n", Some("`pane` (d 0.1)")),
+        ("newmtl pane\nd 0.5\nnewmtl pane\nd 0.1\n", Some("`pane` (d 0.5)")),
+        ("newmtl pane\nmap_Tr -clamp on a.png\nd 0.5\n", Some("`pane` (map_Tr -clamp on a.png)")),
+        ("newmtl pane\nnewmtl\nd 0.5\n", None),
+        ("d 0.5\nnewmtl pane\nd nan\nd x\nd\n", None),
+        ("newmtl wall\nd 0.5\nnewmtl  pane \nd 0\n", Some("`pane` (d 0), `wall` (d 0.5)")),
+        ("", None),
+    ] {
+        let warning = transparency_warning(library);
+        let shown = warning.as_ref().and_then(|warning| warning.rsplit("not read: ").next());
+        assert_eq!(shown, expected, "{library:?}");
+    }
+    let latin1 = transparency_warning(b"# caf\xe9\nnewmtl pane\nd 0.5\n");
+    assert!(latin1.is_some_and(|warning| warning.ends_with("(d 0.5)")));
+}
+
 proptest! {
-    /// What is written as OBJ text is read back bit for bit.
+    /// A mesh that is written as OBJ text is read back bit for bit, and has the triangles that `tobj` finds.
     #[test]
     fn a_written_mesh_is_read_back(
         vertices in prop::collection::vec(prop::array::uniform3(-100.0..100.0_f32), 3..40),
@@ -224,6 +259,23 @@ proptest! {
                 expected[*part].push(corners);
             }
         }
+        let options = tobj::LoadOptions::default();
+        let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| unreachable!()).unwrap();
+        let mut with_tobj = vec![Vec::new(); 3];
+        for tobj::Model { mesh, name } in &models {
+            let vertex = |index: u32| {
+                let start = 3 * index as usize;
+                DVec3::from_slice(&mesh.positions[start..start + 3])
+            };
+            for corners in mesh.indices.chunks_exact(3) {
+                let [a, b, c] = [0, 1, 2].map(|corner| vertex(corners[corner]));
+                if (b - a).cross(c - a).length() > 0.0 {
+                    let part: usize = name["part".len()..].parse().unwrap();
+                    with_tobj[part].push([a, b, c].map(DVec3::as_vec3));
+                }
+            }
+        }
+        prop_assert_eq!(&with_tobj, &expected);
         let total: usize = expected.iter().map(Vec::len).sum();
         match read(&text) {
             Err(AssetError::NoFaces { .. }) => prop_assert_eq!(total, 0),
