@@ -20,6 +20,7 @@ pub mod sampling;
 pub mod scattering;
 pub mod spawn;
 pub mod spectral;
+pub mod systems;
 pub mod terrain;
 pub mod transport;
 pub mod units;

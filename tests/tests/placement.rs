@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec2;
 use sunfleck::components::Placement;
 use sunfleck::document::{Options, read_text};
-use sunfleck::spawn::spawn;
+use sunfleck::run::SceneWorld;
 
 /// A periodic scene of 200 m x 100 m at a UTM position, with meshes of four sizes.
 fn scene(instances: &str) -> String {
@@ -43,8 +43,9 @@ fn scene(instances: &str) -> String {
 fn instances(text: &str, folder: &Path) -> Result<Vec<(String, Placement)>, String> {
     let reading = read_text("stand.ron", text, &Options::default()).map_err(|e| e.to_string())?;
     assert!(reading.diagnostics.is_empty(), "{}", reading.render());
-    let spawned = spawn(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;
-    let mut all: Vec<Placement> = spawned.world.query::<&Placement>().iter().copied().collect();
+    let built =
+        SceneWorld::from_scene(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;
+    let mut all: Vec<Placement> = built.world.query::<&Placement>().iter().copied().collect();
     all.sort_by_key(|placement| placement.id);
     let name = |p: &Placement| {
         reading.scene.meshes.get_index(p.prototype.0 as usize).expect("a mesh").0.clone()

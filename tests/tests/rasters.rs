@@ -7,8 +7,8 @@ use std::path::Path;
 use glam::DVec2;
 use sunfleck::components::Placement;
 use sunfleck::document::{Options, read_text};
+use sunfleck::run::SceneWorld;
 use sunfleck::sampling::Key;
-use sunfleck::spawn::spawn;
 use tempfile::TempDir;
 
 const ORIGIN: DVec2 = DVec2::new(400_000.0, 5_600_000.0);
@@ -80,12 +80,13 @@ fn scene(terrain: &str, instances: &str) -> String {
 fn stand(folder: &Path, text: &str) -> Result<(Vec<(Placement, DVec2)>, String), String> {
     let reading = read_text("stand.ron", text, &Options::default()).map_err(|e| e.to_string())?;
     assert!(reading.diagnostics.is_empty(), "{}", reading.render());
-    let spawned = spawn(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;
-    let mut all: Vec<Placement> = spawned.world.query::<&Placement>().iter().copied().collect();
+    let built =
+        SceneWorld::from_scene(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;
+    let mut all: Vec<Placement> = built.world.query::<&Placement>().iter().copied().collect();
     all.sort_by_key(|placement| placement.id);
     let sizes = [DVec2::new(3.0, 5.0), DVec2::new(4.0, 10.0), DVec2::new(2.0, 15.0)];
     let all = all.into_iter().map(|p| (p, sizes[p.prototype.0 as usize])).collect();
-    Ok((all, reading.source.render(&spawned.warnings)))
+    Ok((all, reading.source.render(&built.diagnostics())))
 }
 
 fn folder() -> TempDir {

@@ -1,23 +1,27 @@
 //! Plain data of the world's entities, one file a subject.
 //!
-//! Kinds of entity and what they carry:
+//! Raw components hold what the author wrote: they are types of [`document`](crate::document), which `spawn` copies
+//! into the world. Derived components are written by the [`systems`](crate::systems).
 //!
-//! | entity | components |
-//! |---|---|
-//! | mesh prototype | [`Name`], [`SceneId`], [`Mesh`], [`PartMaterials`] |
-//! | material | [`Name`], [`SceneId`], [`SurfaceOptics`], [`BlackBody`] where it emits |
-//! | instance | [`Placement`] (it holds its own scene id: there are millions of them) |
-//! | terrain | [`SceneId`], [`TerrainPatch`] |
-//! | sun, sky | [`Sun`], [`Sky`] |
-//! | emission | [`Emission`], where a sensor measures it |
-//! | sensor | [`Name`], [`SceneId`], [`Sensor`] |
+//! | entity | raw components | derived components |
+//! |---|---|---|
+//! | mesh prototype | [`SceneId`], [`Name`], `document::Mesh` | [`Mesh`], [`PartMaterials`], [`MeshBounds`], [`LeafArea`], [`InstanceCount`] |
+//! | material | [`SceneId`], [`Name`], `document::Material` | [`SurfaceOptics`], [`BlackBody`] where it emits |
+//! | planting (an entry of `instances`) | [`SceneId`], `document::Instances` | [`ShownMeshes`], [`InstanceRange`] |
+//! | instance | | [`Placement`] (it holds its own scene id: there are millions of them) |
+//! | terrain | `document::Terrain` | [`TerrainPatch`], `Ground`, `Georeference` |
+//! | sun | `document::Sun` | [`Sun`] |
+//! | sky | `document::Sky`, `document::ThermalSky` | [`Sky`], [`Emission`] where a sensor measures it |
+//! | sensor | [`SceneId`], [`Name`], `document::Sensor` | [`Sensor`] |
 
 mod camera;
+mod extents;
 mod identity;
 mod light;
 mod mesh;
 mod optics;
 mod placement;
+mod planting;
 mod sensor;
 mod terrain;
 mod thermal;
@@ -25,11 +29,13 @@ mod thermal;
 pub use camera::{
     Channels, Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Picture, Stand,
 };
+pub use extents::{InstanceCount, LeafArea, MeshBounds, SceneExtents};
 pub use identity::{MaterialId, Name, PrototypeId, SceneId};
 pub use light::{Sky, Sun};
 pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
 pub use optics::{EnergyGain, SurfaceOptics};
 pub use placement::Placement;
+pub use planting::{InstanceRange, ShownMeshes};
 pub use sensor::{
     Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, Per, PhotonMeasure, Photons,
     Sensor, Stop, System, View, VirtualPlane,

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::sweep::Kept;
-use super::{Failure, Options, Progress, folder_of, in_pool, origin, read, run_kept};
+use super::scene_world::SceneWorld;
+use super::{Failure, Options, Progress, folder_of, in_pool, origin, read, run_in};
 use crate::document::{Reading, Scene};
 use crate::products::Report;
 
@@ -14,7 +14,7 @@ pub struct Runs {
     reading: Reading,
     file: PathBuf,
     options: Options,
-    kept: Option<Kept>,
+    world: SceneWorld,
 }
 
 impl Runs {
@@ -24,7 +24,8 @@ impl Runs {
     /// All that is wrong with it, rendered for a person.
     pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
         let reading = read(file, options)?;
-        Ok(Self { reading, file: file.to_owned(), options: options.clone(), kept: None })
+        let world = SceneWorld::new(folder_of(file));
+        Ok(Self { reading, file: file.to_owned(), options: options.clone(), world })
     }
 
     /// The scene as its author wrote it.
@@ -45,12 +46,10 @@ impl Runs {
     ) -> Result<Report, Failure> {
         let mut options = self.options.clone();
         options.quality *= quality;
-        let (file, source, mut kept) = (&self.file, &self.reading.source, self.kept.take());
+        let (file, source, world) = (&self.file, &self.reading.source, &mut self.world);
         let report = in_pool(&options, || {
-            run_kept(scene, folder_of(file), &options, progress, &mut kept)
-                .map_err(|failure| failure.with_source(source))
+            run_in(world, scene, &options, progress).map_err(|failure| failure.with_source(source))
         });
-        self.kept = kept;
         report.map(|report| Report { origin: Some(origin(file, &options)), ..report })
     }
 }

@@ -12,10 +12,10 @@ use super::sensors::begin;
 use super::{Options, sensors};
 use crate::accel::Ray;
 use crate::components::{
-    MaterialId, Mesh, Name, PartMaterials, Placement, SceneId, Sensor, Stop, Sun, SurfaceOptics,
-    TerrainPatch,
+    InstanceCount, LeafArea, MaterialId, Mesh, Name, Placement, SceneId, Sensor, Stop, Sun,
+    SurfaceOptics, TerrainPatch,
 };
-use crate::document::{self, Diagnostic, Material, PhotonMeasure, Scene};
+use crate::document::{self, Diagnostic, PhotonMeasure, Scene};
 use crate::extract::Stage;
 use crate::products::Context;
 use crate::sampling::Key;
@@ -155,7 +155,7 @@ impl SceneFacts {
     ) -> Self {
         let ground = ground(scene, world);
         let area = ground.size_m[0] * ground.size_m[1];
-        let meshes = meshes(scene, world, area);
+        let meshes = meshes(world, area);
         let memory = stage.geometry.memory();
         let (canopy_cover, canopy_cover_error) = canopy_cover(stage);
         Self {
@@ -240,22 +240,17 @@ struct InstanceSums {
     leaf_area: f64,
 }
 
-fn meshes(scene: &Scene, world: &World, area: f64) -> Vec<MeshFacts> {
-    let mut leaves: BTreeMap<u32, bool> = BTreeMap::new();
-    for (id, name, _) in &mut world.query::<(&SceneId, &Name, &SurfaceOptics)>() {
-        let is_leaf = matches!(scene.materials.get(name.0.as_str()), Some(Material::Leaf { .. }));
-        leaves.insert(id.0, is_leaf);
-    }
+fn meshes(world: &World, area: f64) -> Vec<MeshFacts> {
     let mut sizes: BTreeMap<u32, MeshSize> = BTreeMap::new();
-    for (id, name, mesh, materials) in
-        &mut world.query::<(&SceneId, &Name, &Mesh, &PartMaterials)>()
+    for (id, name, mesh, leaf_area, count) in
+        &mut world.query::<(&SceneId, &Name, &Mesh, &LeafArea, &InstanceCount)>()
     {
-        let parts = mesh.parts.iter().zip(&materials.0);
-        let of_leaves = parts.filter(|(_, material)| leaves.get(&material.0) == Some(&true));
-        let leaf_area = of_leaves.map(|(part, _)| mesh.part_area(part)).sum();
-        let height = mesh.bounds().map_or(0.0, |(low, high)| f64::from(high.z - low.z));
-        let faces = (mesh.triangles.len() + mesh.discs.len()) as u64;
-        sizes.insert(id.0, MeshSize { name: name.0.clone(), faces, height, leaf_area });
+        if count.0 > 0 {
+            let height = mesh.bounds().map_or(0.0, |(low, high)| f64::from(high.z - low.z));
+            let faces = (mesh.triangles.len() + mesh.discs.len()) as u64;
+            let leaf_area = leaf_area.0;
+            sizes.insert(id.0, MeshSize { name: name.0.clone(), faces, height, leaf_area });
+        }
     }
     let mut sums: BTreeMap<u32, InstanceSums> = BTreeMap::new();
     for placement in &mut world.query::<&Placement>() {

@@ -14,6 +14,7 @@ mod growth;
 mod photons;
 mod pixels;
 mod provenance;
+mod scene_world;
 mod sensors;
 mod staging;
 mod sweep;
@@ -31,7 +32,7 @@ use crate::document::{self, Diagnostic, Param, Reading, Scene, Sun};
 use crate::extract::{Rules, Setting, Stage};
 use crate::memory;
 use crate::products::{BandSources, Context, Origin, Report, SensorReport};
-use crate::spawn::{missing_files, respawn, spawn};
+use crate::spawn::missing_files;
 use crate::spectral::BandWindow;
 
 pub use crate::products::Forecast;
@@ -41,11 +42,11 @@ pub use checkpoint::Checkpoint;
 pub use facts::{BandFacts, GroundFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts};
 pub use failure::Failure;
 
-use checkpoint::Keeper;
+pub use scene_world::SceneWorld;
 pub use sweep::Sweep;
 
+use checkpoint::Keeper;
 use staging::staged;
-use sweep::Kept;
 
 /// What the caller decides beyond the scene.
 #[derive(Clone, Debug)]
@@ -200,29 +201,33 @@ fn checked(
     let reading = read(path, options)?;
     let build = || {
         progress.stage("loading");
-        let mut spawned = spawn(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
+        let mut world =
+            SceneWorld::from_scene(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
         progress.stage("building");
-        let stage = staged(&spawned, &reading.scene, None, options.free_memory())?;
-        pixels::count_pixels(&mut spawned, &stage)?;
+        let stage = staged(&mut world, &reading.scene, options.free_memory())?;
+        let mut notes: Vec<String> = world.resources.messages.notes().cloned().collect();
+        notes.extend(pixels::count_pixels(&mut world.world, &stage)?);
         let context = context(&reading.scene, &stage);
-        let sensors = sensors::in_order(&spawned.world);
+        let sensors = sensors::in_order(&world.world);
         check::check(&sensors, (&stage, &context), options, &Keeper::idle())?;
-        spawned.warnings.extend(enclosed::warnings(&sensors, &stage));
+        let mut warnings = world.diagnostics();
+        warnings.extend(enclosed::warnings(&sensors, &stage));
         if with_facts {
-            spawned.warnings.extend(facts::warn_bright_ground(&reading.scene, &spawned.world));
+            warnings.extend(facts::warn_bright_ground(&reading.scene, &world.world));
         }
         let facts = with_facts
-            .then(|| SceneFacts::new(&reading.scene, &spawned.world, (&stage, &context), options));
-        Ok((spawned, facts))
+            .then(|| SceneFacts::new(&reading.scene, &world.world, (&stage, &context), options));
+        let skipped: Vec<String> = world.resources.messages.skipped().cloned().collect();
+        Ok((warnings, skipped, notes, facts))
     };
-    let (spawned, facts) = in_pool(options, || {
+    let (found, skipped, notes, facts) = in_pool(options, || {
         build().map_err(|failure: Failure| failure.with_source(&reading.source))
     })?;
-    let warnings = reading.diagnostics.iter().chain(&spawned.warnings);
+    let warnings = reading.diagnostics.iter().chain(&found);
     let mut warnings: Vec<String> =
         warnings.map(|one| reading.source.render(std::slice::from_ref(one))).collect();
-    warnings.extend(spawned.skipped.iter().map(|what| format!("skipped: {what}")));
-    warnings.extend(spawned.notes.iter().map(|what| format!("note: {what}")));
+    warnings.extend(skipped.iter().map(|what| format!("skipped: {what}")));
+    warnings.extend(notes.iter().map(|what| format!("note: {what}")));
     Ok(Checked { warnings, facts })
 }
 
@@ -245,10 +250,10 @@ pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
     let mut clock = Clock::start();
     let reading = read(path, options)?;
     in_pool(options, || {
-        let spawned = spawn(&reading.scene, folder_of(path))
+        let mut world = SceneWorld::from_scene(&reading.scene, folder_of(path))
             .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
         clock.lap("load");
-        let stage = staged(&spawned, &reading.scene, None, options.free_memory())
+        let stage = staged(&mut world, &reading.scene, options.free_memory())
             .map_err(|failure| failure.with_source(&reading.source))?;
         clock.lap("build");
         let seconds = |lap: usize| clock.laps[lap].1;
@@ -266,17 +271,15 @@ pub fn run(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Report, Failure> {
-    run_kept(scene, folder, options, progress, &mut None)
+    run_in(&mut SceneWorld::new(folder), scene, options, progress)
 }
 
-/// The same; meshes, instances and terrain are taken from `kept`, if that is of a scene with the same
-/// ones, and are left there for the next run.
-fn run_kept(
+/// Runs a scene in a world, of which only what has changed since the last run is derived anew.
+fn run_in(
+    world: &mut SceneWorld,
     scene: &Scene,
-    folder: &Path,
     options: &Options,
     progress: &dyn Progress,
-    kept: &mut Option<Kept>,
 ) -> Result<Report, Failure> {
     let start = Instant::now();
     let mut clock = Clock::start();
@@ -291,37 +294,34 @@ fn run_kept(
         return Err(Failure::Problems(problems));
     }
     progress.stage("loading");
-    let last = kept.take().filter(|kept| kept.serves(scene));
-    let (spawned, built) = match last {
-        Some(Kept { spawned, geometry, .. }) => {
-            (respawn(spawned, scene, folder).map_err(Failure::Problems)?, Some(geometry))
-        }
-        None => (spawn(scene, folder).map_err(Failure::Problems)?, None),
-    };
+    world.set(scene).map_err(Failure::Problems)?;
     // Parts that were traced with some sensors are united with those.
-    let chosen = sensors_of_parts(scene, options, &spawned.files)?;
-    let (scene, mut spawned) = match &chosen {
-        Some(chosen) => (chosen, respawn(spawned, chosen, folder).map_err(Failure::Problems)?),
-        None => (scene, spawned),
-    };
-    let hash = provenance::hash(scene, &spawned.files)?;
+    let chosen = sensors_of_parts(scene, options, &world.resources.messages.files())?;
+    let scene = chosen.as_ref().unwrap_or(scene);
+    if chosen.is_some() {
+        world.set(scene).map_err(Failure::Problems)?;
+    }
+    let files = world.resources.messages.files();
+    let hash = provenance::hash(scene, &files)?;
     let mut keeper = match &options.checkpoint {
-        Some(to) => Keeper::open(to, provenance::stream_hash(scene, &spawned.files)?)?,
+        Some(to) => Keeper::open(to, provenance::stream_hash(scene, &files)?)?,
         None if options.unite.is_empty() => Keeper::idle(),
-        None => Keeper::unite(&options.unite, provenance::stream_hash(scene, &spawned.files)?)?,
+        None => Keeper::unite(&options.unite, provenance::stream_hash(scene, &files)?)?,
     };
     clock.lap("spawn");
     progress.stage("building");
-    let stage = staged(&spawned, scene, built, options.free_memory())?;
-    pixels::count_pixels(&mut spawned, &stage)?;
+    let stage = staged(world, scene, options.free_memory())?;
+    let pixel_notes = pixels::count_pixels(&mut world.world, &stage)?;
     clock.lap("build");
     let context = context(scene, &stage);
     progress.stage("tracing");
     let (reports, unsaved) =
-        measure(&spawned.world, (&stage, &context), options, &mut keeper, progress)?;
+        measure(&world.world, (&stage, &context), options, &mut keeper, progress)?;
     clock.lap("trace");
-    let report = Report {
-        projection: projection(&spawned.world),
+    let messages = &world.resources.messages;
+    let sensors = sensors::in_order(&world.world);
+    Ok(Report {
+        projection: projection(&world.world),
         scene: scene.title.clone(),
         hash,
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -332,14 +332,13 @@ fn run_kept(
         wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
         irradiance: context.irradiance,
         stages: clock.laps,
-        skipped: spawned.skipped.clone(),
-        notes: spawned.notes.clone(),
-        warnings: spawned
-            .warnings
-            .iter()
-            .chain(&enclosed::warnings(&sensors::in_order(&spawned.world), &stage))
+        skipped: messages.skipped().cloned().collect(),
+        notes: messages.notes().cloned().chain(pixel_notes).collect(),
+        warnings: messages
+            .diagnostics()
+            .chain(&enclosed::warnings(&sensors, &stage))
             .map(failure::one_line)
-            .chain(footprint::warnings(&sensors::in_order(&spawned.world), &stage))
+            .chain(footprint::warnings(&sensors, &stage))
             .chain(unbalanced(&reports))
             .chain(unsaved)
             .collect(),
@@ -347,9 +346,7 @@ fn run_kept(
         params: params(scene),
         sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
         origin: None,
-    };
-    *kept = Some(Kept { form: sweep::form(scene), spawned, geometry: stage.geometry });
-    Ok(report)
+    })
 }
 
 /// The scene with those sensors alone that parts of a run were traced with; `None` if they were traced with all,

@@ -1,24 +1,25 @@
 //! Number of pixels of images whose pixels have a given side.
 
+use hecs::World;
+
 use crate::components::{Name, Optics, Sensor};
 use crate::document::{Diagnostic, too_many_pixels};
 use crate::extract::Stage;
 use crate::geometry::PixelGrid;
-use crate::spawn::Spawned;
 use crate::transport::wanted_footprint;
 
 use super::Failure;
 
 /// Counts the pixels of each parallel projection that names their side: what the whole scene covers is
-/// known only of a stage. Adds a note for each footprint that grows to whole pixels.
+/// known only of a stage. Returns a note for each footprint that grows to whole pixels.
 ///
 /// # Errors
 /// If an image has more pixels than it may have.
-pub(super) fn count_pixels(spawned: &mut Spawned, stage: &Stage) -> Result<(), Failure> {
+pub(super) fn count_pixels(world: &mut World, stage: &Stage) -> Result<Vec<String>, Failure> {
     let bands = stage.light.irradiance.len();
     let mut problems: Vec<Diagnostic> = Vec::new();
     let mut notes: Vec<String> = Vec::new();
-    for (name, sensor) in spawned.world.query_mut::<(&Name, &mut Sensor)>() {
+    for (name, sensor) in world.query_mut::<(&Name, &mut Sensor)>() {
         let Sensor::Image(image) = sensor else { continue };
         let Optics::Orthographic(optics) = &image.optics else { continue };
         let Some(side) = optics.pixel else { continue };
@@ -44,8 +45,7 @@ pub(super) fn count_pixels(spawned: &mut Spawned, stage: &Stage) -> Result<(), F
         }
     }
     notes.sort_unstable();
-    spawned.notes.extend(notes);
-    if problems.is_empty() { Ok(()) } else { Err(Failure::Problems(problems)) }
+    if problems.is_empty() { Ok(notes) } else { Err(Failure::Problems(problems)) }
 }
 
 /// A length without the rounding of its computation, m.

@@ -1,48 +1,48 @@
 //! World to stage, with places in the document for whatever the ray engine refuses.
 
-use std::sync::Arc;
-
-use hecs::World;
-
+use super::scene_world::SceneWorld;
 use super::{Failure, setting};
-use crate::accel::{self, BuildError};
-use crate::components::{Mesh, Name, SceneId};
+use crate::accel::BuildError;
+use crate::components::{InstanceCount, SceneId};
 use crate::document::{Diagnostic, Scene};
 use crate::extract::{Stage, extract};
-use crate::spawn::Spawned;
+use crate::systems::{Resources, check_memory, place_of_instance};
 
-/// The stage of a world, of geometry that was built before if there is any. `free` is the memory that the ray
-/// engine may take, bytes.
+/// Extracts the stage of a world; builds the trees of the ray engine unless they are there. `free` is the memory that
+/// the ray engine may take, bytes.
 ///
 /// # Errors
 /// If the trees of the ray engine take more memory than there is, or it refuses a mesh or an instance.
-pub(super) fn staged(
-    spawned: &Spawned,
-    scene: &Scene,
-    built: Option<Arc<accel::Scene>>,
-    free: u64,
-) -> Result<Stage, Failure> {
-    let problem = spawned.reach().check_memory(free).filter(|_| built.is_none());
-    if let Some(problem) = problem {
-        return Err(Failure::Problems(vec![problem]));
+pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result<Stage, Failure> {
+    let built = world.trees.clone();
+    if built.is_none() {
+        if let Some(problem) = check_memory(&world.resources.extents, free) {
+            return Err(Failure::Problems(vec![problem]));
+        }
+        world.builds += 1;
     }
-    extract(&spawned.world, &setting(scene), built)
-        .map_err(|error| Failure::Problems(vec![located(&error, spawned, scene)]))
+    let stage = extract(&world.world, &setting(scene), built)
+        .map_err(|error| Failure::Problems(vec![located(&error, world)]))?;
+    world.trees = Some(stage.geometry.clone());
+    Ok(stage)
 }
 
 /// What the ray engine refuses, at its place in the document.
-fn located(error: &BuildError, spawned: &Spawned, scene: &Scene) -> Diagnostic {
+fn located(error: &BuildError, world: &SceneWorld) -> Diagnostic {
     let path = match *error {
         BuildError::Vertex { mesh, .. }
         | BuildError::Corner { mesh, .. }
         | BuildError::Disc { mesh, .. }
         | BuildError::Surfaces { mesh, .. }
         | BuildError::Parts { mesh, .. }
-        | BuildError::TooManyPrimitives { mesh, .. } => mesh_path(mesh, &spawned.world),
+        | BuildError::TooManyPrimitives { mesh, .. } => mesh_path(mesh, world),
         BuildError::Mesh { instance, .. } | BuildError::Transform { instance } => {
             // Instance 0 is the ground.
             match instance.checked_sub(1) {
-                Some(placed) => spawned.origins().place(scene, placed).0,
+                Some(placed) => {
+                    let id = SceneId(placed as u32);
+                    place_of_instance(id, &world.world, &world.resources).0
+                }
                 None => "terrain".to_owned(),
             }
         }
@@ -52,13 +52,14 @@ fn located(error: &BuildError, spawned: &Spawned, scene: &Scene) -> Diagnostic {
     Diagnostic::error(path, error.to_string())
 }
 
-/// Path of a mesh of the stage: the ground, then all others in document order.
-fn mesh_path(mesh: usize, world: &World) -> String {
-    let mut query = world.query::<(&SceneId, &Name, &Mesh)>();
-    let mut names: Vec<_> = query.iter().map(|(id, name, _)| (*id, name.0.clone())).collect();
-    names.sort_unstable_by_key(|(id, _)| *id);
-    match mesh.checked_sub(1).and_then(|index| names.get(index)) {
-        Some((_, name)) => format!("meshes.{name}"),
+/// Path of a mesh of the stage: the ground, then all placed meshes in document order.
+fn mesh_path(mesh: usize, SceneWorld { world, resources, .. }: &SceneWorld) -> String {
+    let Resources { meshes, .. } = resources;
+    let is_placed =
+        |entity: hecs::Entity| world.get::<&InstanceCount>(entity).is_ok_and(|count| count.0 > 0);
+    let mut placed = meshes.iter().filter(|(_, entity)| is_placed(**entity));
+    match mesh.checked_sub(1).and_then(|index| placed.nth(index)) {
+        Some((name, _)) => format!("meshes.{name}"),
         None => "terrain".to_owned(),
     }
 }

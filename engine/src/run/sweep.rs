@@ -2,19 +2,18 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use super::provenance::content;
+use super::scene_world::SceneWorld;
 use super::{
     Failure, Options, Progress, choose_sensors, day, folder_of, in_pool, origin, params, read,
-    run_kept, sound,
+    run_in, sound,
 };
-use crate::accel;
 use crate::document::{
     self, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
 };
 use crate::products::{Day, Night, Point, Report};
-use crate::spawn::{Spawned, named_files};
+use crate::spawn::named_files;
 
 /// A scene file that has been read at every point of its sweep, and what its runs share.
 ///
@@ -28,8 +27,7 @@ pub struct Sweep {
     points: Vec<Point>,
     order: Vec<usize>,
     suns: Vec<Option<Sun>>,
-    kept: Option<Kept>,
-    builds: usize,
+    world: SceneWorld,
 }
 
 impl Sweep {
@@ -63,8 +61,9 @@ impl Sweep {
         }
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(|&index| alike[index]);
+        let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, scene, points, order, suns, kept: None, builds: 0 })
+        Ok(Self { file, options, scene, points, order, suns, world })
     }
 
     /// All points, the last parameter fastest.
@@ -80,10 +79,10 @@ impl Sweep {
         &self.order
     }
 
-    /// How often meshes, instances and terrain have been built so far.
+    /// Number of times that the trees of the ray engine have been built so far.
     #[must_use]
     pub fn builds(&self) -> usize {
-        self.builds
+        self.world.builds
     }
 
     /// Days over whose hours the points can be summed; none if no parameter moves the sun's clock within
@@ -106,16 +105,12 @@ impl Sweep {
             return Ok(Report { notes: vec![why.to_owned()], params, ..self.report() });
         }
         let options = at(&self.options, point);
-        let (file, mut kept) = (&self.file, self.kept.take());
+        let (file, world) = (&self.file, &mut self.world);
         let report = in_pool(&options, || {
             let reading = read(file, &options)?;
-            if !kept.as_ref().is_some_and(|kept| kept.serves(&reading.scene)) {
-                self.builds += 1;
-            }
-            run_kept(&reading.scene, folder_of(file), &options, progress, &mut kept)
+            run_in(world, &reading.scene, &options, progress)
                 .map_err(|failure| failure.with_source(&reading.source))
         });
-        self.kept = kept;
         report
             .map(|mut report| {
                 if let Some(Night::WithoutSun(warning)) = &point.night {
@@ -225,28 +220,14 @@ fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Gl
         };
         hasher.update(hash.as_bytes());
     }
-    let geometry = blake3::hash(form(&reading.scene).to_ron().as_bytes());
+    let geometry = blake3::hash(geometry_of(&reading.scene).to_ron().as_bytes());
     let key = hasher.finalize().to_hex().to_string();
     Ok(Glance { key, geometry, sun: reading.scene.sun, night })
 }
 
-/// Geometry that was built, and the scene that it is of.
-pub(super) struct Kept {
-    pub(super) form: Scene,
-    pub(super) spawned: Spawned,
-    pub(super) geometry: Arc<accel::Scene>,
-}
-
-impl Kept {
-    /// Whether a scene has the same meshes, instances and terrain.
-    pub(super) fn serves(&self, scene: &Scene) -> bool {
-        self.form == form(scene)
-    }
-}
-
-/// A scene without light, spectra and sensors: what decides its geometry, and the order of its
-/// materials. Any other key counts as geometry until it is taken out here.
-pub(super) fn form(scene: &Scene) -> Scene {
+/// Scene without light, spectra and sensors: points that are equal in it follow each other, so that their geometry is
+/// built once.
+fn geometry_of(scene: &Scene) -> Scene {
     let material = |_: &Material| Material::Lambertian {
         reflectance: Spectrum::Constant(0.0),
         back_reflectance: None,

@@ -4,11 +4,10 @@ use std::path::Path;
 
 use super::checkpoint::Keeper;
 use super::growth::{relative_errors, trace};
-use super::{Options, Unwatched, context, document, sensors, setting};
+use super::{Options, SceneWorld, Unwatched, context, document, sensors, setting};
 use crate::components::Sensor;
 use crate::extract::{Stage, extract};
 use crate::products::{Context, Extent, Product};
-use crate::spawn::spawn;
 
 /// A tree on soil in two bands of reflected light and one of emitted, with these sensors.
 fn with_scene(sensors: &str, look: impl Fn(&str, &Sensor, (&Stage, &Context))) {
@@ -40,7 +39,7 @@ fn with_scene(sensors: &str, look: impl Fn(&str, &Sensor, (&Stage, &Context))) {
     let reading =
         document::read_text("test.ron", &text, &document::Options::default()).expect("a scene");
     assert!(reading.is_sound(), "{}", reading.render());
-    let spawned = spawn(&reading.scene, Path::new("")).expect("a world");
+    let spawned = SceneWorld::from_scene(&reading.scene, Path::new("")).expect("a world");
     let stage = extract(&spawned.world, &setting(&reading.scene), None).expect("a stage");
     let context = context(&reading.scene, &stage);
     for (name, sensor) in sensors::in_order(&spawned.world) {

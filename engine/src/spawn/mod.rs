@@ -1,253 +1,179 @@
-//! Document and assets to entities; every error of the scene in one pass, each with its place.
+//! Document to entities that hold what the author wrote: raw components, which the
+//! [`systems`](crate::systems) derive all others from.
 
-mod astray;
-mod beside;
-mod canopy;
-mod crossing;
-mod doubts;
 mod files;
-mod fill;
-mod georaster;
-mod heights;
-mod images;
-mod instances;
-mod land_cover;
-mod lay;
-mod light;
-mod materials;
-mod meshes;
-mod parts;
-mod plausible;
-mod raster;
-mod reach;
-mod relief;
-mod scatter;
-mod sensors;
-mod spectra;
-mod spectrum_table;
-mod standing;
-mod stems;
-mod systems;
-mod terrain;
-mod thermal;
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use hecs::{Component, Entity, World};
 
-use glam::DVec2;
-use hecs::{Entity, Or, World};
-
-use crate::assets::Axes;
-use crate::components::{MaterialId, Mesh, PartMaterials, Placement, SceneId, TerrainPatch};
-use crate::document::{Diagnostic, Scene};
-use crate::terrain::Ground;
-use lay::Georeference;
-use systems::System;
+use crate::components::{Name, SceneId};
+use crate::document::{self, Map, Material, Scene, Terrain};
+use crate::systems::{Changes, Resources};
 
 pub use files::missing_files;
 pub(crate) use files::named_files;
-use reach::{Origins, Reach};
 
-/// A world, and how it came about.
-#[expect(missing_debug_implementations, reason = "a World has no Debug")]
-pub struct Spawned {
-    /// All entities of the scene.
-    pub world: World,
-    /// Files that were read, without repetition, in document order.
-    pub files: Vec<PathBuf>,
-    /// Definitions that nothing uses and that were not built.
-    pub skipped: Vec<String>,
-    /// What was taken without a word in the scene, or left out of its files.
-    pub notes: Vec<String>,
-    /// What the author should know.
-    pub warnings: Vec<Diagnostic>,
-    /// The same of meshes, instances and terrain alone.
-    of_geometry: Notes,
-}
-
-impl Spawned {
-    /// Extent of all geometry.
-    pub(crate) fn reach(&self) -> &Reach {
-        &self.of_geometry.reach
-    }
-
-    /// Places in the document that instances come from.
-    pub(crate) fn origins(&self) -> &Origins {
-        &self.of_geometry.origins
-    }
-}
-
-/// What spawning notes on the way.
-#[derive(Clone, Default)]
-struct Notes {
-    files: Vec<PathBuf>,
-    skipped: Vec<String>,
-    remarks: Vec<String>,
-    problems: Vec<Diagnostic>,
-    reach: Reach,
-    origins: Origins,
-}
-
-/// What the steps of spawning share.
-pub(crate) struct Spawner<'a> {
-    scene: &'a Scene,
-    folder: &'a Path,
-    files: Vec<PathBuf>,
-    skipped: Vec<String>,
-    notes: Vec<String>,
-    problems: Vec<Diagnostic>,
-    reach: Reach,
-    origins: Origins,
-    /// South-west corner and extent of the ground, m.
-    rectangle: (DVec2, DVec2),
-    /// Where rasters lie; `None` if that of the terrain does not say.
-    georeference: Option<Georeference>,
-    /// What the coordinates of the terrain's raster are by its file.
-    terrain_axes: Axes,
-    /// Coordinate reference system of the scene, as soon as something says it.
-    system: Option<System>,
-}
-
-/// Makes the world of a scene; paths in it are relative to `folder`.
+/// Sets the raw components and the settings of a world to those of a scene; returns which kinds have changed.
 ///
-/// Meshes, spectra and materials that nothing uses are neither read nor built.
-///
-/// # Errors
-/// All that is wrong with the scene.
-pub fn spawn(scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
-    let missing = missing_files(scene, folder);
-    if !missing.is_empty() {
-        return Err(missing);
+/// Entities stay as long as their kind has the same names in the same order.
+pub fn spawn(scene: &Scene, world: &mut World, resources: &mut Resources) -> Changes {
+    let Scene {
+        format: _,
+        title: _,
+        params: _,
+        include: _,
+        frame,
+        bands,
+        spectra,
+        materials,
+        meshes,
+        terrain,
+        instances,
+        hide,
+        select,
+        sun,
+        sky,
+        thermal_sky,
+        boundary,
+        sensors,
+        transport,
+        variants: _,
+        sweep: _,
+    } = scene;
+    let is_first = resources.terrain == Entity::DANGLING;
+    if is_first {
+        resources.terrain = world.spawn(());
+        resources.sun = world.spawn(());
+        resources.sky = world.spawn(());
     }
-    let mut spawner = Spawner::new(scene, folder, Notes::default());
-    let mut world = World::new();
-    spawner.frame_system();
-    let patch = spawner.terrain();
-    let ground = patch.as_ref().map(Ground::of);
-    if let (Some(patch), Some(ground)) = (&patch, &ground) {
-        spawner.doubt_overhangs(patch, ground);
-        spawner.warn_flat_raster(patch);
-        spawner.doubt_seams(ground);
-    }
-    let meshes = spawner.meshes();
-    let placements = spawner.instances(&meshes, ground.as_ref());
-    spawner.check_patterns();
-    let meshes = spawner.keep_placed(meshes, &placements);
-    if let Some(ground) = &ground {
-        spawner.check_standing(&placements, &meshes, ground);
-        spawner.doubt_places(&placements, &meshes, ground);
-    }
-    spawner.doubt_sizes(&meshes);
-    if let Some(ground) = &ground {
-        spawner.warn_implausible_plants(&placements, &meshes, ground.size().element_product());
-    }
-    if let Some(patch) = &patch {
-        spawner.check_reach(&placements, &meshes, patch);
-    }
-    world.spawn_batch(patch.into_iter().map(|patch| (SceneId(0), patch)));
-    let of_geometry = spawner.notes();
-    for (id, mesh) in meshes {
-        world.spawn((SceneId(id), mesh.name, mesh.mesh, mesh.materials));
-    }
-    world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
-    spawner.finish(world, of_geometry)
+    let mut changes = if is_first { Changes::ALL } else { Changes::NONE };
+    let mut note = |has_changed: bool, kind: Changes| {
+        if has_changed {
+            changes |= kind;
+        }
+    };
+    note(set(&mut resources.frame, frame), Changes::FRAME);
+    note(set(&mut resources.boundary, boundary), Changes::BOUNDARY);
+    note(set(&mut resources.seed, &transport.seed), Changes::SEED);
+    note(set(&mut resources.bands, bands), Changes::BANDS);
+    note(set(&mut resources.spectra, spectra), Changes::SPECTRA);
+    note(set(&mut resources.hide, hide), Changes::PATTERNS);
+    note(set(&mut resources.select, select), Changes::PATTERNS);
+    note(
+        set(&mut resources.measures_emission, &scene.measures_emission()),
+        Changes::MEASURES_EMISSION,
+    );
+
+    let old_leaves = leaves(world, &resources.materials);
+    let material_changes = spawn_named(world, &mut resources.materials, materials);
+    note(material_changes.any(), Changes::MATERIALS);
+    note(material_changes.have_other_names, Changes::MATERIAL_NAMES);
+    note(leaves(world, &resources.materials) != old_leaves, Changes::LEAVES);
+
+    let mesh_changes = spawn_named(world, &mut resources.meshes, meshes);
+    note(mesh_changes.any(), Changes::MESHES);
+    let is_of_ground = |entity: &Entity| match terrain {
+        Terrain::Mesh { mesh, .. } => resources.meshes.get(mesh.as_str()) == Some(entity),
+        Terrain::Plane { .. } | Terrain::Raster { .. } => false,
+    };
+    note(mesh_changes.entities.iter().any(is_of_ground), Changes::TERRAIN);
+    note(set_component(world, resources.terrain, Some(terrain)), Changes::TERRAIN);
+    note(spawn_plantings(world, &mut resources.plantings, instances), Changes::PLANTINGS);
+    note(set_component(world, resources.sun, sun.as_ref()), Changes::SUN);
+    note(set_component(world, resources.sky, Some(sky)), Changes::SKY);
+    note(set_component(world, resources.sky, Some(thermal_sky)), Changes::SKY);
+    let sensor_changes = spawn_named::<document::Sensor>(world, &mut resources.sensors, sensors);
+    note(sensor_changes.any(), Changes::SENSORS);
+    changes
 }
 
-/// The world of another scene that has the same meshes, instances and terrain; only the rest is
-/// made anew.
-///
-/// # Errors
-/// All that is wrong with the scene.
-pub fn respawn(spawned: Spawned, scene: &Scene, folder: &Path) -> Result<Spawned, Vec<Diagnostic>> {
-    let missing = missing_files(scene, folder);
-    if !missing.is_empty() {
-        return Err(missing);
+/// Sets a value; returns whether it has changed.
+fn set<T: Clone + PartialEq>(old: &mut T, new: &T) -> bool {
+    let has_changed = old != new;
+    if has_changed {
+        old.clone_from(new);
     }
-    let Spawned { mut world, of_geometry, .. } = spawned;
-    let others: Vec<Entity> = world
-        .query::<Entity>()
-        .without::<Or<&Mesh, Or<&Placement, &TerrainPatch>>>()
-        .iter()
-        .collect();
-    for entity in others {
-        // It was found there just now.
-        drop(world.despawn(entity));
-    }
-    Spawner::new(scene, folder, of_geometry.clone()).finish(world, of_geometry)
+    has_changed
 }
 
-impl<'a> Spawner<'a> {
-    fn new(scene: &'a Scene, folder: &'a Path, notes: Notes) -> Self {
-        let Notes { files, skipped, remarks, problems, reach, origins } = notes;
-        let (x, y, _) = scene.frame.origin_m;
-        let georeference = Some(Georeference {
-            from: DVec2::new(x, y),
-            to: DVec2::ZERO,
-            scale: DVec2::ONE,
-            is_of_degrees: false,
-            is_given: false,
-        });
-        let rectangle = (DVec2::ZERO, DVec2::ONE);
-        let (terrain_axes, system) = (Axes::Unknown, None);
-        Self {
-            scene,
-            folder,
-            files,
-            skipped,
-            notes: remarks,
-            problems,
-            reach,
-            origins,
-            rectangle,
-            georeference,
-            terrain_axes,
-            system,
-        }
+/// Sets or removes a component of an entity; returns whether it has changed.
+fn set_component<T>(world: &mut World, entity: Entity, new: Option<&T>) -> bool
+where
+    T: Component + Clone + PartialEq,
+{
+    let is_same = match (world.get::<&T>(entity), new) {
+        (Ok(old), Some(new)) => *old == *new,
+        (Err(_absent), None) => true,
+        _ => false,
+    };
+    if is_same {
+        return false;
     }
+    match new {
+        Some(new) => world.insert_one(entity, new.clone()).expect("`spawn` despawns no singleton"),
+        None => drop(world.remove_one::<T>(entity)),
+    }
+    true
+}
 
-    fn notes(&self) -> Notes {
-        Notes {
-            files: self.files.clone(),
-            skipped: self.skipped.clone(),
-            remarks: self.notes.clone(),
-            problems: self.problems.clone(),
-            reach: self.reach.clone(),
-            origins: self.origins.clone(),
-        }
-    }
+/// Changes of the entities of one kind.
+struct NamedChanges {
+    /// True if names or their order differ, so that all entities are new.
+    have_other_names: bool,
+    /// Entities that are new or have another value.
+    entities: Vec<Entity>,
+}
 
-    /// Spawns all that is no geometry.
-    fn finish(mut self, mut world: World, of_geometry: Notes) -> Result<Spawned, Vec<Diagnostic>> {
-        let mut worn: BTreeSet<MaterialId> = world
-            .query::<&PartMaterials>()
-            .iter()
-            .flat_map(|materials| materials.0.iter().copied())
-            .collect();
-        for patch in &mut world.query::<&TerrainPatch>() {
-            worn.extend(patch.materials.0.iter().copied());
-            self.rectangle = (patch.corner, patch.size);
-            self.check_flux_maps(patch.size);
-            self.doubt_images();
-            self.warn_buried_sensors(patch, &world);
-        }
-        self.check_crossings();
-        self.materials(&worn, &mut world);
-        self.light(&mut world);
-        self.emission(&mut world);
-        self.sensors(&mut world);
-        let Spawner { mut files, skipped, notes, problems, .. } = self;
-        let mut seen = BTreeSet::new();
-        files.retain(|file| seen.insert(file.clone()));
-        if problems.iter().any(Diagnostic::is_error) {
-            return Err(problems);
-        }
-        Ok(Spawned { world, files, skipped, notes, warnings: problems, of_geometry })
+impl NamedChanges {
+    fn any(&self) -> bool {
+        self.have_other_names || !self.entities.is_empty()
     }
+}
 
-    /// The path of a file that the scene names, and a note that it was read.
-    fn file(&mut self, name: &str) -> PathBuf {
-        let path = self.folder.join(name);
-        self.files.push(path.clone());
-        path
+/// Makes the entities of one kind those of a map of the document.
+fn spawn_named<T>(world: &mut World, entities: &mut Map<Entity>, values: &Map<T>) -> NamedChanges
+where
+    T: Component + Clone + PartialEq,
+{
+    if entities.keys().eq(values.keys()) {
+        let pairs = entities.values().zip(values.values());
+        let changed = pairs.filter(|(entity, value)| set_component(world, **entity, Some(*value)));
+        let entities = changed.map(|(&entity, _)| entity).collect();
+        return NamedChanges { have_other_names: false, entities };
     }
+    for (_, entity) in entities.drain(..) {
+        world.despawn(entity).expect("entities by name exist");
+    }
+    for (index, (name, value)) in values.iter().enumerate() {
+        let entity = world.spawn((SceneId(index as u32), Name(name.clone()), value.clone()));
+        entities.insert(name.clone(), entity);
+    }
+    NamedChanges { have_other_names: true, entities: entities.values().copied().collect() }
+}
+
+/// Makes the plantings those of the document; returns whether any has changed.
+fn spawn_plantings(
+    world: &mut World,
+    plantings: &mut Vec<Entity>,
+    instances: &[document::Instances],
+) -> bool {
+    let mut has_changed = plantings.len() != instances.len();
+    for unwanted in plantings.drain(instances.len().min(plantings.len())..) {
+        world.despawn(unwanted).expect("plantings exist");
+    }
+    for (index, instances) in instances.iter().enumerate() {
+        if let Some(&planting) = plantings.get(index) {
+            has_changed |= set_component(world, planting, Some(instances));
+        } else {
+            plantings.push(world.spawn((SceneId(index as u32), instances.clone())));
+        }
+    }
+    has_changed
+}
+
+/// Whether each material is a leaf.
+fn leaves(world: &World, materials: &Map<Entity>) -> Vec<bool> {
+    let is_leaf = |entity: &Entity| {
+        world.get::<&Material>(*entity).is_ok_and(|one| matches!(*one, Material::Leaf { .. }))
+    };
+    materials.values().map(is_leaf).collect()
 }

@@ -4,7 +4,7 @@ use std::fs;
 
 use sunfleck::components::Placement;
 use sunfleck::document::{Options, read_text};
-use sunfleck::spawn::spawn;
+use sunfleck::run::SceneWorld;
 use sunfleck_tests::field::{Case, Right, folder, hold};
 
 /// Where instances stand, and what the author is told; or why the scene is refused.
@@ -19,10 +19,11 @@ pub(super) fn stand(scene: &str) -> Stood {
         return Err(reading.render());
     }
     let parent = path.parent().ok_or("a scene lies in a folder")?;
-    let spawned = spawn(&reading.scene, parent).map_err(|found| reading.source.render(&found))?;
-    let mut all: Vec<Placement> = spawned.world.query::<&Placement>().iter().copied().collect();
+    let built = SceneWorld::from_scene(&reading.scene, parent)
+        .map_err(|found| reading.source.render(&found))?;
+    let mut all: Vec<Placement> = built.world.query::<&Placement>().iter().copied().collect();
     all.sort_by_key(|placement| placement.id);
-    Ok((all, reading.source.render(&spawned.warnings)))
+    Ok((all, reading.source.render(&built.diagnostics())))
 }
 
 /// Scenes in which instances stand on the ground at heights that are known, m; with what is told, if

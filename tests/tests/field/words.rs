@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use sunfleck::document::{Options, read_file};
-use sunfleck::spawn::spawn;
+use sunfleck::run::SceneWorld;
 
 /// Heights of 10 x 8 cells of 10 m, whose corner lies at (432100, 5412300), 410 m high.
 fn raster() -> String {
@@ -42,10 +42,14 @@ fn told(folder: &Path, text: &str) -> String {
     if !reading.is_sound() {
         return reading.render();
     }
-    match spawn(&reading.scene, folder) {
-        Ok(spawned) => reading.source.render(&spawned.warnings) + &spawned.notes.join("\n"),
+    match SceneWorld::from_scene(&reading.scene, folder) {
+        Ok(built) => reading.source.render(&built.diagnostics()) + &notes(&built),
         Err(problems) => reading.source.render(&problems),
     }
+}
+
+fn notes(built: &SceneWorld) -> String {
+    built.resources.messages.notes().cloned().collect::<Vec<_>>().join("\n")
 }
 
 /// Scenes in which each is told all of some texts.

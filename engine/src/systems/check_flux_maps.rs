@@ -1,0 +1,28 @@
+use hecs::World;
+
+use super::Resources;
+use crate::components::TerrainPatch;
+use crate::document::{Sensor, Terrain, check_maps};
+
+/// Refuses maps of fluxes with too many pixels over ground whose extent a file decides. Reads `document::Terrain`,
+/// [`TerrainPatch`] and `document::Sensor`.
+pub(super) fn check_flux_maps(world: &mut World, resources: &mut Resources) {
+    let Ok(patch) = world.get::<&TerrainPatch>(resources.terrain) else { return };
+    let is_plane = world
+        .get::<&Terrain>(resources.terrain)
+        .is_ok_and(|terrain| matches!(*terrain, Terrain::Plane { .. }));
+    if is_plane {
+        return;
+    }
+    for (name, &entity) in &resources.sensors {
+        let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
+        let Sensor::Photons { measure, .. } = &*sensor else { continue };
+        for (index, measure) in measure.iter().enumerate() {
+            let path = format!("sensors.{name}.measure[{index}]");
+            let bands = resources.bands.len();
+            if let Some(problem) = check_maps(&path, measure, bands, patch.size.into()) {
+                resources.messages.report(problem);
+            }
+        }
+    }
+}

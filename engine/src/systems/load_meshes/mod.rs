@@ -1,0 +1,89 @@
+mod part_materials;
+
+use std::path::Path;
+
+use hecs::World;
+use rayon::prelude::*;
+
+use super::Resources;
+use super::hide_and_select::needed_meshes;
+use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
+use crate::components::{Mesh, PartMaterials};
+use crate::document::{self, Diagnostic};
+
+pub(super) use part_materials::part_materials;
+
+/// Loads the meshes that plantings show, all at once. Reads `document::Mesh` and `ShownMeshes`; writes [`Mesh`] and
+/// [`PartMaterials`] of mesh prototypes.
+pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
+    let needed = needed_meshes(world, resources);
+    let mut wanted = Vec::new();
+    for (index, (name, &entity)) in resources.meshes.iter().enumerate() {
+        // Whatever is absent already need not be removed.
+        drop(world.remove::<(Mesh, PartMaterials)>(entity));
+        if needed.contains(&(index as u32)) {
+            let source = world.get::<&document::Mesh>(entity);
+            let source = source.expect("`spawn` gives each mesh prototype its source");
+            wanted.push((name.clone(), entity, (*source).clone()));
+        }
+    }
+    for (.., source) in &wanted {
+        note_file(source, resources);
+    }
+    let folder = &resources.folder;
+    let loaded: Vec<_> = wanted.par_iter().map(|(.., source)| load(source, folder)).collect();
+    for ((name, entity, source), loaded) in wanted.into_iter().zip(loaded) {
+        let path = format!("meshes.{name}");
+        match loaded {
+            Ok(Loaded { value, warnings }) => {
+                for warning in warnings {
+                    resources.report(Diagnostic::warning(&path, warning));
+                }
+                let materials = part_materials(&source, &value, &path, resources);
+                world.insert(entity, (value, PartMaterials(materials))).expect("meshes exist");
+            }
+            Err(error) => {
+                let key = match source {
+                    document::Mesh::Faces { .. } => ".faces_m",
+                    document::Mesh::Crown { .. } => "",
+                    _ => ".file",
+                };
+                resources.report(Diagnostic::error(format!("{path}{key}"), error.to_string()));
+            }
+        }
+    }
+}
+
+/// Notes the file of a mesh as read.
+pub(super) fn note_file(mesh: &document::Mesh, resources: &mut Resources) {
+    match mesh {
+        document::Mesh::Obj { file, .. }
+        | document::Mesh::Gltf { file, .. }
+        | document::Mesh::Discs { file, .. } => {
+            resources.file(file);
+        }
+        document::Mesh::Faces { .. } | document::Mesh::Crown { .. } => {}
+    }
+}
+
+/// Loads or generates a mesh.
+pub(super) fn load(mesh: &document::Mesh, folder: &Path) -> Result<Loaded<Mesh>, AssetError> {
+    match mesh {
+        document::Mesh::Obj { file, up, unit_m, origin, parts_by, .. } => assets::read_obj(
+            &folder.join(file),
+            &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
+            parts_by,
+        ),
+        document::Mesh::Gltf { file, up, unit_m, origin, .. } => assets::read_gltf(
+            &folder.join(file),
+            &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
+        ),
+        document::Mesh::Discs { file, .. } => assets::read_discs(&folder.join(file)),
+        document::Mesh::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),
+        document::Mesh::Crown { .. } => {
+            let spec = CrownSpec::from_document(mesh).expect("this arm is that of crowns");
+            let value = assets::grow_crown(&spec)?;
+            Ok(Loaded { value, warnings: Vec::new() })
+        }
+    }
+}

@@ -1,0 +1,134 @@
+use std::collections::HashSet;
+
+use crate::components::{MaterialId, Mesh};
+use crate::document::{self, Diagnostic, Map, PartsBy, unknown_name};
+use crate::placement::is_like;
+use crate::systems::Resources;
+
+/// Most parts to name in a message.
+const MOST_SHOWN: usize = 10;
+
+/// Material of each part of a mesh; a part without one is reported and gets the first material.
+pub(in crate::systems) fn part_materials(
+    mesh: &document::Mesh,
+    loaded: &Mesh,
+    path: &str,
+    resources: &mut Resources,
+) -> Vec<MaterialId> {
+    let none = Map::new();
+    let (named, rest) = match mesh {
+        document::Mesh::Obj { parts, material, .. }
+        | document::Mesh::Gltf { parts, material, .. } => (parts, material.as_ref()),
+        document::Mesh::Discs { material, .. } | document::Mesh::Faces { material, .. } => {
+            (&none, Some(material))
+        }
+        document::Mesh::Crown { leaf_material, wood_material, .. } => {
+            let wood = wood_material.as_deref();
+            return crown_materials(leaf_material, wood, loaded, path, resources);
+        }
+    };
+    check_part_names(named, loaded, path, resources);
+    let patterns: Vec<(&str, &String)> = patterns(named);
+    // Parts of one material are many: it is looked up once.
+    let mut materials = Vec::new();
+    let mut missing = Vec::new();
+    let mut known: Map<Option<MaterialId>> = Map::new();
+    for part in &loaded.parts {
+        let pattern = || patterns.iter().find(|(pattern, _)| is_like(pattern, &part.name));
+        let (material, key) = match (named.get(&part.name), rest) {
+            (Some(material), _) => (material, format!("parts.{}", part.name)),
+            (None, rest) => match (pattern(), rest) {
+                (Some((pattern, material)), _) => (*material, format!("parts.{pattern}")),
+                (None, Some(material)) => (material, "material".to_owned()),
+                (None, None) => {
+                    missing.push(part.name.as_str());
+                    continue;
+                }
+            },
+        };
+        let id = if let Some(id) = known.get(material) {
+            *id
+        } else {
+            let id = resources.material(material, &format!("{path}.{key}"));
+            known.insert(material.clone(), id);
+            id
+        };
+        materials.extend(id);
+    }
+    if !missing.is_empty() {
+        resources.report(missing_parts(mesh, &missing, path));
+    }
+    materials.resize(loaded.parts.len(), MaterialId(0));
+    materials
+}
+
+/// Refuses names in `parts` that no part of the mesh has.
+fn check_part_names(named: &Map<String>, loaded: &Mesh, path: &str, resources: &mut Resources) {
+    if named.is_empty() {
+        return;
+    }
+    let known = || loaded.parts.iter().map(|part| part.name.as_str());
+    let names: HashSet<&str> = known().collect();
+    let is_known = |name: &str| {
+        names.contains(name) || name.contains('*') && known().any(|part| is_like(name, part))
+    };
+    let unknown: Vec<&String> = named.keys().filter(|name| !is_known(name)).collect();
+    for name in unknown.iter().take(MOST_SHOWN) {
+        let at = format!("{path}.parts.{name}");
+        let error = unknown_name(at, "part", name, known());
+        let help = error.help.map(|help| help.replace("this scene defines", "its file has"));
+        resources.report(Diagnostic { help, ..error });
+    }
+    if let Some(more) = unknown.len().checked_sub(MOST_SHOWN).filter(|more| *more > 0) {
+        let message = format!("{more} more names in `parts` are names of no part");
+        resources.report(Diagnostic::error(format!("{path}.parts"), message));
+    }
+}
+
+/// Materials of the parts of a generated crown.
+fn crown_materials(
+    leaf: &str,
+    wood: Option<&str>,
+    loaded: &Mesh,
+    path: &str,
+    resources: &mut Resources,
+) -> Vec<MaterialId> {
+    let leaf = resources.material(leaf, &format!("{path}.leaf_material"));
+    let wood = wood.and_then(|name| resources.material(name, &format!("{path}.wood_material")));
+    let of = |part: &str| if part == "leaf" { leaf } else { wood };
+    // `document::check` asks for a wood material wherever there is wood.
+    loaded.parts.iter().map(|part| of(&part.name).unwrap_or(MaterialId(0))).collect()
+}
+
+/// Names with `*` and their materials, those with most other letters first.
+fn patterns(named: &Map<String>) -> Vec<(&str, &String)> {
+    let letters = |pattern: &str| pattern.chars().filter(|&letter| letter != '*').count();
+    let patterns = named.iter().filter(|(name, _)| name.contains('*'));
+    let mut patterns: Vec<_> = patterns.map(|(name, material)| (name.as_str(), material)).collect();
+    patterns.sort_by_key(|(pattern, _)| std::cmp::Reverse(letters(pattern)));
+    patterns
+}
+
+fn missing_parts(mesh: &document::Mesh, missing: &[&str], path: &str) -> Diagnostic {
+    let shown = missing.iter().take(MOST_SHOWN);
+    let list = shown.clone().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let more = match missing.len() {
+        count if count > MOST_SHOWN => format!(" and {} more", count - MOST_SHOWN),
+        _ => String::new(),
+    };
+    let message = match missing.len() {
+        1 => format!("part {list} has no material"),
+        count => format!("{count} parts have no material: {list}{more}"),
+    };
+    let entries = shown.map(|name| format!("{name:?}: \"..\"")).collect::<Vec<_>>().join(", ");
+    let entries = if more.is_empty() { entries } else { format!("{entries}, ..") };
+    let mut help = format!("write parts: {{ {entries} }}, or material: \"..\" for all others");
+    if missing.len() > 1 {
+        help += "; `*` in a name stands for any text, as in parts: { \"leaf*\": \"leaf\" }";
+        if matches!(mesh, document::Mesh::Obj { parts_by: PartsBy::Group, .. }) {
+            help +=
+                ", and with parts_by: Material the parts are the materials (`usemtl`) of the file";
+        }
+    }
+    Diagnostic::error(path, message).help(help)
+}

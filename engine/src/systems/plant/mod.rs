@@ -1,0 +1,236 @@
+mod areas;
+mod canopy;
+mod scatter;
+mod table;
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use hecs::{Entity, World};
+
+use super::Resources;
+use super::coordinate_advice::{AdvicePlace, other_coordinates};
+use super::georeference::{Georeference, MapFrame};
+use crate::assets::Row;
+use crate::components::{
+    InstanceRange, Mesh, MeshBounds, Placement, PrototypeId, SceneId, ShownMeshes,
+};
+use crate::document::{Diagnostic, Instances, Terrain};
+use crate::geometry::{Rectangle, place_text};
+use crate::sampling::Key;
+use crate::terrain::Ground;
+
+use canopy::plant_canopy;
+use scatter::scatter;
+use table::plant_table;
+
+/// Most instances of a scene: ids are `u32`, and the ray engine keeps some for the ground.
+const MOST_INSTANCES: usize = 1 << 30;
+
+/// Shape of a loaded mesh.
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    /// Box around it; `None` if it has no primitive.
+    bounds: Option<MeshBounds>,
+    /// True if it has no parts.
+    is_empty: bool,
+}
+
+/// Data that placing the instances of a planting takes.
+struct Site<'a> {
+    /// Path of the planting in the document.
+    path: String,
+    /// Number of the planting.
+    index: usize,
+    terrain: &'a Terrain,
+    /// The ground; `None` if the terrain has an error.
+    ground: Option<&'a Ground>,
+    /// Loaded meshes; a hidden mesh is not loaded.
+    shapes: &'a BTreeMap<u32, Shape>,
+    map: MapFrame,
+    resources: &'a mut Resources,
+}
+
+impl Site<'_> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.resources.report(diagnostic);
+    }
+
+    /// Relation of the map to the local frame.
+    fn georeference(&self) -> Georeference {
+        self.map.georeference.unwrap_or_else(|| Georeference::from_frame(self.resources))
+    }
+
+    /// Stream of random numbers of the planting, keyed by its name, or its number if it has none.
+    fn stream(&self, name: Option<&str>, seed: Option<u64>) -> Key {
+        let seed = Key::new(seed.unwrap_or(self.resources.seed)).path("instances");
+        name.map_or_else(|| seed.index(self.index as u64), |name| seed.path(name))
+    }
+}
+
+/// Places the instances of all plantings on the ground. Reads `document::Instances`, [`ShownMeshes`], [`Mesh`],
+/// [`MeshBounds`], [`Ground`] and [`MapFrame`]; writes [`Placement`] of instances and [`InstanceRange`] of plantings.
+pub(super) fn plant(world: &mut World, resources: &mut Resources) {
+    let old: Vec<Entity> = world.query_mut::<Entity>().with::<&Placement>().into_iter().collect();
+    for instance in old {
+        world.despawn(instance).expect("the query found it");
+    }
+    for &planting in &resources.plantings {
+        // Whatever is absent already need not be removed.
+        drop(world.remove_one::<InstanceRange>(planting));
+    }
+    let shapes = shapes(world);
+    let mut placements: Vec<Placement> = Vec::new();
+    let mut map = {
+        let map = world.get::<&MapFrame>(resources.terrain);
+        (*map.expect("`triangulate_terrain` writes it")).clone()
+    };
+    for (index, planting) in resources.plantings.clone().into_iter().enumerate() {
+        let start = placements.len();
+        let mut placed = {
+            let mut source = world.query_one::<(&Instances, &ShownMeshes)>(planting);
+            let (instances, shown) = source.get().expect("`hide_and_select` has run");
+            let terrain = world.get::<&Terrain>(resources.terrain);
+            let ground = world.get::<&Ground>(resources.terrain).ok();
+            let mut site = Site {
+                path: format!("instances[{index}]"),
+                index,
+                terrain: &terrain.expect("`spawn` gives the terrain its source"),
+                ground: ground.as_deref(),
+                shapes: &shapes,
+                map,
+                resources,
+            };
+            let mut placed = placements_of(instances, &mut site);
+            map = site.map;
+            // Crowns without leaves and wood show nothing.
+            let is_empty = |id: PrototypeId| shapes.get(&id.0).is_some_and(|shape| shape.is_empty);
+            placed.retain(|one| shown.0.contains(&one.prototype) && !is_empty(one.prototype));
+            placed
+        };
+        if start + placed.len() > MOST_INSTANCES {
+            let message = format!("more than {MOST_INSTANCES} instances");
+            let problem = Diagnostic::error(format!("instances[{index}]"), message);
+            resources.report(problem.help("group trees into larger meshes"));
+            break;
+        }
+        for (instance, id) in placed.iter_mut().zip(start as u32..) {
+            instance.id = SceneId(id);
+        }
+        placements.append(&mut placed);
+        let range = InstanceRange(start as u32..placements.len() as u32);
+        world.insert_one(planting, range).expect("plantings exist");
+    }
+    world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
+}
+
+/// Shapes of loaded meshes by their id.
+fn shapes(world: &World) -> BTreeMap<u32, Shape> {
+    let mut query = world.query::<(&SceneId, &Mesh, Option<&MeshBounds>)>();
+    let shape = |(id, mesh, bounds): (&SceneId, &Mesh, Option<&MeshBounds>)| {
+        (id.0, Shape { bounds: bounds.copied(), is_empty: mesh.parts.is_empty() })
+    };
+    query.iter().map(shape).collect()
+}
+
+/// Instances of a planting, hidden ones included, with scene ids that mean nothing yet.
+fn placements_of(instances: &Instances, site: &mut Site<'_>) -> Vec<Placement> {
+    match instances {
+        Instances::Table { .. } => plant_table(instances, site),
+        Instances::List { of, at_m, yaw_deg, scale, on_terrain, .. } => {
+            let rows = listed(at_m, yaw_deg, scale);
+            match site.resources.prototype(of, &format!("{}.of", site.path)) {
+                Some(prototype) => {
+                    let prototypes = vec![prototype; rows.len()];
+                    plant_rows(instances, &rows, &prototypes, *on_terrain, site)
+                }
+                None => Vec::new(),
+            }
+        }
+        // A terrain that has an error was reported.
+        Instances::Scatter { .. } => {
+            site.ground.map_or_else(Vec::new, |ground| scatter(instances, ground, site))
+        }
+        Instances::CanopyHeights { .. } => {
+            site.ground.and_then(|ground| plant_canopy(instances, ground, site)).unwrap_or_default()
+        }
+    }
+}
+
+/// Rectangle of the ground.
+fn rectangle_of(ground: &Ground) -> Rectangle {
+    Rectangle { min: ground.corner(), max: ground.corner() + ground.size() }
+}
+
+/// Instances of the rows of a table or a list. If `on_terrain`, their heights are above the ground, and rows beside
+/// it are reported.
+fn plant_rows(
+    instances: &Instances,
+    rows: &[Row],
+    prototypes: &[PrototypeId],
+    on_terrain: bool,
+    site: &mut Site<'_>,
+) -> Vec<Placement> {
+    let ground = site.ground.filter(|_| on_terrain);
+    let mut beside = Vec::new();
+    let placed = rows
+        .iter()
+        .zip(prototypes)
+        .filter_map(|(row, &prototype)| {
+            let base = match ground.map(|ground| ground.height(row.position.truncate())) {
+                Some(None) => {
+                    beside.push(row.position);
+                    return None;
+                }
+                Some(Some(height)) => height,
+                None => 0.0,
+            };
+            Some(placement(row, base, prototype))
+        })
+        .collect();
+    if let (Some(first), Some(ground)) = (beside.first(), ground) {
+        let message = format!("{} of {} places have no terrain below", beside.len(), rows.len());
+        let place = AdvicePlace { terrain: site.terrain, map: &site.map, ground };
+        let advice = other_coordinates(instances, &beside, &place, site.resources)
+            .unwrap_or_else(|| "move it, or take out `on_terrain`".to_owned());
+        let help = format!("{} is one: {advice}", place_text(first.truncate()));
+        let problem = Diagnostic::error(site.path.clone(), message).help(help);
+        site.resources.report(problem);
+    }
+    placed
+}
+
+fn placement(row: &Row, base: f64, prototype: PrototypeId) -> Placement {
+    Placement {
+        position: row.position + DVec3::Z * base,
+        yaw: row.yaw as f32,
+        tilt: row.tilt as f32,
+        tilt_azimuth: row.tilt_azimuth as f32,
+        scale_horizontal: row.scale_horizontal as f32,
+        scale_vertical: row.scale_vertical as f32,
+        prototype,
+        id: SceneId(0),
+    }
+}
+
+/// Rows of a list; `document::check` has seen to it that its columns are empty or of one length.
+fn listed(at_m: &[(f64, f64, f64)], yaw_deg: &[f64], scale: &[f64]) -> Vec<Row> {
+    at_m.iter()
+        .enumerate()
+        .map(|(index, &position)| {
+            let scale = scale.get(index).copied().unwrap_or(1.0);
+            Row {
+                position: DVec3::from(position),
+                yaw: yaw_deg.get(index).copied().unwrap_or(0.0).to_radians(),
+                tilt: 0.0,
+                tilt_azimuth: 0.0,
+                scale_horizontal: scale,
+                scale_vertical: scale,
+                height: None,
+                diameter: None,
+                species: None,
+                line: 0,
+            }
+        })
+        .collect()
+}

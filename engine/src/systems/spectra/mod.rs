@@ -1,0 +1,232 @@
+mod table;
+
+use std::collections::BTreeSet;
+
+use super::Resources;
+use crate::document::{Diagnostic, IRRADIANCE, Spectrum, unknown_name};
+use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
+use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
+
+use table::{edges, table_means};
+
+/// Irradiance above this is several times that of the sun outside the atmosphere, W m⁻² nm⁻¹.
+pub(super) const STRONG: f64 = 10.0;
+
+/// Width of a band, nm, and difference of the values in it from which on a mean over it says little.
+const WIDE_NM: f64 = 200.0;
+const VARIED: f64 = 0.25;
+
+/// Quantity that a spectrum holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Reflectance,
+    Transmittance,
+    Irradiance,
+}
+
+/// Value of a spectrum in each band, shape `[bands]`; `None` after an error.
+pub(super) fn resolve_spectrum(
+    spectrum: &Spectrum,
+    quantity: Quantity,
+    path: &str,
+    resources: &mut Resources,
+) -> Option<Vec<f64>> {
+    let resolved = resolve(spectrum, quantity, path, &mut BTreeSet::new(), resources);
+    if quantity == Quantity::Irradiance && !reads_file(spectrum, resources) {
+        warn_strong_light(resolved.as_deref().unwrap_or_default(), path, resources);
+    }
+    match resolved.and_then(|values| lawful(values, quantity, path)) {
+        Ok(values) => Some(values),
+        Err(problem) => {
+            resources.report(*problem);
+            None
+        }
+    }
+}
+
+/// Warns of light that is several times that of the sun: other units may have been meant.
+fn warn_strong_light(values: &[f64], path: &str, resources: &mut Resources) {
+    let strongest = values.iter().copied().fold(0.0, f64::max);
+    if strongest <= STRONG || !strongest.is_finite() {
+        return;
+    }
+    let message = format!(
+        "an irradiance of {strongest} W m⁻² nm⁻¹: the sun has at most 2.2 outside the atmosphere"
+    );
+    let help = "irradiance is per nanometre: 1000 W m⁻² over 400 to 700 nm are 3.3; results that are \
+                    ratios do not depend on it";
+    resources.report(Diagnostic::warning(path, message).help(help));
+}
+
+/// Warns of a wide band within which a surface differs so much that its mean says little.
+fn warn_wide_bands(points: &[(f64, f64)], path: &str, resources: &mut Resources) {
+    for band in &resources.bands {
+        let (low, high) = edges(band);
+        let within =
+            points.iter().filter(|(nm, value)| (low..=high).contains(nm) && value.is_finite());
+        let (least, most) = within
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &(_, v)| {
+                (least.min(v), most.max(v))
+            });
+        if band.width_nm < WIDE_NM || most - least < VARIED {
+            continue;
+        }
+        let message = format!(
+            "band `{}` is {} nm wide, and values differ from {least:.3} to {most:.3} within it",
+            band.name, band.width_nm
+        );
+        let help = "light is scattered often, so the mean over a band does not give the mean of the \
+                        results: write several narrow bands and weight their results with the irradiance";
+        let warning = Diagnostic::warning(path, message).help(help);
+        resources.messages.report_once(warning);
+    }
+}
+
+/// Returns whether a spectrum comes from a file, perhaps by way of names.
+pub(super) fn reads_file<'a>(mut spectrum: &'a Spectrum, resources: &'a Resources) -> bool {
+    // Names that go in a circle end after as many steps as there are names.
+    for _ in 0..=resources.spectra.len() {
+        let Spectrum::Named(name) = spectrum else { break };
+        let Some(named) = resources.spectra.get(name) else { break };
+        spectrum = named;
+    }
+    matches!(spectrum, Spectrum::Table { .. })
+}
+
+fn resolve(
+    spectrum: &Spectrum,
+    quantity: Quantity,
+    path: &str,
+    visited: &mut BTreeSet<String>,
+    resources: &mut Resources,
+) -> Result<Vec<f64>, Box<Diagnostic>> {
+    let bands = resources.bands.len();
+    match spectrum {
+        Spectrum::Constant(value) => Ok(vec![*value; bands]),
+        Spectrum::Bands(values) => Ok(values.clone()),
+        Spectrum::Points(points) => mean_over_bands(points, quantity, path, resources),
+        Spectrum::Table { .. } => table_means(spectrum, quantity, path, resources),
+        Spectrum::AstmG173 => astm_g173(quantity, path, resources),
+        Spectrum::Named(name) => {
+            let Some(named) = resources.spectra.get(name) else {
+                let known = resources.spectra.keys().map(String::as_str);
+                return Err(Box::new(unknown_name(path, "spectrum", name, known)));
+            };
+            if !visited.insert(name.clone()) {
+                let problem = Diagnostic::error(path, format!("spectrum `{name}` names itself"));
+                let help = "give it values: Constant, Bands, Points, Table or Prospect";
+                return Err(Box::new(problem.help(help)));
+            }
+            let named = named.clone();
+            resolve(&named, quantity, &format!("spectra.{name}"), visited, resources)
+        }
+        &Spectrum::Prospect {
+            n,
+            chlorophyll_ug_cm2,
+            carotenoid_ug_cm2,
+            anthocyanin_ug_cm2,
+            brown,
+            water_cm,
+            dry_matter_g_cm2,
+            protein_g_cm2,
+            carbon_g_cm2,
+        } => {
+            let chemistry = LeafChemistry {
+                n,
+                chlorophyll: chlorophyll_ug_cm2,
+                carotenoid: carotenoid_ug_cm2,
+                anthocyanin: anthocyanin_ug_cm2,
+                brown,
+                water: water_cm,
+                dry_matter: dry_matter_g_cm2,
+                protein: protein_g_cm2,
+                carbon: carbon_g_cm2,
+            };
+            let leaf =
+                leaf_spectrum(&chemistry).map_err(|error| Box::new(problem(path, &error)))?;
+            match quantity {
+                Quantity::Reflectance => {
+                    mean_over_bands(&leaf.reflectance, quantity, path, resources)
+                }
+                Quantity::Transmittance => {
+                    mean_over_bands(&leaf.transmittance, quantity, path, resources)
+                }
+                Quantity::Irradiance => {
+                    let what = "Prospect gives reflectance and transmittance, no irradiance";
+                    let help = "write AstmG173, Constant, Bands, Points or Table";
+                    Err(Box::new(Diagnostic::error(path, what).help(help)))
+                }
+            }
+        }
+    }
+}
+
+/// The sun's irradiance of ASTM G173 in each band that holds sunlight, 0 in others.
+fn astm_g173(
+    quantity: Quantity,
+    path: &str,
+    resources: &mut Resources,
+) -> Result<Vec<f64>, Box<Diagnostic>> {
+    if quantity != Quantity::Irradiance {
+        let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
+        let help = "write Constant, Bands, Points, Table or Prospect";
+        return Err(Box::new(Diagnostic::error(path, message).help(help)));
+    }
+    let mut beyond = Vec::new();
+    let means = resources.bands.iter().map(|band| -> Result<f64, Box<Diagnostic>> {
+        let (center, width) = (band.center_nm, band.width_nm);
+        let mean = solar_irradiance(center, width).map_err(|error| {
+            let message = format!("band `{}`: {error}", band.name);
+            Box::new(
+                Diagnostic::error(path, message)
+                    .help("move the band, or write `irradiance` of the sun's own"),
+            )
+        })?;
+        if band.reflects() && center + 0.5 * width > ASTM_G173_END_NM {
+            beyond.push(format!("{mean:.3e} in band `{}`", band.name));
+        }
+        Ok(mean)
+    });
+    let means = means.collect::<Result<Vec<f64>, _>>()?;
+    if !beyond.is_empty() {
+        let message = format!(
+            "ASTM G173 ends at {ASTM_G173_END_NM} nm: beyond it the sun is taken as a black body of \
+                 5772 K that joins it there, without the gases of the air: {} W m⁻² nm⁻¹",
+            beyond.join(", ")
+        );
+        let help = "write `irradiance` where that is not good enough";
+        resources.report(Diagnostic::warning(path, message).help(help));
+    }
+    Ok(means)
+}
+
+/// Mean in each band of a spectrum given by points.
+fn mean_over_bands(
+    points: &[(f64, f64)],
+    quantity: Quantity,
+    path: &str,
+    resources: &mut Resources,
+) -> Result<Vec<f64>, Box<Diagnostic>> {
+    if quantity != Quantity::Irradiance {
+        warn_wide_bands(points, path, resources);
+    }
+    let means = resources.bands.iter().map(|band| {
+        band_mean(points, band.center_nm, band.width_nm).map_err(|error| {
+            Box::new(Diagnostic::error(path, format!("band `{}`: {error}", band.name)))
+        })
+    });
+    means.collect()
+}
+
+/// The values, if they can be those of the quantity.
+fn lawful(values: Vec<f64>, quantity: Quantity, path: &str) -> Result<Vec<f64>, Box<Diagnostic>> {
+    let beyond = values.iter().find_map(|&value| IRRADIANCE.problem(value));
+    match beyond.filter(|_| quantity == Quantity::Irradiance) {
+        Some((message, help)) => Err(Box::new(Diagnostic::error(path, message).help(help))),
+        None => Ok(values),
+    }
+}
+
+fn problem(path: &str, error: &dyn std::error::Error) -> Diagnostic {
+    Diagnostic::error(path, error.to_string())
+}

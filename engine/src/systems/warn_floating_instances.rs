@@ -1,0 +1,118 @@
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use hecs::World;
+
+use super::Resources;
+use super::coordinate_advice::{planting_of, terrain_advice};
+use super::measure_bounds::placed_meshes;
+use crate::components::{MeshBounds, Placement};
+use crate::document::{Diagnostic, Instances};
+use crate::geometry::place_text;
+use crate::terrain::Ground;
+
+/// Height of bodies that are flat, and gap over which those do not float, m.
+const FLAT: f64 = 0.05;
+
+/// Distance from the ground that is rounding, over the ground's height.
+const ROUNDING: f64 = 1e-6;
+
+/// Instances of one mesh that float above the ground, are sunken into it, or are flat and lie in it.
+struct Case {
+    count: usize,
+    /// The first of them in document order, and the heights of its lowest and highest point and of the ground, m.
+    first: Placement,
+    heights: [f64; 3],
+}
+
+impl Case {
+    fn add(case: &mut Option<Self>, placement: &Placement, heights: [f64; 3]) {
+        let case = case.get_or_insert(Self { count: 0, first: *placement, heights });
+        case.count += 1;
+        if placement.id < case.first.id {
+            (case.first, case.heights) = (*placement, heights);
+        }
+    }
+}
+
+/// Cases of one mesh.
+#[derive(Default)]
+struct Cases {
+    sunken: Option<Case>,
+    floating: Option<Case>,
+    flat: Option<Case>,
+}
+
+/// Warns of instances that float above the ground by more than their height, or are sunken into it by half of their
+/// height: crowns without trunks, and roots, are left alone. Reads [`Placement`], [`MeshBounds`] and [`Ground`].
+pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resources) {
+    let Ok(ground) = world.get::<&Ground>(resources.terrain) else { return };
+    let meshes = placed_meshes(world);
+    let bounds: BTreeMap<u32, MeshBounds> =
+        meshes.iter().filter_map(|(&id, mesh)| Some((id, mesh.bounds?))).collect();
+    let mut cases: BTreeMap<u32, Cases> = BTreeMap::new();
+    for placement in &mut world.query::<&Placement>() {
+        let Some(bounds) = bounds.get(&placement.prototype.0) else { continue };
+        let (low, high) = vertical_extent(placement, bounds);
+        let Some(below) = ground.height(placement.position.truncate()) else { continue };
+        let (gap, height) = (low - below, high - low);
+        let is_flat = height < FLAT && gap.abs() < ROUNDING * (below.abs() + 1.0);
+        let floats = gap > height.max(FLAT);
+        if !is_flat && !floats && high - below >= 0.5 * height {
+            continue;
+        }
+        let of_mesh = cases.entry(placement.prototype.0).or_default();
+        let case = if is_flat {
+            &mut of_mesh.flat
+        } else if floats {
+            &mut of_mesh.floating
+        } else {
+            &mut of_mesh.sunken
+        };
+        Case::add(case, placement, [low, high, below]);
+    }
+    for (prototype, Cases { flat, .. }) in &cases {
+        let Some(Case { count, first, .. }) = flat else { continue };
+        let name = &meshes[prototype].name;
+        resources.messages.note(format!(
+            "{count} of `{name}` are flat and lie exactly in the ground: at ({}, {}) rays meet the ground or \
+             `{name}`, whichever comes first (lift it by a millimetre to see it)",
+            first.position.x, first.position.y
+        ));
+    }
+    for (prototype, Cases { sunken, floating, .. }) in &cases {
+        for (case, how) in [(sunken, "are sunken into"), (floating, "float above")] {
+            let Some(Case { count, first, heights: [low, high, below] }) = case else { continue };
+            let name = &meshes[prototype].name;
+            let advice = advice(first, [*low, *high], world, resources);
+            let message = format!("{count} of `{name}` {how} the ground");
+            let help = format!(
+                "at {} the ground is {below:.2} m high, and it reaches from {low:.2} to {high:.2} m{advice}; \
+                 heights of instances are those of the local frame",
+                place_text(first.position.truncate()),
+            );
+            resources.messages.report(Diagnostic::warning("instances", message).help(help));
+        }
+    }
+}
+
+fn advice(
+    placement: &Placement,
+    vertical: [f64; 2],
+    world: &World,
+    resources: &Resources,
+) -> &'static str {
+    let planting = planting_of(placement.id, world, resources);
+    let instances =
+        planting.and_then(|(index, _)| world.get::<&Instances>(resources.plantings[index]).ok());
+    instances.map_or("", |instances| terrain_advice(&instances, vertical, resources))
+}
+
+/// Lowest and highest height of the box around a placed mesh, m.
+pub(super) fn vertical_extent(placement: &Placement, bounds: &MeshBounds) -> (f64, f64) {
+    // The height of a corner is linear in its coordinates, so each axis has its own extremes.
+    let up: DVec3 = placement.world_from_object().row(2);
+    let (a, b) = (bounds.low.as_dvec3() * up, bounds.high.as_dvec3() * up);
+    let z = placement.position.z;
+    (z + a.min(b).element_sum(), z + a.max(b).element_sum())
+}
