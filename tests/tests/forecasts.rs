@@ -9,10 +9,11 @@ use peak_alloc::PeakAlloc;
 use sunfleck::components::{Footprint, Orthographic, System, View};
 use sunfleck::document;
 use sunfleck::products::{Forecast, Report};
-use sunfleck::run::{Failure, Options, Progress, Share, run, stage_file};
+use sunfleck::run::{Failure, Options, Partition, Progress, run, stage_file};
 use sunfleck::sampling::Key;
 use sunfleck::transport::{
-    Camera, DirectionsFilm, Film, ImageFilm, Projection, ReferencePlane, Source,
+    Camera, DirectionsFilm, DirectionsSettings, Film, ImageFilm, LightSettings, LightSource,
+    OrthographicCamera, ReferencePlane,
 };
 
 /// Counts what is held: so there is one test in this file.
@@ -151,24 +152,30 @@ fn films_hold_what_they_say() {
         view: View { zenith: 0.3, azimuth: 0.0 },
         plane: None,
     };
-    let camera = Camera::Orthographic(Projection::of_image(&optics, UVec2::new(77, 45), stage));
-    let plane = ReferencePlane::of(None, stage);
+    let camera =
+        Camera::Orthographic(OrthographicCamera::from_sensor(&optics, UVec2::new(77, 45), stage));
+    let plane = ReferencePlane::new(None, stage);
     let key = Key::new(1);
-    let image =
-        |system, orders| ImageFilm::new((stage, &camera), (system, Source::Reflected, orders), key);
+    let light = |system, separates_orders| LightSettings {
+        system,
+        source: LightSource::Reflected,
+        separates_orders,
+    };
+    let image = |system, orders| ImageFilm::new(stage, &camera, light(system, orders), key);
     let views = [optics.view; 7];
     let directions = || {
-        let of = (System::Backward, Source::Reflected, true);
-        DirectionsFilm::new(stage, (&views, &plane), of, key).film
+        let light = light(System::Backward, true);
+        let settings = DirectionsSettings { views: &views, plane: &plane, light };
+        DirectionsFilm::new(stage, settings, key).film
     };
-    for share in [Share::ALL, Share { index: 1, of: 3 }] {
+    for share in [Partition::ALL, Partition { index: 1, count: 3 }] {
         check_bytes("directions", &mut directions(), share);
         for (system, orders) in
             [(System::Backward, false), (System::Backward, true), (System::Forward, true)]
         {
             match image(system, orders) {
                 ImageFilm::Paths(mut tiles) => check_bytes("paths", &mut tiles, share),
-                ImageFilm::Packets(mut packets) => check_bytes("packets", &mut packets.rows, share),
+                ImageFilm::Packets(mut packets) => check_bytes("packets", &mut packets.sums, share),
             }
         }
     }
@@ -178,7 +185,7 @@ fn films_hold_what_they_say() {
 /// packet: a spectrum of one group of lanes, and what decisions look at, bytes.
 const THRESHOLD: u64 = 2 * 8 * 4;
 
-fn check_bytes(name: &str, film: &mut dyn Film, share: Share) {
+fn check_bytes(name: &str, film: &mut dyn Film, share: Partition) {
     film.restrict(share);
     let before = PeakAlloc.current_usage();
     film.trace(16, &|_| ());

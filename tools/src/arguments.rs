@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use sunfleck::document::{self, System, nearest};
 use sunfleck::output::{OutputError, Results, folder_name};
-use sunfleck::run::{self, Share};
+use sunfleck::run::{self, Partition};
 
 use crate::verify::CHECKS;
 
@@ -183,7 +183,7 @@ pub(crate) struct Trace {
     /// Run only one part, such as 2/4, the second of four, and save it to the checkpoint; `merge` combines
     /// all parts
     #[arg(long, value_name = "I/N", requires = "checkpoint", value_parser = part)]
-    pub(crate) part: Option<Share>,
+    pub(crate) part: Option<Partition>,
 }
 
 #[derive(Args, Debug)]
@@ -249,7 +249,7 @@ pub(crate) struct Measured {
     pub(crate) scene: Scene,
 
     /// Transport systems to run
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = all_systems(), value_parser = system)]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = default_systems(), value_parser = system)]
     systems: Vec<SystemName>,
 
     /// Run only this sensor; may be repeated [default: all]
@@ -328,8 +328,10 @@ impl std::fmt::Display for SystemName {
     }
 }
 
-fn all_systems() -> Vec<SystemName> {
-    System::ALL.map(SystemName).to_vec()
+/// All systems but the slow reference integrator.
+fn default_systems() -> Vec<SystemName> {
+    let systems = System::ALL.into_iter().filter(|system| *system != System::Reference);
+    systems.map(SystemName).collect()
 }
 
 fn system(text: &str) -> Result<SystemName, String> {
@@ -426,13 +428,13 @@ fn setting(text: &str) -> Result<(String, document::Param), String> {
 /// Largest number of parts of a run; each randomisation belongs to one part.
 const MOST_PARTS: u32 = 32;
 
-fn part(text: &str) -> Result<Share, String> {
+fn part(text: &str) -> Result<Partition, String> {
     let numbers = text.split_once('/').and_then(|(index, of)| {
         Some((index.trim().parse::<u32>().ok()?, of.trim().parse::<u32>().ok()?))
     });
     match numbers {
         Some((index, of)) if (1..=of).contains(&index) && of <= MOST_PARTS => {
-            Ok(Share { index: index - 1, of })
+            Ok(Partition { index: index - 1, count: of })
         }
         _ => Err(format!("write, for example, 2/4: the second of four, of at most {MOST_PARTS}")),
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Context as _, bail};
 use sunfleck::output::{Results, Written};
 use sunfleck::products::{Night, Point};
-use sunfleck::run::Share;
+use sunfleck::run::Partition;
 use sunfleck::{document, output, run};
 
 use crate::arguments::{
@@ -68,7 +68,7 @@ pub(crate) fn message(error: &anyhow::Error) -> String {
 }
 
 fn trace(arguments: &Trace) -> anyhow::Result<()> {
-    let share = arguments.part.unwrap_or(Share::ALL);
+    let share = arguments.part.unwrap_or(Partition::ALL);
     let checkpoint = arguments.checkpoint.as_ref().map(|file| run::Checkpoint {
         file: file.clone(),
         every: arguments.every,
@@ -80,7 +80,7 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
     if forecast {
         return forecasts(scene, &options);
     }
-    if share == Share::ALL {
+    if share == Partition::ALL {
         return results(scene, &options, &arguments.run.out, &arguments.run.folder(""));
     }
     let bars = Bars::new();
@@ -93,7 +93,7 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
         "{}: part {} of {}: {:.3} million rays in {:.1} s; `sunfleck merge` combines all parts\n",
         file.display(),
         share.index + 1,
-        share.of,
+        share.count,
         report.rays as f64 / 1e6,
         report.seconds
     ))

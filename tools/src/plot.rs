@@ -23,6 +23,7 @@ pub(crate) const fn colour(system: System) -> RGBColor {
         System::Forward => RGBColor(213, 94, 0),
         System::Analog => RGBColor(0, 158, 115),
         System::FirstOrder => RGBColor(204, 121, 167),
+        System::Reference => RGBColor(86, 180, 233),
     }
 }
 

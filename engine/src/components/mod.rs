@@ -33,7 +33,10 @@ pub use extents::{InstanceCount, LeafArea, MeshBounds, SceneExtents};
 pub use identity::{MaterialId, Name, PrototypeId, SceneId};
 pub use light::{Sky, Sun};
 pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
-pub use optics::{EnergyGain, SurfaceOptics};
+pub use optics::{
+    EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, RpvParameters, SoilspectParameters,
+    SurfaceOptics,
+};
 pub use placement::Placement;
 pub use planting::{InstanceRange, ShownMeshes};
 pub use sensor::{

@@ -1,15 +1,86 @@
-/// What a surface does with light, each a fraction of the incident flux; shape `[bands]`.
+/// Parameters of the surface model of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SurfaceOptics {
+    /// Diffuse reflection and transmission.
+    BiLambertian(LambertianOptics),
+    /// A leaf with a specular coating.
+    GlossyLeaf(GlossyOptics),
+    /// RPV, shape `[bands]`.
+    Rpv(Vec<RpvParameters>),
+    /// SOILSPECT, shape `[bands]`.
+    Soilspect(Vec<SoilspectParameters>),
+}
+
+impl SurfaceOptics {
+    /// Lambertian part of the model, if it has one.
+    #[must_use]
+    pub const fn lambertian(&self) -> Option<&LambertianOptics> {
+        match self {
+            Self::BiLambertian(optics) => Some(optics),
+            Self::GlossyLeaf(optics) => Some(&optics.body),
+            Self::Rpv(_) | Self::Soilspect(_) => None,
+        }
+    }
+}
+
+/// RPV model in one band; its formula is in `scattering/rpv.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RpvParameters {
+    /// Amplitude ρ0.
+    pub rho0: f32,
+    /// Bowl shape k: below 1, reflectance rises towards the horizon.
+    pub k: f32,
+    /// Asymmetry Θ, -1 to 1: below 0, more is reflected back towards the light.
+    pub asymmetry: f32,
+    /// Hot spot parameter ρc: the smaller, the higher the hot spot.
+    pub hot_spot: f32,
+}
+
+/// SOILSPECT model in one band; its formula is in `scattering/soilspect.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoilspectParameters {
+    /// Single-scattering albedo ω.
+    pub albedo: f32,
+    /// Roughness h: the width of the hot spot.
+    pub roughness: f32,
+    /// Amplitude of the hot spot; 1 in the paper.
+    pub hot_spot: f32,
+    /// Legendre coefficients b, c of the phase angle.
+    pub backward: [f32; 2],
+    /// Legendre coefficients b', c' of the angle to the mirror direction.
+    pub forward: [f32; 2],
+}
+
+/// A leaf: a diffuse body under a rough dielectric coating.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlossyOptics {
+    /// Light that has passed the coating is reflected and transmitted by the body.
+    pub body: LambertianOptics,
+    /// Coating on both sides.
+    pub coating: LeafCoating,
+}
+
+/// Rough dielectric surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeafCoating {
+    /// Real refractive index.
+    pub refractive_index: f64,
+    /// Root mean square slope of the facets, Beckmann's m.
+    pub roughness: f64,
+}
+
+/// Lambertian reflectance of both sides and transmittance, as fractions of the incident flux; shape `[bands]`.
 ///
 /// Front is the side that the geometric normal points to. Holds only bands in which every fraction
-/// is lawful and no side sends out more than it receives; build it with [`SurfaceOptics::new`].
+/// is lawful and no side sends out more than it receives; build it with [`LambertianOptics::new`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct SurfaceOptics {
+pub struct LambertianOptics {
     front: Box<[f32]>,
     back: Box<[f32]>,
     transmittance: Box<[f32]>,
 }
 
-/// A band in which a surface would send out more light than it receives, or less than none.
+/// A band in which a surface would send out more light than it receives, or less than zero.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "band {band}: reflectance {reflectance} and transmittance {transmittance} must each be at \
@@ -24,7 +95,7 @@ pub struct EnergyGain {
     pub transmittance: f64,
 }
 
-impl SurfaceOptics {
+impl LambertianOptics {
     /// Lambertian reflection on both sides, Lambertian transmission alike in both directions.
     ///
     /// Written in decimals, ρ + τ = 1 may come out an ulp above 1: such a sum is taken as 1.
@@ -69,11 +140,11 @@ impl SurfaceOptics {
 
 #[cfg(test)]
 mod tests {
-    use super::SurfaceOptics;
+    use super::LambertianOptics;
 
     #[test]
     fn a_surface_exists_exactly_when_neither_side_gains_energy() {
-        let new = |f: f64, b: f64, t: f64| SurfaceOptics::new(&[f], &[b], &[t]);
+        let new = |f: f64, b: f64, t: f64| LambertianOptics::new(&[f], &[b], &[t]);
         assert!(new(0.5, 0.5, 0.5).is_ok());
         assert!(new(0.1, 0.7, 0.3).is_ok());
         assert!(new(0.7, 0.1, 0.300_000_1).is_err());

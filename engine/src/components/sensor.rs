@@ -36,6 +36,8 @@ pub enum System {
     Analog,
     /// Light that was scattered once, integrated.
     FirstOrder,
+    /// Naive path tracer, one plain loop: slow, for comparison.
+    Reference,
 }
 
 /// A direction towards a sensor, as its angles.

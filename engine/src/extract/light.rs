@@ -5,7 +5,7 @@ use hecs::World;
 
 use crate::components::{Sky, Sun};
 use crate::sampling::{Sampler, concentric_disc};
-use crate::scattering::Spectrum;
+use crate::scattering::{SpectrumId, SpectrumTable};
 
 /// What lights a stage, in units of the total irradiance on the horizontal plane, band by band.
 ///
@@ -13,11 +13,11 @@ use crate::scattering::Spectrum;
 /// is the BRF, and times `E` it is the radiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// Where the sun is, whether it shines in any band or not.
+    /// The sun, even if it shines in no band: it decides which points are sunlit.
     pub sun: Option<Beam>,
-    /// The sun, if it shines.
+    /// The sun, if it shines in some band.
     pub beam: Option<Beam>,
-    /// The sky, if it shines.
+    /// The sky, if it shines in some band.
     pub dome: Option<Dome>,
     /// Total irradiance `E` on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
     pub irradiance: Vec<f64>,
@@ -30,8 +30,8 @@ pub struct Beam {
     pub direction: DVec3,
     /// The sun's disc; without one its light is parallel.
     pub disc: Option<Disc>,
-    /// Its share of the total horizontal irradiance.
-    pub share: Spectrum,
+    /// Its fraction of the total horizontal irradiance.
+    pub share: SpectrumId,
 }
 
 /// A solar disc of even radiance, wholly above the horizon.
@@ -84,12 +84,14 @@ impl Beam {
 /// The isotropic sky.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dome {
-    /// Its share of the total horizontal irradiance; its radiance is this over π.
-    pub share: Spectrum,
+    /// Its fraction of the total horizontal irradiance; its radiance is this over π.
+    pub share: SpectrumId,
 }
 
 impl Light {
-    pub(super) fn of(world: &World, bands: usize) -> Self {
+    /// Light of the sun and sky entities. Adds their spectra to the table.
+    pub(super) fn from_world(world: &World, spectra: &mut SpectrumTable) -> Self {
+        let bands = spectra.bands();
         let sun = world.query::<&Sun>().iter().next().cloned();
         let sky = world.query::<&Sky>().iter().next().cloned();
         let beam_irradiance: Vec<f64> = sun.as_ref().map_or_else(
@@ -100,8 +102,8 @@ impl Light {
         let irradiance: Vec<f64> =
             beam_irradiance.iter().zip(&sky_irradiance).map(|(sun, sky)| sun + sky).collect();
         // A band without any light has no share of it: all it can measure is zero.
-        let share = |part: &[f64]| {
-            Spectrum::new(
+        let mut share = |part: &[f64]| {
+            spectra.add(
                 part.iter()
                     .zip(&irradiance)
                     .map(|(&part, &total)| if total > 0.0 { (part / total) as f32 } else { 0.0 }),
@@ -115,9 +117,9 @@ impl Light {
             share: beam_share,
         });
         Self {
-            beam: sun.clone().filter(|beam| !beam.share.is_black()),
+            beam: sun.clone().filter(|beam| !spectra.is_zero(beam.share)),
             sun,
-            dome: (!sky_share.is_black()).then_some(Dome { share: sky_share }),
+            dome: (!spectra.is_zero(sky_share)).then_some(Dome { share: sky_share }),
             irradiance,
         }
     }

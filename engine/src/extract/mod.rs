@@ -14,12 +14,12 @@ use crate::accel::{self, Boundary, BuildError, Domain, InstanceInput, MeshInput}
 use crate::components::{
     MaterialId, Mesh, Name, PartMaterials, Placement, SceneId, SurfaceOptics, TerrainPatch,
 };
-use crate::scattering::{BiLambertian, Bsdf};
+use crate::scattering::SurfaceModels;
 
 pub use inventory::{Face, Inventory, Standing};
 pub use light::{Beam, Disc, Dome, Light};
-pub use stage::{Rules, Stage, Surface};
-pub use thermal::{Thermal, Warmth};
+pub use stage::{Rules, Stage};
+pub use thermal::{SurfaceBlackBody, Thermal};
 
 /// What the document decides beyond entities.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ pub fn extract(
     prototypes.sort_unstable_by_key(|&(id, ..)| *id);
     assert_eq!(prototypes.len(), used.len(), "every instance has its prototype");
 
-    let mut surfaces = Surfaces::new(world);
+    let mut surfaces = SurfaceIds::default();
     let ground_surfaces: Vec<u32> = terrain.materials.0.iter().map(|&id| surfaces.id(id)).collect();
     let part_surfaces: Vec<Vec<u32>> = prototypes
         .iter()
@@ -102,6 +102,9 @@ pub fn extract(
         Some(geometry) => geometry,
         None => Arc::new(build()?),
     };
+    let (mut models, surface_names) = surfaces.models(world, setting.bands);
+    let thermal = Thermal::from_world(world, &surfaces.ordered, &mut models.spectra);
+    let light = Light::from_world(world, &mut models.spectra);
     Ok(Stage {
         bands: setting.bands,
         rules: setting.rules,
@@ -112,9 +115,10 @@ pub fn extract(
         has_holes: terrain.has_holes(),
         first_cut: terrain.first_cut,
         periodic: setting.boundary == Boundary::Periodic,
-        thermal: Thermal::of(world, &surfaces.ordered),
-        surfaces: surfaces.finish(),
-        light: Light::of(world, setting.bands),
+        thermal,
+        models,
+        surface_names,
+        light,
         inventory: Inventory::of(
             world,
             terrain,
@@ -126,26 +130,14 @@ pub fn extract(
     })
 }
 
-/// Surfaces of the stage, numbered as they are first asked for.
-struct Surfaces {
-    known: BTreeMap<MaterialId, Surface>,
+/// Ids of surfaces: materials, numbered in the order in which parts ask for them.
+#[derive(Default)]
+struct SurfaceIds {
     ids: BTreeMap<MaterialId, u32>,
     ordered: Vec<MaterialId>,
 }
 
-impl Surfaces {
-    fn new(world: &World) -> Self {
-        let known = world
-            .query::<(&SceneId, &Name, &SurfaceOptics)>()
-            .iter()
-            .map(|(id, name, optics)| {
-                let bsdf = Bsdf::BiLambertian(BiLambertian::new(optics));
-                (MaterialId(id.0), Surface { name: name.0.clone(), bsdf })
-            })
-            .collect();
-        Self { known, ids: BTreeMap::new(), ordered: Vec::new() }
-    }
-
+impl SurfaceIds {
     fn id(&mut self, material: MaterialId) -> u32 {
         *self.ids.entry(material).or_insert_with(|| {
             self.ordered.push(material);
@@ -153,10 +145,18 @@ impl Surfaces {
         })
     }
 
-    fn finish(mut self) -> Vec<Surface> {
-        self.ordered
-            .iter()
-            .map(|id| self.known.remove(id).expect("every part has its material"))
-            .collect()
+    /// Models and names of the surfaces, in the order of their ids.
+    fn models(&self, world: &World, bands: usize) -> (SurfaceModels, Vec<String>) {
+        let mut query = world.query::<(&SceneId, &Name, &SurfaceOptics)>();
+        let materials: BTreeMap<_, _> =
+            query.iter().map(|(id, name, optics)| (MaterialId(id.0), (name, optics))).collect();
+        let mut models = SurfaceModels::new(bands);
+        let add = |id| {
+            let (name, optics): &(&Name, &SurfaceOptics) = &materials[id];
+            models.add(optics);
+            name.0.clone()
+        };
+        let names = self.ordered.iter().map(add).collect();
+        (models, names)
     }
 }

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 
 use super::{Inventory, Light, Thermal};
 use crate::accel;
-use crate::scattering::{Bsdf, LANES};
+use crate::scattering::{Interaction, SurfaceId, SurfaceModels};
 
-/// All that transport reads.
+/// Flat, immutable scene: everything that transport reads.
 #[derive(Debug)]
 pub struct Stage {
     /// Number of spectral bands.
@@ -26,27 +26,20 @@ pub struct Stage {
     /// First of the ground's triangles that are no ground but the faces along which an isolated one
     /// is cut out of the earth.
     pub first_cut: u32,
-    /// Whether the rectangle repeats without end.
+    /// True if the rectangle repeats without end.
     pub periodic: bool,
-    /// Surfaces, by the id that hits carry; 0 is the ground's.
-    pub surfaces: Vec<Surface>,
-    /// What lights the scene.
+    /// Models of the surfaces, by the id that hits carry, and all spectra; 0 is the ground's.
+    pub models: SurfaceModels,
+    /// Names of the surfaces' materials, which their absorption is reported under.
+    pub surface_names: Vec<String>,
+    /// Sun and sky.
     pub light: Light,
-    /// What surfaces and the sky emit, where a sensor measures it.
+    /// Emission of surfaces and the sky, where a sensor measures it.
     pub thermal: Option<Thermal>,
-    /// What stands in the scene, where a sensor reports of each instance.
+    /// Instances and their faces, where a sensor reports each.
     pub inventory: Option<Arc<Inventory>>,
-    /// What rays can hit.
+    /// Geometry that rays are traced through.
     pub geometry: Arc<accel::Scene>,
-}
-
-/// A surface with the name that its absorption is reported under.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
-    /// Name of the material.
-    pub name: String,
-    /// How it scatters.
-    pub bsdf: Bsdf,
 }
 
 /// How paths are traced.
@@ -56,20 +49,14 @@ pub struct Rules {
     pub seed: u64,
     /// Orders of scattering before the constant roulette starts.
     pub roulette_after: u32,
-    /// Probability of the constant roulette to end a path, where survivors do not grow beyond what they
-    /// started with.
+    /// Probability of the constant roulette to end a path, where survivors do not exceed their initial
+    /// throughput.
     pub roulette_kill: f64,
     /// Highest order of scattering that counts.
     pub max_order: u32,
 }
 
 impl Stage {
-    /// Length of spectra in transport: the bands, padded to whole groups of lanes.
-    #[must_use]
-    pub fn lanes(&self) -> usize {
-        self.bands.next_multiple_of(LANES)
-    }
-
     /// Area of the scene's rectangle, m².
     #[must_use]
     pub fn area(&self) -> f64 {
@@ -88,20 +75,20 @@ impl Stage {
         self.mean_ground > self.ground
     }
 
-    /// Surface of a hit.
+    /// The surface at a hit, seen from the direction `wo`.
     #[must_use]
-    pub fn surface(&self, hit: &accel::Hit) -> &Surface {
-        &self.surfaces[hit.surface as usize]
+    pub const fn interaction(&self, hit: &accel::Hit, wo: DVec3) -> Interaction<'_> {
+        self.models.at(SurfaceId(hit.surface), hit.normal, wo)
     }
 
-    /// Whether a hit lies on the ground itself: it is the first instance of every stage.
+    /// Returns whether a hit lies on the ground: the first instance of every stage.
     #[must_use]
     pub fn is_ground(&self, hit: &accel::Hit) -> bool {
         hit.instance == 0
     }
 
-    /// Whether a hit lies where an isolated ground is cut out of the earth: light ends there, and
-    /// nothing is to be seen.
+    /// Returns whether a hit lies on a face along which an isolated ground is cut out of the earth: light ends
+    /// there, and nothing is visible.
     #[must_use]
     pub fn is_cut(&self, hit: &accel::Hit) -> bool {
         self.is_ground(hit) && hit.primitive >= self.first_cut

@@ -4,35 +4,40 @@ use super::Stage;
 use crate::accel::Hit;
 use crate::components::{BlackBody, Emission, MaterialId, SceneId};
 use crate::sampling::Sampler;
-use crate::scattering::Spectrum;
+use crate::scattering::{SpectrumId, SpectrumTable};
 
-/// What surfaces and the sky emit.
+/// Radiance that surfaces and the sky emit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thermal {
     /// 1 in bands that hold emitted radiance, 0 in others.
-    pub bands: Spectrum,
+    pub bands: SpectrumId,
     /// Radiance of the sky, W m⁻² sr⁻¹ nm⁻¹.
-    pub sky: Spectrum,
-    /// Warmth of each surface, by the id that hits carry.
-    pub surfaces: Vec<Warmth>,
+    pub sky: SpectrumId,
+    /// Black body of each surface, by the id that hits carry.
+    pub surfaces: Vec<SurfaceBlackBody>,
 }
 
-/// Radiance of a black body that is as warm as a surface, W m⁻² sr⁻¹ nm⁻¹.
+/// Radiance of a black body with the temperature of a surface, W m⁻² sr⁻¹ nm⁻¹.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Warmth {
+pub struct SurfaceBlackBody {
     /// Where the sun's disc is visible.
-    pub sunlit: Spectrum,
+    pub sunlit: SpectrumId,
     /// Where it is not.
-    pub shaded: Spectrum,
-    /// Whether the two differ.
-    pub knows_sun: bool,
+    pub shaded: SpectrumId,
+    /// True if the two differ.
+    pub depends_on_sun: bool,
 }
 
 impl Thermal {
-    /// Of these materials, in this order; `None` where nothing measures what they emit.
-    pub(super) fn of(world: &World, materials: &[MaterialId]) -> Option<Self> {
+    /// Emission of these materials, in this order; `None` where no sensor measures it. Adds spectra to the
+    /// table.
+    pub(super) fn from_world(
+        world: &World,
+        materials: &[MaterialId],
+        spectra: &mut SpectrumTable,
+    ) -> Option<Self> {
         let emission = world.query::<&Emission>().iter().next().cloned()?;
-        let lanes = |values: &[f64]| Spectrum::new(values.iter().map(|&value| value as f32));
+        let mut add = |values: &[f64]| spectra.add(values.iter().map(|&value| value as f32));
         let mut query = world.query::<(&SceneId, &BlackBody)>();
         let bodies: Vec<_> = query.iter().collect();
         let surfaces = materials
@@ -40,28 +45,26 @@ impl Thermal {
             .map(|material| {
                 let body = bodies.iter().find(|(id, _)| id.0 == material.0);
                 let (_, body) = body.expect("every material has its temperature");
-                Warmth {
-                    sunlit: lanes(&body.sunlit),
-                    shaded: lanes(&body.shaded),
-                    knows_sun: body.sunlit != body.shaded,
+                SurfaceBlackBody {
+                    sunlit: add(&body.sunlit),
+                    shaded: add(&body.shaded),
+                    depends_on_sun: body.sunlit != body.shaded,
                 }
             })
             .collect();
-        Some(Self {
-            bands: Spectrum::new(emission.bands.iter().map(|&emits| f32::from(emits))),
-            sky: lanes(&emission.sky),
-            surfaces,
-        })
+        let sky = add(&emission.sky);
+        let bands = spectra.add(emission.bands.iter().map(|&emits| f32::from(emits)));
+        Some(Self { bands, sky, surfaces })
     }
 
-    /// Radiance of the black body that is as warm as a surface at a point and the
-    /// number of rays that it took to see whether the sun is visible from there. The side does not
-    /// matter: a leaf is too thin for two temperatures.
-    pub fn black_body(&self, stage: &Stage, hit: &Hit, sampler: &mut Sampler) -> (&Spectrum, u64) {
-        let warmth = &self.surfaces[hit.surface as usize];
-        let sun = stage.light.sun.as_ref().filter(|_| warmth.knows_sun);
+    /// Radiance of the black body at a point of a surface, and the number of rays that it took to find out
+    /// whether the sun is visible from there. It is the same on both sides: a leaf is too thin for two
+    /// temperatures.
+    pub fn black_body(&self, stage: &Stage, hit: &Hit, sampler: &mut Sampler) -> (SpectrumId, u64) {
+        let body = &self.surfaces[hit.surface as usize];
+        let sun = stage.light.sun.as_ref().filter(|_| body.depends_on_sun);
         let is_sunlit =
             sun.is_some_and(|sun| !stage.geometry.occluded(&hit.leave(sun.towards(sampler))));
-        (if is_sunlit { &warmth.sunlit } else { &warmth.shaded }, sun.is_some().into())
+        (if is_sunlit { body.sunlit } else { body.shaded }, sun.is_some().into())
     }
 }

@@ -14,4 +14,4 @@ pub use ratio::ratio;
 pub use replicates::Replicates;
 pub use spread::Spread;
 pub use sums::Sums;
-pub(crate) use sums::written;
+pub(crate) use sums::zeroed;

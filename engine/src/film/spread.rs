@@ -1,4 +1,4 @@
-use super::written;
+use super::zeroed;
 
 /// Mean and standard error over independent randomisations of the same values.
 ///
@@ -15,7 +15,7 @@ impl Spread {
     /// No randomisation yet, of this many values.
     #[must_use]
     pub fn new(values: usize) -> Self {
-        Self { count: 0, mean: written(values), squares: written(values) }
+        Self { count: 0, mean: zeroed(values), squares: zeroed(values) }
     }
 
     /// Spread of the rows given.

@@ -20,7 +20,7 @@ impl Sums {
     /// All zero.
     #[must_use]
     pub fn new(cells: usize, bands: usize) -> Self {
-        Self { bands, values: written(cells * bands), touched: None }
+        Self { bands, values: zeroed(cells * bands), touched: None }
     }
 
     /// All zero, to be merged into others: of many cells, it takes the memory of those alone that
@@ -116,7 +116,7 @@ impl Sums {
         &self.values
     }
 
-    /// The same, to be written.
+    /// The same, mutable.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
@@ -128,9 +128,9 @@ impl Sums {
     }
 }
 
-/// Zeros that were written, to be added to: memory that is read before it is written is mapped twice, and the
-/// second time stops all threads.
-pub(crate) fn written(len: usize) -> Vec<f64> {
+/// Zeroed memory, touched now: reading a lazy zero page before it is written faults twice, and the second fault
+/// stalls all threads.
+pub(crate) fn zeroed(len: usize) -> Vec<f64> {
     let mut zeros = Vec::with_capacity(len);
     zeros.resize(len, 0.0);
     zeros

@@ -91,7 +91,7 @@ pub fn components_of_image(
                     &outcome.mean_error[column.clone()],
                 )
             };
-            let rings = GapSums { sums: &outcome.zones, stride: 2, gaps: 0, samples: 1 };
+            let rings = GapSums { sums: &outcome.image_sums, stride: 2, gaps: 0, samples: 1 };
             let lai = lai_of_rings(&rings).into_iter().map(|index| single(&index));
             std::iter::once(gaps).chain(lai).collect()
         }

@@ -60,8 +60,8 @@ pub fn brf_views(
     let bands = context.bands.len();
     let errors = spread.standard_error();
     let (mut values, mut standard_error) = (Vec::new(), Vec::new());
-    for (projection, &cell) in counter.projections().iter().zip(counter.first_cells()) {
-        let scale = projection.radiance_of_count(stage);
+    for (camera, &cell) in counter.cameras().iter().zip(counter.first_cells()) {
+        let scale = camera.radiance_per_count(stage);
         let range = cell * bands..(cell + 1) * bands;
         values.extend(spread.mean()[range.clone()].iter().map(|value| value * scale));
         standard_error.extend(errors[range].iter().map(|error| error * scale));
@@ -107,7 +107,7 @@ pub fn fapar(
         numbers("bottom_m", borders[..counter.layers()].iter().copied()),
         numbers("top_m", borders[1..].iter().copied()),
     ];
-    let names: Vec<String> = stage.surfaces.iter().map(|surface| surface.name.clone()).collect();
+    let names = stage.surface_names.clone();
     let materials = || vec![labels("material", &names)];
     let terms = GROUND_TERMS.map(str::to_owned);
     let product = |name: &str, dimensions, cells: std::ops::Range<usize>| {
@@ -136,7 +136,7 @@ pub fn energy(spread: &Spread, stage: &Stage, context: &Context) -> Product {
     let mut terms: Vec<String> =
         ["incident", "reflected", "beside", "missed", "lost", "roulette"].map(str::to_owned).into();
     assert_eq!(terms.len(), EnergyCounter::ABSORBED, "a name for each term");
-    terms.extend(stage.surfaces.iter().map(|surface| format!("absorbed.{}", surface.name)));
+    terms.extend(stage.surface_names.iter().map(|name| format!("absorbed.{name}")));
     context.product(
         ("energy", "1"),
         vec![vec![labels("term", &terms)]],

@@ -9,7 +9,7 @@ use crate::components::{ImageSamples, Sensor, Stop};
 use crate::document::{Diagnostic, suggestion, unknown_name};
 use crate::extract::Stage;
 use crate::products::{Context, Product};
-use crate::transport::{Camera, RANDOMISATIONS, Share};
+use crate::transport::{Camera, Partition, RANDOMISATIONS};
 
 /// Refuses what cannot be measured, before anything is traced.
 ///
@@ -59,7 +59,7 @@ fn problems_of(
         let help = "measure fewer cells, pixels or bands, or run it without `--checkpoint`";
         problems.push(Diagnostic::error(format!("sensors.{name}"), message).help(help));
     }
-    if keeper.share() != Share::ALL && !plan.is_fixed() {
+    if keeper.share() != Partition::ALL && !plan.is_fixed() {
         let message = "a part of a run cannot tell when the whole is good enough";
         let help = "write `until: Samples(n)` alone: all parts then end at the same place";
         problems.push(Diagnostic::error(&path, message).help(help));
@@ -98,7 +98,7 @@ fn too_many_samples(
 ) -> Option<Diagnostic> {
     let Sensor::Image(image) = sensor else { return None };
     let ImageSamples::PerArea(density) = image.samples else { return None };
-    let samples = Camera::of(image, stage).samples(image.samples) * quality;
+    let samples = Camera::new(image, stage).samples(image.samples) * quality;
     // The density that makes as many as there may be, with three digits.
     let most = 0.995 * density * MOST_SAMPLES / samples;
     (image.until.is_empty() && samples > MOST_SAMPLES).then(|| {

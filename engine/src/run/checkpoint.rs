@@ -27,7 +27,7 @@ use std::time::Instant;
 use super::Failure;
 use crate::output;
 use crate::products::data_size;
-use crate::transport::Share;
+use crate::transport::Partition;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
 const VERSION: u32 = 3;
@@ -40,7 +40,7 @@ pub struct Checkpoint {
     /// Seconds between two writings.
     pub every: f64,
     /// Which share of the run is traced.
-    pub share: Share,
+    pub share: Partition,
 }
 
 /// What a sensor has traced so far.
@@ -57,7 +57,7 @@ pub(super) struct Section {
 pub(super) struct Keeper {
     hash: [u8; 32],
     /// Shares that were read, each with its sections.
-    read: Vec<(Share, Vec<Section>)>,
+    read: Vec<(Partition, Vec<Section>)>,
     to: Option<Checkpoint>,
     /// What the file is to hold.
     sections: Vec<Section>,
@@ -121,11 +121,11 @@ impl Keeper {
     /// # Errors
     /// If one cannot be read, is damaged or of another scene, or if they are not all shares of one run.
     pub(super) fn unite(files: &[PathBuf], hash: [u8; 32]) -> Result<Self, Failure> {
-        let mut read: Vec<(Share, Vec<Section>)> = Vec::new();
+        let mut read: Vec<(Partition, Vec<Section>)> = Vec::new();
         for (index, file) in files.iter().enumerate() {
             let (share, sections) = load(file, hash)?;
             if let Some((first, others)) = read.first() {
-                if share.of != first.of {
+                if share.count != first.count {
                     let found = format!(
                         "holds {}, and {} holds {}",
                         part(share),
@@ -148,9 +148,9 @@ impl Keeper {
             }
             read.push((share, sections));
         }
-        let of = read.first().map_or(1, |(share, _)| share.of);
+        let of = read.first().map_or(1, |(share, _)| share.count);
         let missing: Vec<String> = (0..of)
-            .map(|index| Share { index, of })
+            .map(|index| Partition { index, count: of })
             .filter(|share| !read.iter().any(|(other, _)| other == share))
             .map(part)
             .collect();
@@ -174,8 +174,8 @@ impl Keeper {
     }
 
     /// Which share is traced.
-    pub(super) fn share(&self) -> Share {
-        self.to.as_ref().map_or(Share::ALL, |to| to.share)
+    pub(super) fn share(&self) -> Partition {
+        self.to.as_ref().map_or(Partition::ALL, |to| to.share)
     }
 
     /// Whether anything is kept.
@@ -184,8 +184,8 @@ impl Keeper {
     }
 
     /// What was traced before for a sensor, by share.
-    pub(super) fn before(&self, name: &str) -> Vec<(Share, Section)> {
-        let of = |(share, sections): &(Share, Vec<Section>)| {
+    pub(super) fn before(&self, name: &str) -> Vec<(Partition, Section)> {
+        let of = |(share, sections): &(Partition, Vec<Section>)| {
             Some((*share, sections.iter().find(|section| section.name == name)?.clone()))
         };
         self.read.iter().filter_map(of).collect()
@@ -225,7 +225,7 @@ impl Keeper {
     pub(super) fn finish(&mut self) -> Result<Option<String>, Failure> {
         let Some(warning) = self.save() else { return Ok(None) };
         match &self.to {
-            Some(to) if to.share != Share::ALL => Err(Failure::Checkpoint {
+            Some(to) if to.share != Partition::ALL => Err(Failure::Checkpoint {
                 file: to.file.clone(),
                 what: "could not be written, and what was traced of this part is lost".to_owned(),
                 help: warning,
@@ -241,10 +241,10 @@ impl Keeper {
 }
 
 /// `part 2/4`.
-fn part(share: Share) -> String {
+fn part(share: Partition) -> String {
     match share {
-        Share::ALL => "a whole run".to_owned(),
-        Share { index, of } => format!("part {}/{of}", index + 1),
+        Partition::ALL => "a whole run".to_owned(),
+        Partition { index, count: of } => format!("part {}/{of}", index + 1),
     }
 }
 
@@ -282,7 +282,7 @@ fn store(to: &Checkpoint, hash: [u8; 32], sections: &[Section]) -> io::Result<()
         text(&mut out, env!("CARGO_PKG_VERSION"))?;
         out.write_all(&hash)?;
         out.write_all(&to.share.index.to_le_bytes())?;
-        out.write_all(&to.share.of.to_le_bytes())?;
+        out.write_all(&to.share.count.to_le_bytes())?;
         out.write_all(&(sections.len() as u32).to_le_bytes())?;
         for section in sections {
             text(&mut out, &section.name)?;
@@ -341,12 +341,12 @@ fn no_file(file: &Path) -> Failure {
 struct Traced {
     /// Hash of the scene.
     scene: [u8; 32],
-    share: Share,
+    share: Partition,
     sections: Vec<Section>,
 }
 
 /// Reads a checkpoint of a scene.
-fn load(file: &Path, hash: [u8; 32]) -> Result<(Share, Vec<Section>), Failure> {
+fn load(file: &Path, hash: [u8; 32]) -> Result<(Partition, Vec<Section>), Failure> {
     let Traced { scene, share, sections } = read(file)?;
     if scene != hash {
         let found = "is of another scene or of other sensors: only `until`, `samples_per_px`, `samples_per_m2`, \
@@ -381,15 +381,15 @@ fn read(file: &Path) -> Result<Traced, Failure> {
         );
         return Err(wrong(file, &found, START_AGAIN));
     }
-    let body = (|| -> io::Result<([u8; 32], Share, Vec<Section>)> {
+    let body = (|| -> io::Result<([u8; 32], Partition, Vec<Section>)> {
         let scene = array(&mut rest)?;
-        let share = Share { index: number(&mut rest)?, of: number(&mut rest)? };
+        let share = Partition { index: number(&mut rest)?, count: number(&mut rest)? };
         let count = number(&mut rest)?;
         let sections = (0..count).map(|_| section(&mut rest)).collect::<io::Result<_>>()?;
         Ok((scene, share, sections))
     })();
     let (scene, share, sections) = body.map_err(|_short| damaged())?;
-    if share.index >= share.of {
+    if share.index >= share.count {
         return Err(damaged());
     }
     Ok(Traced { scene, share, sections })

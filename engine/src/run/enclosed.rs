@@ -23,7 +23,7 @@ pub(super) fn warnings(sensors: &[(String, Sensor)], stage: &Stage) -> Vec<Diagn
         if matches!(image.optics, Optics::Orthographic(_)) {
             return None;
         }
-        let eye = Camera::of(image, stage).ray(DVec2::splat(0.5))?.origin;
+        let eye = Camera::new(image, stage).ray(DVec2::splat(0.5))?.origin;
         let width = enclosure(eye, stage)?;
         let message = format!(
             "the camera at ({:.2}, {:.2}, {:.2}) is inside a body, whose nearest side is {width:.2} m away",

@@ -192,7 +192,7 @@ pub(super) fn warn_bright_ground(scene: &Scene, world: &World) -> Vec<Diagnostic
         if !ground.contains(&MaterialId(id.0)) {
             return None;
         }
-        let bands = scene.bands.iter().zip(optics.front());
+        let bands = scene.bands.iter().zip(optics.lambertian()?.front());
         let bright = bands.filter(|(band, _)| band.center_nm < VISIBLE_END);
         let (band, reflectance) = bright.max_by(|a, b| a.1.total_cmp(b.1))?;
         (*reflectance > SNOW).then(|| {

@@ -17,7 +17,7 @@ pub(super) fn warnings(sensors: &[(String, Sensor)], stage: &Stage) -> Vec<Strin
     if !sensors.iter().any(|(_, sensor)| refers_to_ground(sensor)) {
         return Vec::new();
     }
-    let Some(LightBeside { incoming, outgoing }) = LightBeside::of(stage) else {
+    let Some(LightBeside { incoming, outgoing }) = LightBeside::from_pilot_run(stage) else {
         return Vec::new();
     };
     let mut warnings = Vec::new();

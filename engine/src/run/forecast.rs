@@ -11,7 +11,7 @@ use crate::components::Sensor;
 use crate::document::Diagnostic;
 use crate::output;
 use crate::products::{Extent, Forecast, data_size};
-use crate::transport::Share;
+use crate::transport::Partition;
 
 /// What one sensor takes, bytes; `u64::MAX` of more than can be counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Size {
         // What the last checkpoint holds is there until the next is written.
         let kept = if keeper.keeps() { films } else { 0 };
         let beside = sum([beside, kept]);
-        let is_whole = keeper.share() == Share::ALL;
+        let is_whole = keeper.share() == Partition::ALL;
         let extents = if is_whole { measurement.extents() } else { Vec::new() };
         let of_all = |of: fn(Extent) -> u64| sum(extents.iter().map(|&extent| of(extent)));
         Self {

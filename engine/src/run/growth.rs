@@ -9,7 +9,7 @@ use super::{Failure, Progress};
 use crate::components::Stop;
 use crate::document::Diagnostic;
 use crate::products::{Extent, Forecast, Product};
-use crate::transport::{Film, Schedule, Share, Watch};
+use crate::transport::{Film, Partition, ProgressFn, Schedule};
 
 /// What a sensor measures, as it grows.
 pub(super) trait Measurement {
@@ -157,7 +157,7 @@ pub(super) fn grow(
     let start = Instant::now();
     let elapsed = || before + start.elapsed().as_secs_f64();
     let (first, limit) = (done, plan.limit());
-    let mut looks = plan.schedule.looks().take_while(|_| plan.needs_errors()).peekable();
+    let mut looks = plan.schedule.evaluations().take_while(|_| plan.needs_errors()).peekable();
     // What was found where errors were last looked at: the products and how far that was.
     let mut last: Option<(u64, Vec<(String, f64)>)> = None;
     let pilot = Pilot::new(size, (done, before));
@@ -195,7 +195,7 @@ pub(super) fn grow(
         if let Some(stop) = ended {
             progress.sensor(name, 1.0);
             let errors = here.map_or_else(Vec::new, <[_]>::to_vec);
-            let is_whole = keeper.share() == Share::ALL;
+            let is_whole = keeper.share() == Partition::ALL;
             let products = if is_whole { measurement.products() } else { Vec::new() };
             let forecast = pilot.told().unwrap_or_else(|| size.forecast(seconds));
             return Ok(Ending { products, stop: stop.clone(), errors, seconds, forecast });
@@ -300,7 +300,7 @@ fn next_round(
 }
 
 /// Brings all films to the same place.
-pub(super) fn trace(measurement: &mut dyn Measurement, to: u64, watch: Watch<'_>) {
+pub(super) fn trace(measurement: &mut dyn Measurement, to: u64, watch: ProgressFn<'_>) {
     let films = measurement.films();
     let all = films.len() as f64;
     for (index, paced) in films.into_iter().enumerate() {

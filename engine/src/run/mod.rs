@@ -36,7 +36,7 @@ use crate::spawn::missing_files;
 use crate::spectral::BandWindow;
 
 pub use crate::products::Forecast;
-pub use crate::transport::Share;
+pub use crate::transport::Partition;
 pub use again::Runs;
 pub use checkpoint::Checkpoint;
 pub use facts::{BandFacts, GroundFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts};

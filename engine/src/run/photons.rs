@@ -8,8 +8,9 @@ use crate::products::{self, BandSources, Context, Extent, Product};
 use crate::sampling::Key;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
-    FluxLevel, GROUND_TERMS, Grain, Hemisphere, LayerCounter, Part, PartCounter, Projection,
-    ReferencePlane, Roulette, Rows, Source, ViewCounter, photon_film,
+    FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightSource, OrthographicCamera,
+    PacketOptions, Part, PartCounter, PhotonKind, ReferencePlane, ReplicateSums, RouletteThreshold,
+    ViewCounter, photon_film,
 };
 
 /// Photon packets of sun and sky, and of what emits, and what they are counted for.
@@ -28,16 +29,16 @@ impl<'a> PhotonRun<'a> {
         (stage, context): (&'a Stage, &'a Context),
         key: Key,
     ) -> Self {
-        let plane = ReferencePlane::of(sensor.plane.as_ref(), stage);
+        let plane = ReferencePlane::new(sensor.plane.as_ref(), stage);
         let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
             .measure
             .iter()
             .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
             .collect();
-        let grain = if sensor.system == System::Analog {
-            Grain::Photon
+        let kind = if sensor.system == System::Analog {
+            PhotonKind::Photon
         } else {
-            Grain::Packet(Roulette::Gentle)
+            PhotonKind::Packet(RouletteThreshold::Low)
         };
         let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
             (!asked.is_empty()).then(|| {
@@ -48,7 +49,8 @@ impl<'a> PhotonRun<'a> {
                         Some(part) => Box::new(PartCounter { counter, part }),
                     }
                 });
-                let film = photon_film(stage, (source, grain, plane.clone()), counters, key);
+                let options = PacketOptions { source, kind, plane: plane.clone() };
+                let film = photon_film(stage, options, counters, key);
                 Counted { asked, film }
             })
         };
@@ -62,10 +64,10 @@ impl<'a> PhotonRun<'a> {
         let asked = wholes
             .map(|(index, _)| (index, None))
             .chain(split.flat_map(|(index, _)| parts.iter().map(move |&part| (index, Some(part)))));
-        let reflected = film(Source::Reflected, asked.collect(), key);
+        let reflected = film(LightSource::Reflected, asked.collect(), key);
         let asked = numbered().filter(|(_, (measure, _))| emits && measure.is_absolute());
         let asked = asked.map(|(index, _)| (index, None)).collect();
-        let emitted = film(Source::Emitted, asked, key.path("emission"));
+        let emitted = film(LightSource::Emitted, asked, key.path("emission"));
         Self { sensor, scene: (stage, context), kinds, reflected, emitted }
     }
 }
@@ -104,7 +106,7 @@ impl Measurement for PhotonRun<'_> {
             }
             extents
         };
-        let rows = (EnergyCounter::ABSORBED + stage.surfaces.len()) as u64;
+        let rows = (EnergyCounter::ABSORBED + stage.models.len()) as u64;
         let energy = vec![Extent::Table { rows, axes: 1, bands }; films.len()];
         kinds.iter().enumerate().flat_map(of).chain(energy).collect()
     }
@@ -156,7 +158,7 @@ impl Measurement for PhotonRun<'_> {
 /// What was asked for, kinds by number, and counted.
 struct Counted<'a> {
     asked: Vec<(usize, Option<Part>)>,
-    film: Rows<'a>,
+    film: ReplicateSums<'a>,
 }
 
 impl Counted<'_> {
@@ -193,15 +195,14 @@ impl Kind {
                 Self::Cells(CellCounter { hemisphere: Hemisphere::new(*cells as usize), plane })
             }
             PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
-                let projections =
-                    views.iter().map(|&view| Projection::of_plane(view, &plane, stage)).collect();
-                Self::Views(ViewCounter::new(projections), views.clone())
+                let camera = |&view: &View| OrthographicCamera::from_plane(view, &plane, stage);
+                Self::Views(ViewCounter::new(views.iter().map(camera).collect()), views.clone())
             }
             PhotonMeasure::Absorbed(per) => {
                 let inventory = stage.inventory.clone()?;
-                Self::Absorbed(AbsorbedCounter::of(&inventory, *per, plane), inventory)
+                Self::Absorbed(AbsorbedCounter::new(&inventory, *per, plane), inventory)
             }
-            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::of(stage, layers, plane)),
+            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::new(stage, layers, plane)),
             PhotonMeasure::Fluxes { pixel, heights } => {
                 let mut levels = vec![FluxLevel::Terrain];
                 if stage.has_relief() {
@@ -272,7 +273,7 @@ impl Kind {
     }
 
     /// Its counter for packets of a source.
-    fn with_roulette(&self, source: Source, key: Key) -> Box<dyn Counter> {
+    fn with_roulette(&self, source: LightSource, key: Key) -> Box<dyn Counter> {
         match self {
             Self::Views(counter, _) => Box::new(counter.clone().with_roulette(source, key)),
             _ => self.counter(),

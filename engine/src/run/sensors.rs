@@ -11,8 +11,8 @@ use crate::extract::Stage;
 use crate::products::{self, Context, Extent, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    Camera, ComponentsFilm, DirectionsFilm, ImageFilm, RANDOMISATIONS, ReferencePlane, Schedule,
-    Source, Tiles, image_components_film,
+    Camera, ComponentsFilm, DirectionsFilm, DirectionsSettings, ImageFilm, ImageTiles,
+    LightSettings, LightSource, RANDOMISATIONS, ReferencePlane, Schedule, image_components_film,
 };
 
 /// All sensors in document order.
@@ -122,7 +122,7 @@ struct ImageRun<'a> {
     scene: (&'a Stage, &'a Context),
     reflected: Option<ImageFilm<'a>>,
     emitted: Option<ImageFilm<'a>>,
-    components: Option<Tiles<'a>>,
+    components: Option<ImageTiles<'a>>,
     /// Samples of a pixel for each of the measurement.
     pace: (u64, u64),
 }
@@ -132,7 +132,7 @@ fn image<'a>(
     (stage, context): (&'a Stage, &'a Context),
     (key, quality): (Key, f64),
 ) -> Begun<'a> {
-    let camera = Camera::of(sensor, stage);
+    let camera = Camera::new(sensor, stage);
     let until = if sensor.until.is_empty() {
         let samples = camera.samples(sensor.samples) * quality;
         // Areas are rounded: what is a whole number but for that is one.
@@ -143,12 +143,13 @@ fn image<'a>(
     };
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
     let film = |source, orders, key| {
-        ImageFilm::new((stage, &camera), (sensor.system, source, orders), key)
+        let light = LightSettings { system: sensor.system, source, separates_orders: orders };
+        ImageFilm::new(stage, &camera, light, key)
     };
-    let reflected =
-        needs_reflection(&sensor.measure, context).then(|| film(Source::Reflected, orders, key));
+    let reflected = needs_reflection(&sensor.measure, context)
+        .then(|| film(LightSource::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
-        .then(|| film(Source::Emitted, false, key.path("emission")));
+        .then(|| film(LightSource::Emitted, false, key.path("emission")));
     let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
         .then(|| image_components_film(stage, &camera, key.path("components")));
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
@@ -171,7 +172,7 @@ impl Measurement for ImageRun<'_> {
         let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
         let mut films: Vec<Paced<'_>> = light
             .map(|image| match image {
-                ImageFilm::Packets(packets) => Paced::evenly(&mut packets.rows),
+                ImageFilm::Packets(packets) => Paced::evenly(&mut packets.sums),
                 ImageFilm::Paths(tiles) => Paced { film: tiles, pace },
             })
             .collect();
@@ -180,7 +181,7 @@ impl Measurement for ImageRun<'_> {
     }
 
     fn extents(&self) -> Vec<Extent> {
-        let zones = self.components.as_ref().is_some_and(Tiles::has_zones);
+        let zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
         let found = (self.reflected.is_some(), self.emitted.is_some(), zones);
         products::extents_of_image(self.sensor, found, self.scene.1)
     }
@@ -215,18 +216,19 @@ fn directions<'a>(
     (key, quality): (Key, f64),
 ) -> Begun<'a> {
     let views = sensor.views.as_slice();
-    let plane = &ReferencePlane::of(sensor.plane.as_ref(), stage);
+    let plane = &ReferencePlane::new(sensor.plane.as_ref(), stage);
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
     let film = |source, orders, key| {
         let system = system_of(sensor, source);
-        DirectionsFilm::new(stage, (views, plane), (system, source, orders), key)
+        let light = LightSettings { system, source, separates_orders: orders };
+        DirectionsFilm::new(stage, DirectionsSettings { views, plane, light }, key)
     };
-    let reflected =
-        needs_reflection(&sensor.measure, context).then(|| film(Source::Reflected, orders, key));
+    let reflected = needs_reflection(&sensor.measure, context)
+        .then(|| film(LightSource::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
-        .then(|| film(Source::Emitted, false, key.path("emission")));
+        .then(|| film(LightSource::Emitted, false, key.path("emission")));
     let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
-        .then(|| ComponentsFilm::new(stage, (views, plane), key.path("components")));
+        .then(|| ComponentsFilm::new(stage, views, plane, key.path("components")));
     let until = at_quality(&sensor.until, quality);
     let plan = Plan { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
     (Box::new(DirectionsRun { sensor, context, reflected, emitted, components }), plan)
@@ -270,10 +272,12 @@ impl Measurement for DirectionsRun<'_> {
 /// Packets serve all views at once: of 31 views they take half of the rays of paths for the same error,
 /// of one view as many or more (`transport/README.md`). But most packets miss a small plane, and what
 /// surfaces emit is seen at once from the sensor's side.
-fn system_of(sensor: &Directions, source: Source) -> System {
+fn system_of(sensor: &Directions, source: LightSource) -> System {
     let best = match source {
-        Source::Reflected if sensor.plane.is_none() && sensor.views.len() > 1 => System::Forward,
-        Source::Reflected | Source::Emitted => System::Backward,
+        LightSource::Reflected if sensor.plane.is_none() && sensor.views.len() > 1 => {
+            System::Forward
+        }
+        LightSource::Reflected | LightSource::Emitted => System::Backward,
     };
     sensor.system.unwrap_or(best)
 }

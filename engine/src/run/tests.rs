@@ -92,7 +92,8 @@ fn the_first_errors_tell_how_many_samples_it_will_take() {
         "#,
         |name, sensor, scene| {
             let (mut measurement, plan) = sensors::begin(name, sensor, scene, 1.0);
-            let look = plan.schedule.looks().find(|&look| look >= 32).expect("looks never end");
+            let look =
+                plan.schedule.evaluations().find(|&look| look >= 32).expect("looks never end");
             trace(measurement.as_mut(), look, &|_| ());
             let last = (look, relative_errors(measurement.as_mut()));
             let foretold = plan.end((0, 0.0), 1.0, Some(&last));

@@ -2,10 +2,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Scattered, Spectrum};
-use crate::components::SurfaceOptics;
-use crate::geometry::basis;
-use crate::sampling::cosine_hemisphere;
+use super::directional::cosine_direction;
+use super::{BsdfSample, Importance, Interaction, Lobe, SpectrumId, SpectrumTable};
+use crate::components::LambertianOptics;
 
 /// Lambertian reflection of each side and Lambertian transmission: `f = ρ/π` where `wi` and `wo`
 /// lie on the same side and `τ/π` where they do not.
@@ -13,92 +12,107 @@ use crate::sampling::cosine_hemisphere;
 pub struct BiLambertian {
     front: Side,
     back: Side,
-    transmitted: Spectrum,
+    transmitted: SpectrumId,
 }
 
-/// Shares of the light that arrives on one side.
+/// Fractions of the light that arrives on one side.
 #[derive(Clone, Debug, PartialEq)]
 struct Side {
-    reflected: Spectrum,
+    /// ρ.
+    reflected: SpectrumId,
     /// ρ + τ.
-    scattered: Spectrum,
+    scattered: SpectrumId,
     /// 1 - ρ - τ.
-    absorbed: Spectrum,
+    absorbed: SpectrumId,
 }
 
 impl BiLambertian {
     /// The model of these optics.
     #[must_use]
-    pub fn new(optics: &SurfaceOptics) -> Self {
+    pub fn new(optics: &LambertianOptics, spectra: &mut SpectrumTable) -> Self {
         let tau = optics.transmittance();
-        let side = |rho: &[f32]| {
+        let mut side = |rho: &[f32]| {
             // ρ + τ = 1 may round to an ulp above 1, which would absorb less than nothing.
             let scattered = rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0));
             Side {
-                reflected: Spectrum::new(rho.iter().copied()),
-                absorbed: Spectrum::new(scattered.clone().map(|scattered| 1.0 - scattered)),
-                scattered: Spectrum::new(scattered),
+                reflected: spectra.add(rho.iter().copied()),
+                absorbed: spectra.add(scattered.clone().map(|scattered| 1.0 - scattered)),
+                scattered: spectra.add(scattered),
             }
         };
-        let transmitted = Spectrum::new(tau.iter().copied());
-        Self { front: side(optics.front()), back: side(optics.back()), transmitted }
+        let (front, back) = (side(optics.front()), side(optics.back()));
+        Self { front, back, transmitted: spectra.add(tau.iter().copied()) }
     }
 
-    fn side(&self, normal: DVec3, wo: DVec3) -> &Side {
-        if normal.dot(wo) >= 0.0 { &self.front } else { &self.back }
+    const fn side(&self, is_front: bool) -> &Side {
+        if is_front { &self.front } else { &self.back }
     }
 
-    pub(super) fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&Spectrum> {
-        let same_side = (normal.dot(wo) >= 0.0) == (normal.dot(wi) >= 0.0);
-        let lobe = if same_side { &self.side(normal, wo).reflected } else { &self.transmitted };
-        (!lobe.is_black()).then_some(lobe)
+    /// `π f` as a spectrum.
+    pub(super) fn spectrum(&self, at: &Interaction<'_>, wi: DVec3) -> SpectrumId {
+        if at.is_same_side(wi) { self.reflected(at) } else { self.transmitted }
     }
 
-    pub(super) fn scattered(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
-        &self.side(normal, wo).scattered
+    /// Lobes of reflection and transmission.
+    pub(super) fn lobes(&self, at: &Interaction<'_>) -> [Lobe; 2] {
+        [self.reflected(at).into(), self.transmitted.into()]
     }
 
-    pub(super) fn absorbed(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
-        &self.side(normal, wo).absorbed
+    pub(super) fn f(&self, at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
+        let spectrum = self.spectrum(at, wi);
+        (!at.models.spectra.is_zero(spectrum)).then(|| spectrum.into())
     }
 
-    pub(super) fn reflected(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
-        &self.side(normal, wo).reflected
+    /// ρ + τ.
+    pub(super) fn scattered(&self, at: &Interaction<'_>) -> SpectrumId {
+        self.side(at.is_front()).scattered
     }
 
-    pub(super) fn sample(
+    /// ρ.
+    pub(super) fn reflected(&self, at: &Interaction<'_>) -> SpectrumId {
+        self.side(at.is_front()).reflected
+    }
+
+    pub(super) fn absorbed_fraction(&self, at: &Interaction<'_>) -> Lobe {
+        self.side(at.is_front()).absorbed.into()
+    }
+
+    /// Power of reflection and of transmission.
+    fn powers(&self, at: &Interaction<'_>, importance: Importance<'_>) -> [f64; 2] {
+        [self.reflected(at), self.transmitted].map(|spectrum| {
+            let is_zero = at.models.spectra.is_zero(spectrum);
+            let power = || at.models.power(&spectrum.into(), importance);
+            f64::from(if is_zero { 0.0 } else { power() })
+        })
+    }
+
+    pub(super) fn sample_f(
         &self,
-        normal: DVec3,
-        wo: DVec3,
-        power: impl Fn(&Spectrum) -> f32,
+        at: &Interaction<'_>,
+        importance: Importance<'_>,
         [lobe, u, v]: [f64; 3],
-    ) -> Option<Scattered<'_>> {
-        let reflected = &self.side(normal, wo).reflected;
-        let power = |lobe: &Spectrum| f64::from(if lobe.is_black() { 0.0 } else { power(lobe) });
-        let (back, through) = (power(reflected), power(&self.transmitted));
-        let total = back + through;
+    ) -> Option<BsdfSample> {
+        let [reflected, transmitted] = self.powers(at, importance);
+        let total = reflected + transmitted;
         if total <= 0.0 {
             return None;
         }
-        let reflects = lobe * total < back;
-        let (chosen, probability) =
-            if reflects { (reflected, back / total) } else { (&self.transmitted, through / total) };
-        let outward = if (normal.dot(wo) >= 0.0) == reflects { normal } else { -normal };
-        let (tangent, bitangent) = basis(outward);
-        let local = cosine_hemisphere(u, v);
-        let direction = tangent * local.x + bitangent * local.y + outward * local.z;
-        Some(Scattered { direction, spectrum: chosen, scale: (1.0 / probability) as f32 })
+        let is_reflected = lobe * total < reflected;
+        let (spectrum, probability) = if is_reflected {
+            (self.reflected(at), reflected / total)
+        } else {
+            (self.transmitted, transmitted / total)
+        };
+        let outward = if at.is_front() == is_reflected { at.normal } else { -at.normal };
+        let weight = Lobe::from(spectrum).scaled((1.0 / probability) as f32);
+        Some(BsdfSample { wi: cosine_direction(outward, u, v), weight })
     }
 
-    /// Density of `sample`, sr⁻¹, for tests: `P(lobe) |cos θ| / π`.
-    #[must_use]
-    pub fn pdf(&self, normal: DVec3, wo: DVec3, wi: DVec3, throughput: &[f32]) -> f64 {
-        let power = |lobe: &Spectrum| -> f64 {
-            throughput.iter().zip(lobe.iter()).map(|(w, s)| f64::from(w * s)).sum()
-        };
-        let (back, through) = (power(&self.side(normal, wo).reflected), power(&self.transmitted));
-        let same_side = (normal.dot(wo) >= 0.0) == (normal.dot(wi) >= 0.0);
-        let chosen = if same_side { back } else { through };
-        if chosen == 0.0 { 0.0 } else { chosen / (back + through) * normal.dot(wi).abs() / PI }
+    /// `P(lobe) |cos θ| / π`.
+    pub(super) fn pdf(&self, at: &Interaction<'_>, importance: Importance<'_>, wi: DVec3) -> f64 {
+        let [reflected, transmitted] = self.powers(at, importance);
+        let chosen = if at.is_same_side(wi) { reflected } else { transmitted };
+        let cosine = at.normal.dot(wi).abs();
+        if chosen == 0.0 { 0.0 } else { chosen / (reflected + transmitted) * cosine / PI }
     }
 }

@@ -1,25 +1,25 @@
-//! Sums, maxima and products over lanes, in an order that a processor can take eight at a time.
+//! Sums, maxima and products over lanes, in an order that suits eight-wide registers.
 
 use std::array::from_fn;
 
 use super::LANES;
 
-/// Does work on lanes with the widest registers that the processor has. What it calls is compiled for them
-/// as far as it is inlined. Results are the same, bit for bit.
-pub(crate) fn widely<R>(work: impl FnOnce() -> R) -> R {
+/// Runs work on lanes with the widest SIMD registers of the processor. Functions that it inlines are compiled
+/// for them. Results are the same, bit for bit.
+pub(crate) fn with_simd<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
-/// Does work on so many lanes, [`widely`] if they are more than a group.
+/// Runs work on this number of lanes, [`with_simd`] if they are more than one group.
 #[inline(always)]
-fn as_wide_as<R>(lanes: usize, work: impl Fn() -> R) -> R {
-    if lanes > LANES { widely(work) } else { work() }
+fn with_simd_if_many<R>(lanes: usize, work: impl Fn() -> R) -> R {
+    if lanes > LANES { with_simd(work) } else { work() }
 }
 
 /// `Σ a b` of spectra of whole groups of lanes.
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     debug_assert!(a.len().is_multiple_of(LANES) && a.len() == b.len(), "whole groups of lanes");
-    as_wide_as(
+    with_simd_if_many(
         a.len(),
         #[inline(always)]
         || dot_of(a, b),
@@ -37,21 +37,21 @@ fn dot_of(a: &[f32], b: &[f32]) -> f32 {
     folded(sums, |a, b| a + b)
 }
 
-/// The largest of a spectrum of whole groups of lanes, and 0.
+/// Maximum of 0 and a spectrum of whole groups of lanes.
 pub(crate) fn largest(spectrum: &[f32]) -> f32 {
     debug_assert!(spectrum.len().is_multiple_of(LANES), "whole groups of lanes");
-    as_wide_as(
+    with_simd_if_many(
         spectrum.len(),
         #[inline(always)]
         || largest_of(groups(spectrum).copied()),
     )
 }
 
-/// The largest of the product of spectra of whole groups of lanes, all of one length, and 0.
+/// Maximum of 0 and the product of spectra of whole groups of lanes, all of one length.
 pub(crate) fn largest_product<const N: usize>(spectra: [&[f32]; N]) -> f32 {
     let groups = spectra.map(|spectrum| spectrum.as_chunks::<LANES>().0);
     let count = groups.iter().map(|groups| groups.len()).min().unwrap_or(0);
-    as_wide_as(
+    with_simd_if_many(
         count * LANES,
         #[inline(always)]
         || {
@@ -65,7 +65,7 @@ pub(crate) fn largest_product<const N: usize>(spectra: [&[f32]; N]) -> f32 {
     )
 }
 
-/// `t ← t f c`, as far as `f` goes.
+/// `t ← t f c`, over the lanes of `f`.
 #[inline(always)]
 pub(crate) fn multiply(t: &mut [f32], f: &[f32], c: f32) {
     for (t, f) in groups_mut(t).zip(groups(f)) {
@@ -73,17 +73,17 @@ pub(crate) fn multiply(t: &mut [f32], f: &[f32], c: f32) {
     }
 }
 
-/// `sum ← sum + t f s c`, as far as `f` and `s` go.
+/// `sum ← sum + t f s c`, over the lanes of `f` and `s`.
 #[inline(always)]
-pub(crate) fn add_lit(sum: &mut [f32], t: &[f32], (f, s, c): (&[f32], &[f32], f32)) {
+pub(crate) fn add_lit(sum: &mut [f32], t: &[f32], f: &[f32], s: &[f32], c: f32) {
     for ((sum, t), (f, s)) in groups_mut(sum).zip(groups(t)).zip(groups(f).zip(groups(s))) {
         *sum = from_fn(|lane| sum[lane] + t[lane] * s[lane] * f[lane] * c);
     }
 }
 
-/// `sum ← sum + t s c`, as far as `s` goes.
+/// `sum ← sum + t s c`, over the lanes of `s`.
 #[inline(always)]
-pub(crate) fn add_seen(sum: &mut [f32], t: &[f32], (s, c): (&[f32], f32)) {
+pub(crate) fn add_seen(sum: &mut [f32], t: &[f32], s: &[f32], c: f32) {
     for ((sum, t), s) in groups_mut(sum).zip(groups(t)).zip(groups(s)) {
         *sum = from_fn(|lane| sum[lane] + t[lane] * s[lane] * c);
     }
@@ -99,7 +99,7 @@ fn groups_mut(values: &mut [f32]) -> impl Iterator<Item = &mut [f32; LANES]> {
     values.as_chunks_mut().0.iter_mut()
 }
 
-/// All lanes as one, in pairs: three steps that wait for one another, where one lane after the other makes seven.
+/// Folds the lanes in pairs: a chain of three dependent steps, where one lane after the other makes seven.
 #[inline(always)]
 fn folded([a, b, c, d, e, f, g, h]: [f32; LANES], with: impl Fn(f32, f32) -> f32) -> f32 {
     with(with(with(a, e), with(c, g)), with(with(b, f), with(d, h)))

@@ -1,19 +1,32 @@
-//! How surfaces scatter light: evaluation, sampling and absorption of each surface model, one file
-//! a model.
+//! Surface models: BSDF value, sampling, density, and the fractions of light that are scattered and absorbed,
+//! one file a model.
 //!
-//! `wo` points to where the path came from and `wi` to where it goes on; both are unit and point
-//! away from the surface. Values exclude the cosine. All bands ride on one path, so spectra are
-//! slices over lanes: bands, padded with zeros to whole groups of [`LANES`].
+//! `wo` points to where a path came from and `wi` to where it continues; both are unit vectors that point
+//! away from the surface. BSDF values exclude the cosine. A path carries all bands: values are [`Lobe`]s,
+//! which are evaluated in blocks of lanes: bands, padded with zeros to whole groups of [`LANES`].
 
 mod bilambertian;
+mod directional;
+mod glossy_leaf;
 mod lanes;
+mod lobe;
+mod rpv;
+mod soilspect;
 mod spectrum;
+
+use std::ops::Range;
 
 use glam::DVec3;
 
 pub use bilambertian::BiLambertian;
-pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, widely};
-pub use spectrum::Spectrum;
+pub use directional::{BandModel, Directional, ModelFault};
+pub use glossy_leaf::GlossyLeaf;
+pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, with_simd};
+pub use lobe::{Angles, Lobe, LobeSpectrum, SurfaceId};
+pub(crate) use spectrum::representatives_of;
+pub use spectrum::{SpectrumId, SpectrumTable};
+
+use crate::components::{RpvParameters, SoilspectParameters, SurfaceOptics};
 
 /// Bands are padded to multiples of this, so that loops over them need no remainder.
 pub const LANES: usize = 8;
@@ -23,65 +36,232 @@ pub const LANES: usize = 8;
 pub enum Bsdf {
     /// Diffuse reflection and transmission.
     BiLambertian(BiLambertian),
+    /// A leaf with a specular lobe over a diffuse body.
+    GlossyLeaf(GlossyLeaf),
+    /// Rahman, Pinty and Verstraete's reflection of rough soil and vegetation.
+    Rpv(Directional<RpvParameters>),
+    /// Jacquemoud, Baret and Hanocq's reflection of soil.
+    Soilspect(Directional<SoilspectParameters>),
 }
 
-/// A sampled direction with its weight `f |cos θ| / pdf = spectrum · scale`, per lane.
+/// Surface models of a scene, by the ids that hits carry, and the spectra that they refer to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceModels {
+    /// Spectra of surfaces and of light.
+    pub spectra: SpectrumTable,
+    bsdfs: Vec<Bsdf>,
+}
+
+/// A point of a surface that is seen from the direction `wo`.
 #[derive(Clone, Copy, Debug)]
-pub struct Scattered<'a> {
-    /// Where the path goes on.
-    pub direction: DVec3,
-    /// Spectral part of the weight.
-    pub spectrum: &'a Spectrum,
-    /// Part of the weight that all bands share.
-    pub scale: f32,
+pub struct Interaction<'m> {
+    models: &'m SurfaceModels,
+    surface: SurfaceId,
+    normal: DVec3,
+    wo: DVec3,
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// Direction in which the path continues.
+    pub wi: DVec3,
+    /// Weight of the sample, `f |cos θ| / pdf`.
+    pub weight: Lobe,
+}
+
+/// Bands by whose power a lobe of a surface is chosen.
+#[derive(Clone, Copy, Debug)]
+pub enum Importance<'t> {
+    /// All, by the throughput of a path in the representative bands.
+    Representatives(&'t [f32]),
+    /// One alone.
+    Band(usize),
+}
+
+impl SurfaceModels {
+    /// No surfaces yet, and no spectra but 0 and 1.
+    #[must_use]
+    pub fn new(bands: usize) -> Self {
+        Self { spectra: SpectrumTable::new(bands), bsdfs: Vec::new() }
+    }
+
+    /// Adds a surface; ids count from 0.
+    pub fn add(&mut self, optics: &SurfaceOptics) -> SurfaceId {
+        let spectra = &mut self.spectra;
+        self.bsdfs.push(match optics {
+            SurfaceOptics::BiLambertian(optics) => {
+                Bsdf::BiLambertian(BiLambertian::new(optics, spectra))
+            }
+            SurfaceOptics::GlossyLeaf(optics) => Bsdf::GlossyLeaf(GlossyLeaf::new(optics, spectra)),
+            SurfaceOptics::Rpv(bands) => Bsdf::Rpv(Directional::new(bands, spectra)),
+            SurfaceOptics::Soilspect(bands) => Bsdf::Soilspect(Directional::new(bands, spectra)),
+        });
+        SurfaceId(self.bsdfs.len() as u32 - 1)
+    }
+
+    /// Number of surfaces.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.bsdfs.len()
+    }
+
+    /// Returns whether there is no surface.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.bsdfs.is_empty()
+    }
+
+    fn bsdf(&self, surface: SurfaceId) -> &Bsdf {
+        &self.bsdfs[surface.0 as usize]
+    }
+
+    /// A point of a surface with a unit normal, seen from the direction `wo`.
+    #[must_use]
+    pub const fn at(&self, surface: SurfaceId, normal: DVec3, wo: DVec3) -> Interaction<'_> {
+        Interaction { models: self, surface, normal, wo }
+    }
+
+    /// Power of a lobe in the bands that importance names.
+    fn power(&self, lobe: &Lobe, importance: Importance<'_>) -> f32 {
+        match importance {
+            Importance::Representatives(throughput) => {
+                let mut buffer = [0.0; SpectrumTable::REPRESENTATIVES];
+                dot(throughput, self.representatives(&lobe.spectrum, &mut buffer)) * lobe.scale
+            }
+            Importance::Band(band) => self.value(lobe, band),
+        }
+    }
+}
+
+impl<'m> Interaction<'m> {
+    /// Models and spectra of the scene.
+    pub(crate) const fn models(&self) -> &'m SurfaceModels {
+        self.models
+    }
+
+    fn bsdf(&self) -> &Bsdf {
+        self.models.bsdf(self.surface)
+    }
+
+    /// `π f(wi, wo)`; `None` where it is zero in every band, so that no shadow ray is traced for it.
+    #[must_use]
+    pub fn f(&self, wi: DVec3) -> Option<Lobe> {
+        match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.f(self, wi),
+            Bsdf::GlossyLeaf(model) => model.f(self, wi),
+            Bsdf::Rpv(model) => model.f(self, wi),
+            Bsdf::Soilspect(model) => model.f(self, wi),
+        }
+    }
+
+    /// A direction in which a path continues, from three uniform numbers; `None` where everything is absorbed.
+    /// Lobes are chosen in proportion to the power that each would carry.
+    #[must_use]
+    pub fn sample_f(&self, importance: Importance<'_>, u: [f64; 3]) -> Option<BsdfSample> {
+        match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
+            Bsdf::GlossyLeaf(model) => model.sample_f(self, importance, u),
+            Bsdf::Rpv(model) => model.sample_f(self, u),
+            Bsdf::Soilspect(model) => model.sample_f(self, u),
+        }
+    }
+
+    /// Density of [`Self::sample_f`], sr⁻¹.
+    #[must_use]
+    pub fn pdf(&self, importance: Importance<'_>, wi: DVec3) -> f64 {
+        match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.pdf(self, importance, wi),
+            Bsdf::GlossyLeaf(model) => model.pdf(self, importance, wi),
+            Bsdf::Rpv(model) => model.pdf(self, wi),
+            Bsdf::Soilspect(model) => model.pdf(self, wi),
+        }
+    }
+
+    /// Fraction of the light from `wo` that is scattered, `DHR + DHT`.
+    #[must_use]
+    pub fn scattered_fraction(&self) -> Lobe {
+        match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.scattered(self).into(),
+            Bsdf::GlossyLeaf(model) => model.scattered_fraction(self),
+            Bsdf::Rpv(model) => model.scattered_fraction(self),
+            Bsdf::Soilspect(model) => model.scattered_fraction(self),
+        }
+    }
+
+    /// Fraction of the light from `wo` that is absorbed, `1 - DHR - DHT`.
+    #[must_use]
+    pub fn absorbed_fraction(&self) -> Lobe {
+        match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.absorbed_fraction(self),
+            Bsdf::GlossyLeaf(model) => model.absorbed_fraction(self),
+            Bsdf::Rpv(model) => model.absorbed_fraction(self),
+            Bsdf::Soilspect(model) => model.absorbed_fraction(self),
+        }
+    }
+
+    /// Fraction of the light from `wo` that is scattered back to its side, DHR.
+    #[must_use]
+    pub fn reflected_fraction(&self) -> Lobe {
+        match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.reflected(self).into(),
+            Bsdf::GlossyLeaf(model) => model.reflected_fraction(self),
+            Bsdf::Rpv(model) => model.scattered_fraction(self),
+            Bsdf::Soilspect(model) => model.scattered_fraction(self),
+        }
+    }
+
+    /// Returns whether a direction lies on the side of the surface that `wo` lies on.
+    #[must_use]
+    pub fn is_same_side(&self, w: DVec3) -> bool {
+        self.is_front() == (self.normal.dot(w) >= 0.0)
+    }
+
+    /// Returns whether `wo` lies on the side that the normal points to.
+    fn is_front(&self) -> bool {
+        self.normal.dot(self.wo) >= 0.0
+    }
+
+    /// Cosine of the angle between `wo` and the surface's normal.
+    fn cos_o(&self) -> f64 {
+        self.normal.dot(self.wo).abs()
+    }
 }
 
 impl Bsdf {
-    /// `π f(wi, wo)`; `None` where it is zero in every band, so that nobody traces
-    /// a shadow ray for it.
-    #[must_use]
-    pub fn eval(&self, normal: DVec3, wo: DVec3, wi: DVec3) -> Option<&Spectrum> {
+    /// Writes `π f` of a model that depends on both directions, in a range of lanes.
+    fn evaluate(&self, angles: &Angles, lanes: Range<usize>, values: &mut [f32]) {
         match self {
-            Self::BiLambertian(model) => model.eval(normal, wo, wi),
+            Self::Rpv(model) => model.evaluate(angles, lanes, values),
+            Self::Soilspect(model) => model.evaluate(angles, lanes, values),
+            Self::BiLambertian(_) | Self::GlossyLeaf(_) => unreachable!("{NO_MODEL_LOBE}"),
         }
     }
 
-    /// A direction for a path; `None` where all is absorbed. Lobes are chosen in proportion to the
-    /// `power` that each would carry on.
-    #[must_use]
-    pub fn sample(
-        &self,
-        normal: DVec3,
-        wo: DVec3,
-        power: impl Fn(&Spectrum) -> f32,
-        u: [f64; 3],
-    ) -> Option<Scattered<'_>> {
+    /// Writes `π f` of a model that depends on both directions, in the representative bands.
+    fn evaluate_representatives(&self, angles: &Angles, values: &mut [f32]) {
         match self {
-            Self::BiLambertian(model) => model.sample(normal, wo, power, u),
+            Self::Rpv(model) => model.evaluate_representatives(angles, values),
+            Self::Soilspect(model) => model.evaluate_representatives(angles, values),
+            Self::BiLambertian(_) | Self::GlossyLeaf(_) => unreachable!("{NO_MODEL_LOBE}"),
         }
     }
+}
 
-    /// Share of the light from `wo` that is scattered at all, `DHR + DHT`.
-    #[must_use]
-    pub fn scattered(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
-        match self {
-            Self::BiLambertian(model) => model.scattered(normal, wo),
-        }
-    }
+const NO_MODEL_LOBE: &str = "lobes of these models are spectra of the table";
 
-    /// Share of it that is not scattered, `1 - DHR - DHT`.
-    #[must_use]
-    pub fn absorbed(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
+impl SurfaceOptics {
+    /// Checks that a surface reflects no more light than it receives, and not less than none, from any
+    /// direction.
+    ///
+    /// # Errors
+    /// The first band in which it does.
+    pub fn check(&self) -> Result<(), ModelFault> {
         match self {
-            Self::BiLambertian(model) => model.absorbed(normal, wo),
-        }
-    }
-
-    /// Share of the light from `wo` that is scattered back to its side.
-    #[must_use]
-    pub fn reflected(&self, normal: DVec3, wo: DVec3) -> &Spectrum {
-        match self {
-            Self::BiLambertian(model) => model.reflected(normal, wo),
+            // Their parameters are lawful by construction.
+            Self::BiLambertian(_) | Self::GlossyLeaf(_) => Ok(()),
+            Self::Rpv(bands) => directional::check(bands),
+            Self::Soilspect(bands) => directional::check(bands),
         }
     }
 }

@@ -1,84 +1,128 @@
-use std::ops::Deref;
+//! Spectra of a scene, by id.
 
-use super::padded;
+use super::{LANES, padded};
 
-/// A spectrum over lanes and its outline.
-///
-/// What is decided for all bands at once, such as the choice of a lobe or the end of a path, looks at the
-/// outline alone: at the middle band of each of at most [`Self::OUTLINE`] groups of neighbours. So decisions
-/// are those of real bands, whatever order those come in. Where another band of the group is far brighter, a
-/// part of that stands for it: no band that has power is ever ruled out. Of no more bands than groups, the
-/// outline is the spectrum.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spectrum {
-    lanes: Box<[f32]>,
-    outline: Box<[f32]>,
-    largest: f32,
+/// Identifies a spectrum of a [`SpectrumTable`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SpectrumId(u32);
+
+impl SpectrumId {
+    /// Zero in every band; in every table.
+    pub const ZERO: Self = Self(0);
+    /// One in every band; in every table.
+    pub const ONE: Self = Self(1);
+
+    const fn index(self) -> usize {
+        self.0 as usize
+    }
 }
 
-impl Spectrum {
-    /// The most values of an outline.
-    pub const OUTLINE: usize = 128;
+/// All spectra of a scene, each with its representative bands.
+///
+/// Decisions for all bands at once, such as the choice of a lobe or the end of a path, look at representative
+/// bands alone: the middle band of each of at most [`Self::REPRESENTATIVES`] groups of neighbouring bands. So
+/// decisions are those of real bands, in whatever order bands come. A group's value is at least a 16th of its
+/// largest band: it is zero only if all its bands are. With no more bands than groups, the representative
+/// bands are the spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectrumTable {
+    bands: usize,
+    /// Shape `[spectra, lanes]`.
+    values: Vec<f32>,
+    /// Shape `[spectra, representative lanes]`.
+    representatives: Vec<f32>,
+    /// Shape `[spectra]`.
+    largest: Vec<f32>,
+}
 
-    /// The least that stands for a group, over its largest value.
-    const LEAST: f32 = 1.0 / 16.0;
+impl SpectrumTable {
+    /// Maximum number of representative bands.
+    pub const REPRESENTATIVES: usize = 128;
 
-    /// Of a value in each band, none of them negative.
+    /// Minimum value of a group of bands over the largest of its bands.
+    pub(super) const LEAST: f32 = 1.0 / 16.0;
+
+    /// A table for this number of bands that holds [`SpectrumId::ZERO`] and [`SpectrumId::ONE`].
     #[must_use]
-    pub fn new(bands: impl IntoIterator<Item = f32>) -> Self {
-        let bands: Vec<f32> = bands.into_iter().collect();
-        let largest = bands.iter().copied().fold(0.0, f32::max);
-        let outline = padded(bands.chunks(Self::group(bands.len())).map(|group| {
-            let largest = group.iter().copied().fold(0.0, f32::max);
-            group[group.len() / 2].max(Self::LEAST * largest)
-        }));
-        Self { lanes: padded(bands), outline, largest }
+    pub fn new(bands: usize) -> Self {
+        let (values, representatives, largest) = (Vec::new(), Vec::new(), Vec::new());
+        let mut table = Self { bands, values, representatives, largest };
+        for constant in [0.0, 1.0] {
+            table.add(std::iter::repeat_n(constant, bands));
+        }
+        table
     }
 
-    /// Bands that one value of an outline stands for.
-    const fn group(bands: usize) -> usize {
-        let group = bands.div_ceil(Self::OUTLINE);
-        if group == 0 { 1 } else { group }
+    /// Adds a spectrum of nonnegative values, shape `[bands]`.
+    ///
+    /// # Panics
+    /// If it does not have one value per band.
+    pub fn add(&mut self, values: impl IntoIterator<Item = f32>) -> SpectrumId {
+        let values: Vec<f32> = values.into_iter().collect();
+        assert_eq!(values.len(), self.bands, "a spectrum has one value per band");
+        self.largest.push(values.iter().copied().fold(0.0, f32::max));
+        self.representatives.extend(representatives_of(&values));
+        self.values.extend(padded(values));
+        SpectrumId(self.largest.len() as u32 - 1)
     }
 
-    /// Length of the outlines of so many bands.
+    /// Number of bands.
     #[must_use]
-    pub const fn outline_of(bands: usize) -> usize {
-        bands.div_ceil(Self::group(bands)).next_multiple_of(super::LANES)
+    pub const fn bands(&self) -> usize {
+        self.bands
     }
 
-    /// The value of an outline that stands for a band of so many.
+    /// The spectrum, padded with zeros to whole groups of [`LANES`]; shape `[lanes]`.
     #[must_use]
-    pub const fn place(band: usize, bands: usize) -> usize {
-        band / Self::group(bands)
+    pub fn lanes(&self, id: SpectrumId) -> &[f32] {
+        let width = self.bands.next_multiple_of(LANES);
+        &self.values[id.index() * width..][..width]
     }
 
-    /// What stands for each group of bands, padded with zeros to whole groups of lanes.
+    /// Its representative bands, padded with zeros to whole groups of [`LANES`].
     #[must_use]
-    pub fn outline(&self) -> &[f32] {
-        &self.outline
+    pub fn representatives(&self, id: SpectrumId) -> &[f32] {
+        let width = Self::representatives_len(self.bands);
+        &self.representatives[id.index() * width..][..width]
     }
 
     /// Its largest value.
     #[must_use]
-    pub const fn largest(&self) -> f32 {
-        self.largest
+    pub fn largest(&self, id: SpectrumId) -> f32 {
+        self.largest[id.index()]
     }
 
-    /// Whether it is 0 in every band.
+    /// Returns whether it is 0 in every band.
     #[must_use]
-    pub fn is_black(&self) -> bool {
-        self.largest == 0.0
+    pub fn is_zero(&self, id: SpectrumId) -> bool {
+        self.largest(id) == 0.0
+    }
+
+    /// Length of the representative bands of a spectrum with this number of bands, padding included.
+    #[must_use]
+    pub const fn representatives_len(bands: usize) -> usize {
+        bands.div_ceil(group_size(bands)).next_multiple_of(LANES)
+    }
+
+    /// Index of the representative band that stands for a band.
+    #[must_use]
+    pub const fn representative_of(band: usize, bands: usize) -> usize {
+        band / group_size(bands)
     }
 }
 
-/// Shape `[lanes]`.
-impl Deref for Spectrum {
-    type Target = [f32];
+/// Number of bands that one representative band stands for.
+pub(super) const fn group_size(bands: usize) -> usize {
+    let size = bands.div_ceil(SpectrumTable::REPRESENTATIVES);
+    if size == 0 { 1 } else { size }
+}
 
-    fn deref(&self) -> &[f32] {
-        &self.lanes
-    }
+/// Representative bands of a spectrum, padded with zeros to whole groups of lanes.
+pub(crate) fn representatives_of(values: &[f32]) -> Box<[f32]> {
+    padded(values.chunks(group_size(values.len())).map(|group| {
+        let largest = group.iter().copied().fold(0.0, f32::max);
+        group[group.len() / 2].max(SpectrumTable::LEAST * largest)
+    }))
 }
 
 #[cfg(test)]
@@ -86,17 +130,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_outline_rules_no_band_out_and_is_the_spectrum_if_bands_are_few() {
+    fn representative_bands_rule_no_band_out_and_are_the_spectrum_if_bands_are_few() {
         for bands in [0, 1, 7, 64, 127, 128, 129, 256, 257, 2100] {
+            let mut table = SpectrumTable::new(bands);
             for only in 0..bands.min(70) {
                 let value = |band: usize| if band == only { 0.7 } else { 0.0 };
-                let spectrum = Spectrum::new((0..bands).map(value));
-                let outline = spectrum.outline();
-                assert_eq!(outline.len(), Spectrum::outline_of(bands));
-                assert!(outline.len() <= Spectrum::OUTLINE && spectrum.len() >= bands);
-                assert!(outline[Spectrum::place(only, bands)] >= 0.7 / 16.0, "{bands}: {only}");
-                assert!(bands > Spectrum::OUTLINE || outline == &*spectrum, "{bands}: {only}");
+                let id = table.add((0..bands).map(value));
+                let representatives = table.representatives(id);
+                assert_eq!(representatives.len(), SpectrumTable::representatives_len(bands));
+                assert!(representatives.len() <= SpectrumTable::REPRESENTATIVES);
+                let group = SpectrumTable::representative_of(only, bands);
+                assert!(representatives[group] >= 0.7 / 16.0, "{bands}: {only}");
+                let is_whole = representatives == table.lanes(id);
+                assert!(bands > SpectrumTable::REPRESENTATIVES || is_whole, "{bands}: {only}");
             }
+        }
+    }
+
+    #[test]
+    fn every_table_holds_zero_and_one() {
+        for bands in [0, 1, 9, 300] {
+            let table = SpectrumTable::new(bands);
+            assert!(table.is_zero(SpectrumId::ZERO));
+            assert!(table.lanes(SpectrumId::ONE)[..bands].iter().all(|&value| value == 1.0));
+            assert!(table.lanes(SpectrumId::ONE)[bands..].iter().all(|&value| value == 0.0));
         }
     }
 }

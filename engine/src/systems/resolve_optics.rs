@@ -2,7 +2,7 @@ use hecs::World;
 
 use super::Resources;
 use super::spectra::{Quantity, reads_file, resolve_spectrum};
-use crate::components::{EnergyGain, MaterialId, SurfaceOptics};
+use crate::components::{EnergyGain, LambertianOptics, MaterialId, SurfaceOptics};
 use crate::document::{Diagnostic, Material, Spectrum};
 
 /// Resolves the spectra of used materials to bands, and checks the others as far as that takes no file. Reads
@@ -51,8 +51,8 @@ fn optics(material: &Material, path: &str, resources: &mut Resources) -> Option<
     };
     let through =
         resolve_spectrum(transmittance, Quantity::Transmittance, &at("transmittance"), resources);
-    match SurfaceOptics::new(&front?, &back?, &through?) {
-        Ok(optics) => Some(optics),
+    match LambertianOptics::new(&front?, &back?, &through?) {
+        Ok(optics) => Some(SurfaceOptics::BiLambertian(optics)),
         Err(EnergyGain { band, reflectance, transmittance }) => {
             let band = &resources.bands[band].name;
             // As many digits as tell the sum from 1, without the rounding of the sum itself.

@@ -8,9 +8,9 @@ use crate::extract::Stage;
 /// it, and powers are divided by its area.
 ///
 /// - An isolated scene's own plane is the terrain's rectangle at the mean height of the ground. Light
-///   counts if the *line* of its last flight passes through it, from wherever on that line it comes:
-///   a BRF is then the mean of an orthographic image that shows just this rectangle, and whatever
-///   stands on the ground hides none of it.
+///   counts if the *line* of its last flight passes through it, wherever on that line it comes from:
+///   a BRF is then the mean of an orthographic image that shows just this rectangle, and trees on the ground
+///   hide none of it.
 /// - A periodic scene's own plane is at its highest point. All light that goes up crosses a copy of it.
 /// - A virtual plane is crossed upwards by the last flight. Light from above it does not count.
 ///
@@ -23,12 +23,12 @@ pub struct ReferencePlane {
     pub size: DVec2,
     /// Height, m.
     pub height: f64,
-    /// The power that falls on the scene's rectangle over what falls on this one: what turns shares
-    /// of the first into shares of the second.
+    /// Power that falls on the scene's rectangle over the power that falls on this one: the factor from fractions
+    /// of the first to fractions of the second.
     pub gain: f64,
     /// Extent of the tile, where the scene is periodic.
     tile: Option<DVec2>,
-    /// Whether it is the scene's whole rectangle.
+    /// True if it is the scene's whole rectangle.
     is_whole: bool,
     /// Highest point that lies below it, m: infinite where it lies above everything.
     ceiling: f64,
@@ -37,7 +37,7 @@ pub struct ReferencePlane {
 impl ReferencePlane {
     /// A virtual plane or, without one, the scene's own.
     #[must_use]
-    pub fn of(plane: Option<&VirtualPlane>, stage: &Stage) -> Self {
+    pub fn new(plane: Option<&VirtualPlane>, stage: &Stage) -> Self {
         let scene = Self {
             corner: stage.corner,
             size: stage.size,
@@ -62,19 +62,19 @@ impl ReferencePlane {
         Self { corner, size: plane.size, height, gain, is_whole: false, ceiling, ..scene }
     }
 
-    /// Whether it shows every point of a periodic scene exactly once, from whichever side.
+    /// Returns whether it shows every point of a periodic scene exactly once, from whichever side.
     #[must_use]
     pub const fn covers_tile(&self) -> bool {
         self.is_whole && self.tile.is_some()
     }
 
-    /// Whether something of the scene may lie above it.
+    /// Returns whether something of the scene may lie above it.
     #[must_use]
     pub const fn is_low(&self) -> bool {
         self.ceiling < f64::INFINITY
     }
 
-    /// Whether a flight from `point` without further obstacle leaves through it.
+    /// Returns whether a flight from `point` without further obstacle leaves through it.
     #[must_use]
     pub fn is_left_by(&self, point: DVec3, direction: DVec3) -> bool {
         if direction.z <= 0.0 || point.z > self.ceiling {
@@ -87,7 +87,7 @@ impl ReferencePlane {
         }
     }
 
-    /// Whether a ray against the light crosses it.
+    /// Returns whether a ray against the light crosses it.
     #[must_use]
     pub fn is_crossed_by(&self, ray: &Ray) -> bool {
         let along = (self.height - ray.origin.z) / ray.direction.z;
@@ -101,7 +101,7 @@ impl ReferencePlane {
         self.is_low().then(|| (self.ceiling - ray.origin.z) / ray.direction.z)
     }
 
-    /// Whether a point lies in the column below the plane. That of the scene's own extent holds what
+    /// Returns whether a point lies in the column below the plane. That of the scene's own extent holds what
     /// stands out over its edges too.
     #[must_use]
     pub fn is_above(&self, point: DVec3) -> bool {

@@ -10,7 +10,7 @@ use sunfleck::accel::{Batch, Ray};
 use sunfleck::extract::Stage;
 use sunfleck::run;
 use sunfleck::sampling::Key;
-use sunfleck::transport::{Projection, Traced, path_rays};
+use sunfleck::transport::{OrthographicCamera, TracedRay, path_rays};
 
 use crate::arguments::Rays;
 
@@ -34,8 +34,9 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
     };
     let ready = run::stage_file(&arguments.scene.file, &options)?;
     let stage = &ready.stage;
-    let rays = path_rays(stage, &Projection::of_middle(stage), arguments.paths, Key::new(1));
-    let (any, closest): (Vec<Traced>, Vec<Traced>) = rays.iter().partition(|ray| ray.any);
+    let rays =
+        path_rays(stage, &OrthographicCamera::from_middle(stage), arguments.paths, Key::new(1));
+    let (any, closest): (Vec<TracedRay>, Vec<TracedRay>) = rays.iter().partition(|ray| ray.any);
     let memory = stage.geometry.memory();
     let mut text = String::new();
     writeln!(text, "load         {:9.3} s", ready.load_seconds)?;
@@ -55,8 +56,8 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
     if let Some(peak) = peak_memory() {
         writeln!(text, "peak memory  {:9.1} MiB", peak / f64::from(1 << 20))?;
     }
-    let one = |stage: &Stage, rays: &[Traced]| {
-        for Traced { ray, any } in rays {
+    let one = |stage: &Stage, rays: &[TracedRay]| {
+        for TracedRay { ray, any } in rays {
             if *any {
                 black_box(stage.geometry.occluded(ray));
             } else {
@@ -64,7 +65,7 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
             }
         }
     };
-    let measured: [(&str, &[Traced], &Work); 4] = [
+    let measured: [(&str, &[TracedRay], &Work); 4] = [
         ("closest hit", &closest, &one),
         ("any hit", &any, &one),
         ("one by one", &rays, &one),
@@ -88,7 +89,7 @@ pub(crate) fn rays(arguments: &Rays) -> anyhow::Result<String> {
 }
 
 /// Traces rays as paths do: many at a time, those to the sun and those onwards.
-fn as_paths(stage: &Stage, rays: &[Traced]) {
+fn as_paths(stage: &Stage, rays: &[TracedRay]) {
     for together in rays.chunks(TOGETHER) {
         let of_kind = |any: bool| -> Vec<Ray> {
             together.iter().filter(|one| one.any == any).map(|one| one.ray).collect()
@@ -106,11 +107,11 @@ fn as_paths(stage: &Stage, rays: &[Traced]) {
 }
 
 /// A way to trace rays.
-type Work = dyn Fn(&Stage, &[Traced]) + Sync;
+type Work = dyn Fn(&Stage, &[TracedRay]) + Sync;
 
 /// Million rays a second.
-fn rate(stage: &Stage, rays: &[Traced], threads: usize, work: &Work) -> f64 {
-    let shares: Vec<&[Traced]> = rays.chunks(SHARE).collect();
+fn rate(stage: &Stage, rays: &[TracedRay], threads: usize, work: &Work) -> f64 {
+    let shares: Vec<&[TracedRay]> = rays.chunks(SHARE).collect();
     let next = AtomicUsize::new(0);
     let start = Instant::now();
     thread::scope(|scope| {

@@ -37,6 +37,21 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
             report.error(&format!("{path}.measure[{index}]"), message, help);
         }
     }
+    if let Some(measures) = sensor.image_measures()
+        && system == System::Reference
+    {
+        let first_hit = [ImageMeasure::FourComponents, ImageMeasure::GapFraction];
+        let other = measures
+            .iter()
+            .position(|one| !one.is_measured_by(system, scene) && !first_hit.contains(one));
+        if let Some(index) = other {
+            let measure = &measures[index];
+            let message = format!("`Reference` does not measure `{measure:?}` in this scene");
+            let help =
+                "measure `Brf`, or `Radiance` without emission, or take `system: Reference` out";
+            report.error(&format!("{path}.measure[{index}]"), message, help);
+        }
+    }
     if sensor.systems().contains(&system) {
         return;
     }

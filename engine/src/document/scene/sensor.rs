@@ -157,10 +157,10 @@ impl Sensor {
     pub const fn systems(&self) -> &'static [System] {
         match self {
             Self::Orthographic { .. } | Self::Directions { .. } => {
-                &[System::Backward, System::Forward, System::FirstOrder]
+                &[System::Backward, System::Forward, System::FirstOrder, System::Reference]
             }
             Self::Perspective { .. } | Self::Fisheye { .. } => {
-                &[System::Backward, System::FirstOrder]
+                &[System::Backward, System::FirstOrder, System::Reference]
             }
             Self::Photons { .. } => &[System::Forward, System::Analog],
         }
@@ -309,18 +309,20 @@ choice! {
 }
 
 impl ImageMeasure {
-    /// Whether a transport system estimates it in a scene. What is seen first is found backwards alone;
-    /// what is emitted was not scattered once, and all light was only where no more counts.
+    /// Returns whether a transport system estimates it in a scene. `FirstOrder` and `Reference` measure reflected
+    /// light, `FirstOrder` that of all orders only where no more than one counts; the surface that is seen first is
+    /// measured backwards.
     #[must_use]
     pub fn is_measured_by(&self, system: System, scene: &Scene) -> bool {
-        let all = system != System::FirstOrder || scene.transport.most_orders() == 1;
+        let has_all_orders = system != System::FirstOrder || scene.transport.most_orders() == 1;
+        let has_emission = !matches!(system, System::FirstOrder | System::Reference);
         match self {
-            Self::Orders => true,
-            Self::Brf => all,
+            Self::Orders => system != System::Reference,
+            Self::Brf => has_all_orders,
             Self::Radiance => {
-                all && (system != System::FirstOrder || !scene.bands.iter().any(Band::emits))
+                has_all_orders && (has_emission || !scene.bands.iter().any(Band::emits))
             }
-            Self::BrightnessTemperature => system != System::FirstOrder,
+            Self::BrightnessTemperature => has_emission,
             Self::FourComponents | Self::GapFraction => system == System::Backward,
         }
     }
@@ -472,16 +474,20 @@ choice! {
         /// random walk. For images and directions: of `Orders` the parts `_uc` and `_co_sgl`, and, where
         /// `first_order_only` is, `Brf` and `Radiance`.
         FirstOrder,
+        /// Paths from the sensor as one plain loop, for comparison: slow. For images and directions: `Brf` and
+        /// `Radiance` of what is reflected.
+        Reference,
     }
 }
 
 impl Copy for System {}
 
 impl System {
-    /// All there are.
-    pub const ALL: [Self; 4] = [Self::Backward, Self::Forward, Self::Analog, Self::FirstOrder];
+    /// All transport systems.
+    pub const ALL: [Self; 5] =
+        [Self::Backward, Self::Forward, Self::Analog, Self::FirstOrder, Self::Reference];
 
-    /// What a person calls it.
+    /// Name on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -489,6 +495,7 @@ impl System {
             Self::Forward => "forward",
             Self::Analog => "analog",
             Self::FirstOrder => "first_order",
+            Self::Reference => "reference",
         }
     }
 }

@@ -215,5 +215,6 @@ pub(super) fn system_of(system: document::System) -> System {
         document::System::Forward => System::Forward,
         document::System::Analog => System::Analog,
         document::System::FirstOrder => System::FirstOrder,
+        document::System::Reference => System::Reference,
     }
 }

@@ -1,18 +1,18 @@
 use glam::{DVec2, UVec2};
 
-use super::stand::Pose;
+use super::pose::CameraPose;
 use crate::accel::Ray;
 use crate::components::{self, Mapping};
 use crate::extract::Stage;
 
 /// A fisheye camera: a disc in the middle of the image, as wide as the image's shorter side.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fisheye {
+pub struct FisheyeCamera {
     /// Columns and rows.
     pub size: UVec2,
-    /// Whether it sees the sky.
+    /// True if it sees the sky.
     pub sees_sky: bool,
-    pose: Pose,
+    pose: CameraPose,
     mapping: Mapping,
     /// Half the angle of view, rad.
     edge: f64,
@@ -20,7 +20,7 @@ pub struct Fisheye {
     scale: DVec2,
 }
 
-impl Fisheye {
+impl FisheyeCamera {
     /// The camera in a scene.
     #[must_use]
     pub fn new(camera: &components::Fisheye, size: UVec2, stage: &Stage) -> Self {
@@ -28,7 +28,7 @@ impl Fisheye {
         Self {
             size,
             sees_sky: camera.sees_sky,
-            pose: Pose::of(&camera.stand, stage),
+            pose: CameraPose::new(&camera.stand, stage),
             mapping: camera.mapping,
             edge: 0.5 * camera.field,
             scale: 2.0 * pixels / pixels.min_element(),
@@ -52,7 +52,7 @@ impl Fisheye {
             return None;
         }
         let (sin, cos) = off_axis(self.mapping, distance, self.edge).sin_cos();
-        let Pose { eye, right, down, ahead } = self.pose;
+        let CameraPose { eye, right, down, ahead } = self.pose;
         // In the very middle every way outwards is as good as another.
         let outwards = if distance > 0.0 { on_disc / distance } else { DVec2::X };
         let through = ahead * cos + (right * outwards.x + down * outwards.y) * sin;

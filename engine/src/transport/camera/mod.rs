@@ -3,7 +3,7 @@
 mod fisheye;
 mod orthographic;
 mod perspective;
-mod stand;
+mod pose;
 
 use glam::{DVec2, UVec2};
 
@@ -11,32 +11,34 @@ use crate::accel::Ray;
 use crate::components::{ImageSamples, ImageSensor, Optics};
 use crate::extract::Stage;
 
-pub use fisheye::Fisheye;
-pub use orthographic::{Projection, footprint, wanted_footprint};
-pub use perspective::Perspective;
+pub use fisheye::FisheyeCamera;
+pub use orthographic::{OrthographicCamera, footprint, wanted_footprint};
+pub use perspective::PerspectiveCamera;
 
-/// What turns points of an image into rays.
+/// Map from points of an image to rays.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Camera {
     /// Parallel rays.
-    Orthographic(Projection),
+    Orthographic(OrthographicCamera),
     /// Rays through one point, straight lines stay straight.
-    Perspective(Perspective),
+    Perspective(PerspectiveCamera),
     /// Rays through one point, a whole hemisphere or more.
-    Fisheye(Fisheye),
+    Fisheye(FisheyeCamera),
 }
 
 impl Camera {
     /// The camera of an image sensor.
     #[must_use]
-    pub fn of(sensor: &ImageSensor, stage: &Stage) -> Self {
+    pub fn new(sensor: &ImageSensor, stage: &Stage) -> Self {
         let size = sensor.size;
         match &sensor.optics {
             Optics::Orthographic(optics) => {
-                Self::Orthographic(Projection::of_image(optics, size, stage))
+                Self::Orthographic(OrthographicCamera::from_sensor(optics, size, stage))
             }
-            Optics::Perspective(optics) => Self::Perspective(Perspective::new(optics, size, stage)),
-            Optics::Fisheye(optics) => Self::Fisheye(Fisheye::new(optics, size, stage)),
+            Optics::Perspective(optics) => {
+                Self::Perspective(PerspectiveCamera::new(optics, size, stage))
+            }
+            Optics::Fisheye(optics) => Self::Fisheye(FisheyeCamera::new(optics, size, stage)),
         }
     }
 
@@ -61,7 +63,7 @@ impl Camera {
         }
     }
 
-    /// Whether light that arrives against this ray counts; adds to the number of rays that this took.
+    /// Returns whether light that arrives against this ray counts; adds the number of rays that it traced.
     pub fn admits(&self, ray: &Ray, stage: &Stage, rays: &mut u64) -> bool {
         match self {
             Self::Orthographic(camera) => camera.admits(ray, stage, rays),
@@ -69,7 +71,7 @@ impl Camera {
         }
     }
 
-    /// Whether a ray that leaves the scene upwards sees the sky; otherwise it has no data.
+    /// Returns whether a ray that leaves the scene upwards sees the sky; otherwise it has no data.
     #[must_use]
     pub const fn sees_sky(&self) -> bool {
         match self {
@@ -79,7 +81,7 @@ impl Camera {
         }
     }
 
-    /// Paths a pixel; of images through one point, a square metre is taken for a pixel.
+    /// Paths per pixel; for images through one point, per m² counts as per pixel.
     #[must_use]
     pub fn samples(&self, samples: ImageSamples) -> f64 {
         match (samples, self) {

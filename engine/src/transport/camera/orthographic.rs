@@ -6,9 +6,9 @@ use crate::extract::Stage;
 use crate::geometry::PixelGrid;
 use crate::transport::ReferencePlane;
 
-/// A parallel projection: a parallelogram in space through which light in one direction is seen.
+/// A parallel projection: a parallelogram in space, and the light that passes it in one direction.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Projection {
+pub struct OrthographicCamera {
     /// Unit vector towards the sensor.
     pub towards: DVec3,
     /// Columns and rows.
@@ -18,32 +18,32 @@ pub struct Projection {
     down: DVec3,
     /// Coordinates (along right, along down, along towards) of a displacement from the corner.
     film_from_world: DMat3,
-    /// Whether it shows every point of a periodic scene exactly once.
+    /// True if it shows every point of a periodic scene exactly once.
     covers_tile: bool,
-    /// What light must leave through to be seen, beyond crossing the parallelogram.
+    /// Plane through which light must leave to be seen, beyond crossing the parallelogram.
     plane: Option<ReferencePlane>,
 }
 
-impl Projection {
+impl OrthographicCamera {
     /// The image of an orthographic sensor: its middle looks at the ground point `center`.
     ///
     /// Up in the image is away from the sensor's side, so that a nadir view with the default azimuth
     /// of 180° has north up and oblique views show what stands upright as upright.
     #[must_use]
-    pub fn of_image(sensor: &Orthographic, size: UVec2, stage: &Stage) -> Self {
+    pub fn from_sensor(sensor: &Orthographic, size: UVec2, stage: &Stage) -> Self {
         let towards = sensor.view.direction();
         let (right, down) = axes(sensor.view);
         let (middle, extent) = footprint(sensor, stage);
         let right = right * extent.x;
         let down = down * extent.y;
         let corner = beyond(middle, towards, stage) - 0.5 * (right + down);
-        let plane = sensor.plane.as_ref().map(|plane| ReferencePlane::of(Some(plane), stage));
+        let plane = sensor.plane.as_ref().map(|plane| ReferencePlane::new(Some(plane), stage));
         Self { plane, ..Self::new(towards, corner, right, down, size, false) }
     }
 
     /// The middle half of the scene's rectangle, each way, seen straight down.
     #[must_use]
-    pub fn of_middle(stage: &Stage) -> Self {
+    pub fn from_middle(stage: &Stage) -> Self {
         let corner = stage.corner + stage.size * DVec2::new(0.25, 0.75);
         let corner = beyond(corner.extend(stage.top()), DVec3::Z, stage);
         let (right, down) = (DVec3::X * stage.size.x * 0.5, -DVec3::Y * stage.size.y * 0.5);
@@ -52,7 +52,7 @@ impl Projection {
 
     /// A reference plane seen in one direction.
     #[must_use]
-    pub fn of_plane(view: View, plane: &ReferencePlane, stage: &Stage) -> Self {
+    pub fn from_plane(view: View, plane: &ReferencePlane, stage: &Stage) -> Self {
         let north_west = DVec3::new(plane.corner.x, plane.corner.y + plane.size.y, plane.height);
         let right = DVec3::X * plane.size.x;
         let down = -DVec3::Y * plane.size.y;
@@ -87,8 +87,8 @@ impl Projection {
         Ray { origin: self.point(at), direction: -self.towards, from: None }
     }
 
-    /// Whether light that arrives against this ray can have left through the plane; adds to the
-    /// number of rays that this took.
+    /// Returns whether light that arrives against this ray can have left through the plane; adds the number of
+    /// rays that it traced.
     pub fn admits(&self, ray: &Ray, stage: &Stage, rays: &mut u64) -> bool {
         let Some(plane) = &self.plane else { return true };
         plane.is_crossed_by(ray)
@@ -120,11 +120,11 @@ impl Projection {
     /// `L / E` of a pixel, sr⁻¹, over what a virtual photon count gives for it: `I = c E A` leaves
     /// the scene's rectangle `A` towards the sensor, and `L` is `I` over the pixel's area.
     #[must_use]
-    pub fn radiance_of_count(&self, stage: &Stage) -> f64 {
+    pub fn radiance_per_count(&self, stage: &Stage) -> f64 {
         stage.area() / self.pixel_area()
     }
 
-    /// Whether any pixel shows `point` or, where the scene is periodic, one of its copies.
+    /// Returns whether any pixel shows `point` or, where the scene is periodic, one of its copies.
     #[must_use]
     pub fn shows(&self, point: DVec3, stage: &Stage) -> bool {
         let mut is_shown = false;

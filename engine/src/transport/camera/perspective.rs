@@ -1,23 +1,23 @@
 use glam::{DVec2, UVec2};
 
-use super::stand::Pose;
+use super::pose::CameraPose;
 use crate::accel::Ray;
 use crate::components;
 use crate::extract::Stage;
 
 /// A perspective camera: equal steps on the film are equal steps of the tangent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Perspective {
+pub struct PerspectiveCamera {
     /// Columns and rows.
     pub size: UVec2,
-    /// Whether it sees the sky.
+    /// True if it sees the sky.
     pub sees_sky: bool,
-    pose: Pose,
+    pose: CameraPose,
     /// Tangents of half the fields of view.
     reach: DVec2,
 }
 
-impl Perspective {
+impl PerspectiveCamera {
     /// The camera in a scene.
     #[must_use]
     pub fn new(camera: &components::Perspective, size: UVec2, stage: &Stage) -> Self {
@@ -25,7 +25,7 @@ impl Perspective {
         Self {
             size,
             sees_sky: camera.sees_sky,
-            pose: Pose::of(&camera.stand, stage),
+            pose: CameraPose::new(&camera.stand, stage),
             reach: DVec2::new(half.x.tan(), half.y.tan()),
         }
     }
@@ -33,7 +33,7 @@ impl Perspective {
     /// The ray through film coordinates, from `(0, 0)` top left to `(1, 1)` bottom right.
     #[must_use]
     pub fn ray(&self, at: DVec2) -> Ray {
-        let Pose { eye, right, down, ahead } = self.pose;
+        let CameraPose { eye, right, down, ahead } = self.pose;
         let tangent = (2.0 * at - 1.0) * self.reach;
         let through = ahead + right * tangent.x + down * tangent.y;
         Ray { origin: eye, direction: through / through.length(), from: None }

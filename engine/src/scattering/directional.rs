@@ -1,0 +1,196 @@
+//! Opaque models whose reflection depends on both directions and differs by band.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::spectrum::group_size;
+use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SpectrumId, SpectrumTable};
+use crate::geometry::basis;
+use crate::sampling::cosine_hemisphere;
+
+/// Reflection in one band, alike on both sides of a surface, `f(wi, wo) = f(wo, wi)`.
+pub trait BandModel: Copy + Sync {
+    /// `π f`, at least 0.
+    fn f(&self, angles: &Angles) -> f32;
+}
+
+/// A model with its parameters in each band. Directions are sampled by the cosine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directional<B> {
+    bands: Vec<B>,
+    fractions: FractionTable,
+}
+
+impl<B: BandModel> Directional<B> {
+    /// The model with these parameters, shape `[bands]`. Adds its fractions to the table.
+    #[must_use]
+    pub fn new(bands: &[B], spectra: &mut SpectrumTable) -> Self {
+        Self { bands: bands.to_vec(), fractions: FractionTable::new(bands, spectra) }
+    }
+
+    pub(super) fn f(&self, at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
+        let angles = Angles::new(at.normal, at.wo, wi);
+        let spectrum = LobeSpectrum::Model(at.surface, angles);
+        at.is_same_side(wi).then_some(Lobe { spectrum, scale: 1.0 })
+    }
+
+    pub(super) fn sample_f(&self, at: &Interaction<'_>, u: [f64; 3]) -> Option<BsdfSample> {
+        let [_, u, v] = u;
+        let wi = cosine_direction(if at.is_front() { at.normal } else { -at.normal }, u, v);
+        // f |cos θ| / pdf = π f.
+        self.f(at, wi).map(|weight| BsdfSample { wi, weight })
+    }
+
+    pub(super) fn pdf(&self, at: &Interaction<'_>, wi: DVec3) -> f64 {
+        if at.is_same_side(wi) { at.normal.dot(wi).abs() / PI } else { 0.0 }
+    }
+
+    pub(super) fn scattered_fraction(&self, at: &Interaction<'_>) -> Lobe {
+        FractionTable::at(&self.fractions.scattered, at.cos_o())
+    }
+
+    pub(super) fn absorbed_fraction(&self, at: &Interaction<'_>) -> Lobe {
+        FractionTable::at(&self.fractions.absorbed, at.cos_o())
+    }
+
+    /// Writes `π f` in a range of lanes.
+    pub(super) fn evaluate(&self, angles: &Angles, lanes: Range<usize>, values: &mut [f32]) {
+        for (lane, value) in lanes.zip(values) {
+            *value = self.bands.get(lane).map_or(0.0, |band| band.f(angles));
+        }
+    }
+
+    /// Writes `π f` in the representative bands: the middle band of each group, or a part of the brightest of
+    /// its first, middle and last band, so that a group is zero only if these are.
+    pub(super) fn evaluate_representatives(&self, angles: &Angles, values: &mut [f32]) {
+        values.fill(0.0);
+        for (value, group) in values.iter_mut().zip(self.bands.chunks(group_size(self.bands.len())))
+        {
+            let [first, middle, last] =
+                [0, group.len() / 2, group.len() - 1].map(|band| group[band].f(angles));
+            *value = middle.max(SpectrumTable::LEAST * first.max(last));
+        }
+    }
+}
+
+/// Direction about a normal with the density `cos θ / π`, from two uniform numbers.
+pub(super) fn cosine_direction(normal: DVec3, u: f64, v: f64) -> DVec3 {
+    let (tangent, bitangent) = basis(normal);
+    let local = cosine_hemisphere(u, v);
+    tangent * local.x + bitangent * local.y + normal * local.z
+}
+
+/// Scattered and absorbed fraction of light by the cosine of its zenith angle. Nodes are even in the square
+/// root of the cosine, denser towards grazing directions; values between nodes are interpolated.
+#[derive(Clone, Debug, PartialEq)]
+struct FractionTable {
+    scattered: Vec<SpectrumId>,
+    absorbed: Vec<SpectrumId>,
+}
+
+/// Intervals between nodes: the error of interpolation is below 1e-4.
+const INTERVALS: usize = 64;
+
+impl FractionTable {
+    fn new(bands: &[impl BandModel], spectra: &mut SpectrumTable) -> Self {
+        // Above 1 by the error of the quadrature at most: `check` refuses models that gain energy.
+        let nodes: Vec<Vec<f32>> = (0..=INTERVALS)
+            .into_par_iter()
+            .map(|node| {
+                let cosine = node_cosine(node);
+                bands.iter().map(|band| (dhr(band, cosine) as f32).clamp(0.0, 1.0)).collect()
+            })
+            .collect();
+        Self {
+            absorbed: nodes.iter().map(|dhr| spectra.add(dhr.iter().map(|r| 1.0 - r))).collect(),
+            scattered: nodes.into_iter().map(|dhr| spectra.add(dhr)).collect(),
+        }
+    }
+
+    /// Interpolates between the two nodes about a cosine.
+    fn at(nodes: &[SpectrumId], cosine: f64) -> Lobe {
+        let place = cosine.clamp(0.0, 1.0).sqrt() * INTERVALS as f64;
+        let node = (place as usize).min(INTERVALS - 1);
+        let upper = (place - node as f64) as f32;
+        let spectrum = LobeSpectrum::Sum([(nodes[node], 1.0 - upper), (nodes[node + 1], upper)]);
+        Lobe { spectrum, scale: 1.0 }
+    }
+}
+
+fn node_cosine(node: usize) -> f64 {
+    (node as f64 / INTERVALS as f64).powi(2)
+}
+
+/// A band in which a model has no physical meaning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelFault {
+    /// Band, from 0.
+    pub band: usize,
+    /// Zenith angle of the light, rad.
+    pub zenith: f64,
+    /// Directional-hemispherical reflectance there.
+    pub dhr: f64,
+}
+
+/// Checks that no band of a model reflects more light than it receives, or less than none, from any direction.
+///
+/// # Errors
+/// The first band that does.
+pub(super) fn check(bands: &[impl BandModel]) -> Result<(), ModelFault> {
+    let fault = |band: usize| {
+        let worst = (0..=INTERVALS / 4).find_map(|node| {
+            let cosine = node_cosine(4 * node);
+            let dhr = dhr(&bands[band], cosine);
+            (!(0.0..=1.0).contains(&dhr)).then_some(ModelFault { band, zenith: cosine.acos(), dhr })
+        });
+        worst.map_or(Ok(()), Err)
+    };
+    (0..bands.len()).into_par_iter().map(fault).find_first(Result::is_err).unwrap_or(Ok(()))
+}
+
+/// Nodes and weights of the Gauss-Legendre rule with eight points on [0, 1].
+const GAUSS: [(f64, f64); 8] = [
+    (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
+    (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
+    (0.237_233_795_041_835_5, 0.156_853_322_938_943_6),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181_0),
+    (0.591_717_321_247_824_9, 0.181_341_891_689_181_0),
+    (0.762_766_204_958_164_5, 0.156_853_322_938_943_6),
+    (0.898_333_238_706_813_4, 0.111_190_517_226_687_2),
+    (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),
+];
+
+/// Directional-hemispherical reflectance `∫ f cos θi dωi` for light from a zenith angle.
+///
+/// Panels of a Gauss-Legendre rule over `cos² θi` meet at the angle of the light, where models have their hot
+/// spot, and where RPV's cosines are limited; azimuths are denser towards the hot spot.
+fn dhr(band: &impl BandModel, cosine: f64) -> f64 {
+    let cosine = cosine.max(1e-6);
+    let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+    let mut borders = [0.0, super::rpv::LEAST_COSINE.powi(2), cosine * cosine, 1.0];
+    borders.sort_by(f64::total_cmp);
+    let mut sum = 0.0;
+    for panel in borders.windows(2) {
+        let width = panel[1] - panel[0];
+        for (x, weight) in GAUSS {
+            // Denser towards both ends of the panel.
+            let (place, slope) = (x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x));
+            let cos_i = (panel[0] + width * place).sqrt();
+            let sin_i = (1.0 - cos_i * cos_i).max(0.0).sqrt();
+            for half in [0.0, 0.5] {
+                for (y, weight_of_azimuth) in GAUSS {
+                    let y = half + 0.5 * y;
+                    let (sin, cos) = (PI * y * y).sin_cos();
+                    let wi = DVec3::new(sin_i * cos, sin_i * sin, cos_i);
+                    let f = f64::from(band.f(&Angles::new(DVec3::Z, wo, wi)));
+                    sum += f * width * weight * slope * weight_of_azimuth * y;
+                }
+            }
+        }
+    }
+    // dω cos θ / π = d(cos² θ) dφ / 2π; both halves of the azimuth, and 0.5 · 2 y for its density.
+    sum
+}

@@ -1,0 +1,202 @@
+use std::sync::OnceLock;
+
+use glam::DVec2;
+
+use super::coverage::Coverage;
+use super::directions::in_parts;
+use super::{ImageTiles, LightSettings, ReplicateSums};
+use crate::components::System;
+use crate::extract::Stage;
+use crate::film::{Replicates, Spread};
+use crate::sampling::{Key, Sampler};
+use crate::transport::paths::{BackwardPath, FirstOrderPath, PathBatch, ThermalPath, TracedRay};
+use crate::transport::photons::{PacketOptions, PhotonKind, ViewCounter, photon_film, spectra};
+use crate::transport::reference::ReferencePath;
+use crate::transport::{
+    Camera, LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold,
+};
+
+/// Outcome of an image measurement.
+#[derive(Clone, Debug)]
+pub struct ImageOutcome {
+    /// Radiance of each pixel in the unit of its [`LightSource`], shape `[rows, columns, spectra, bands]` (the whole
+    /// and, on request, its parts): the mean over the samples that met the scene; NaN where none did.
+    pub pixels: Vec<f32>,
+    /// Its standard error, from its own samples and, where those are few, from those of the tile of 16 × 16
+    /// pixels around it; NaN with one sample per pixel.
+    pub errors: Vec<f32>,
+    /// Fraction of each pixel's samples that met the scene, shape `[rows, columns]`.
+    pub coverage: Vec<f32>,
+    /// Mean radiance over all samples that met the scene, shape `[spectra, bands]`.
+    pub mean: Vec<f64>,
+    /// Its standard error.
+    pub mean_error: Vec<f64>,
+    /// Columns that are summed over the whole image only, shape `[image columns]`.
+    pub image_sums: Replicates,
+}
+
+/// An image of photon packets.
+#[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
+pub struct PacketImage<'a> {
+    /// The packets.
+    pub sums: ReplicateSums<'a>,
+    stage: &'a Stage,
+    camera: OrthographicCamera,
+    key: Key,
+    /// Traced with the first outcome, not when a run is planned.
+    coverage: OnceLock<Coverage>,
+}
+
+impl<'a> PacketImage<'a> {
+    fn new(stage: &'a Stage, camera: &OrthographicCamera, light: LightSettings, key: Key) -> Self {
+        let LightSettings { source, separates_orders, .. } = light;
+        let counter = ViewCounter::new(vec![camera.clone()]).with_roulette(source, key);
+        let plane = ReferencePlane::new(None, stage);
+        let kind = PhotonKind::Packet(RouletteThreshold::High);
+        let options = PacketOptions { source, kind, plane };
+        let sums = photon_film(stage, options, in_parts(counter, separates_orders), key);
+        let (camera, coverage) = (camera.clone(), OnceLock::new());
+        Self { sums, stage, camera, key: key.path("coverage"), coverage }
+    }
+
+    fn outcome(&self) -> ImageOutcome {
+        let trace = || Coverage::from_rays(&self.camera, self.stage, self.key);
+        let coverage = self.coverage.get_or_init(trace);
+        outcome_of_packets(&self.sums, self.stage, &self.camera, coverage)
+    }
+}
+
+/// An image of the light of a [`LightSource`].
+#[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
+pub enum ImageFilm<'a> {
+    /// Paths from the sensor.
+    Paths(ImageTiles<'a>),
+    /// Photon packets, and rays that find which parts of the pixels show the scene.
+    Packets(Box<PacketImage<'a>>),
+}
+
+impl<'a> ImageFilm<'a> {
+    /// No samples yet. Photon packets support parallel projections only.
+    #[must_use]
+    pub fn new(stage: &'a Stage, camera: &Camera, light: LightSettings, key: Key) -> Self {
+        let LightSettings { system, source, separates_orders } = light;
+        let bands = stage.bands;
+        let image = camera.clone();
+        let tiles = match (system, camera, source) {
+            (System::Forward, Camera::Orthographic(camera), _) => {
+                return Self::Packets(Box::new(PacketImage::new(stage, camera, light, key)));
+            }
+            (System::FirstOrder, _, _) => {
+                let columns = bands * FirstOrderPath::spectra(separates_orders);
+                let path = move || FirstOrderPath::new(separates_orders);
+                ImageTiles::new(stage, image, key, columns, path)
+            }
+            (System::Reference, _, _) => {
+                ImageTiles::new(stage, image, key, bands, ReferencePath::new)
+            }
+            (System::Backward | System::Forward | System::Analog, _, LightSource::Reflected) => {
+                let columns = bands * spectra(separates_orders);
+                let path = move || BackwardPath::new(bands, separates_orders);
+                ImageTiles::new(stage, image, key, columns, path)
+            }
+            (System::Backward | System::Forward | System::Analog, _, LightSource::Emitted) => {
+                ImageTiles::new(stage, image, key, bands, move || ThermalPath::new(bands))
+            }
+        };
+        Self::Paths(tiles)
+    }
+
+    /// The outcome of the samples so far.
+    #[must_use]
+    pub fn outcome(&self) -> ImageOutcome {
+        match self {
+            Self::Paths(tiles) => tiles.outcome(),
+            Self::Packets(packets) => packets.outcome(),
+        }
+    }
+}
+
+fn outcome_of_packets(
+    sums: &ReplicateSums<'_>,
+    stage: &Stage,
+    camera: &OrthographicCamera,
+    coverage: &Coverage,
+) -> ImageOutcome {
+    let (pixels, bands) = (camera.pixels(), stage.bands);
+    let per_count = camera.radiance_per_count(stage);
+    // The first sums are those of the energy.
+    let spreads: Vec<Spread> = (1..sums.count()).map(|spectrum| sums.spread(spectrum)).collect();
+    let errors: Vec<Vec<f64>> = spreads.iter().map(Spread::standard_error).collect();
+    let spectra: Vec<(&[f64], &[f64])> =
+        spreads.iter().zip(&errors).map(|(spread, error)| (spread.mean(), &**error)).collect();
+    let columns = spectra.len() * bands;
+    let space = || Vec::with_capacity(pixels * columns);
+    let (mut values, mut value_errors) = (space(), space());
+    // Pixel by pixel the whole and its parts; totals follow the pixels.
+    for (pixel, &fraction) in coverage.fractions.iter().enumerate() {
+        let fraction = f64::from(fraction);
+        let shown = Shown { fraction, error: Coverage::error(fraction) };
+        for (mean, error) in &spectra {
+            for at in pixel * bands..(pixel + 1) * bands {
+                let (value, error) = shown.radiance(mean[at] * per_count, error[at] * per_count);
+                values.push(value as f32);
+                value_errors.push(error as f32);
+            }
+        }
+    }
+    // Totals are over all pixels.
+    let (fraction, error) = coverage.mean();
+    let shown = Shown { fraction, error };
+    let scale = per_count / pixels as f64;
+    let totals = spectra.iter().flat_map(|(mean, error)| {
+        let totals = mean.len() - bands..mean.len();
+        mean[totals.clone()].iter().zip(&error[totals])
+    });
+    let (mean, mean_error) =
+        totals.map(|(mean, error)| shown.radiance(mean * scale, error * scale)).unzip();
+    ImageOutcome {
+        pixels: values,
+        errors: value_errors,
+        coverage: coverage.fractions.clone(),
+        mean,
+        mean_error,
+        image_sums: Replicates::default(),
+    }
+}
+
+/// Fraction of an area that shows the scene.
+struct Shown {
+    fraction: f64,
+    error: f64,
+}
+
+impl Shown {
+    /// Mean radiance of what is shown, with its standard error, from the mean over the whole area; NaN
+    /// where nothing is.
+    fn radiance(&self, mean: f64, error: f64) -> (f64, f64) {
+        if self.fraction == 0.0 {
+            return (f64::NAN, f64::NAN);
+        }
+        let value = mean / self.fraction;
+        (value, (error / self.fraction).hypot(value * self.error / self.fraction))
+    }
+}
+
+/// All rays of `paths` backward paths through the image, in the order in which a run traces them: input of
+/// benchmarks of the ray engine.
+#[must_use]
+pub fn path_rays(
+    stage: &Stage,
+    camera: &OrthographicCamera,
+    paths: u64,
+    key: Key,
+) -> Vec<TracedRay> {
+    let mut batch = PathBatch::logged(|| BackwardPath::new(stage.bands, false));
+    let starts = (0..paths).map(|index| {
+        let mut sampler = Sampler::new(key, index);
+        let [u, v, ..] = sampler.next_event();
+        ((), camera.ray(DVec2::new(u, v)), sampler)
+    });
+    batch.trace(stage, starts, |_, _| {});
+    batch.into_log()
+}

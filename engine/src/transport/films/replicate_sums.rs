@@ -1,0 +1,252 @@
+//! Sums of each randomisation, to which samples of the same sequences can always be added.
+
+use std::io::{self, Read, Write};
+use std::ops::Range;
+
+use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
+use super::{Film, Partition, blocks};
+use crate::film::{Spread, Sums};
+use crate::transport::{ProgressFn, RANDOMISATIONS};
+
+/// Traces the samples of a randomisation.
+pub(in crate::transport) trait SampleTracer: Sync {
+    /// Cells and columns of each of its sums.
+    fn shapes(&self) -> Vec<(usize, usize)>;
+
+    /// Prepares for tracing, once, before any sample is traced.
+    fn prepare(&self) {}
+
+    /// Traces these samples of a randomisation; returns its sums and the number of rays.
+    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64);
+
+    /// Maximum memory of the sums of this number of samples, bytes.
+    fn block_bytes(&self, samples: u64) -> u64;
+
+    /// Fraction of the energy that the sums of a whole randomisation do not account for.
+    fn imbalance(&self, _: &[Sums]) -> Option<f64> {
+        None
+    }
+}
+
+/// Maximum memory of the sums of all randomisations, bytes.
+const MAX_BYTES: u64 = 2 << 30;
+
+/// Sums of each randomisation, kept or folded into their spread.
+#[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
+pub struct ReplicateSums<'a> {
+    tracer: Box<dyn SampleTracer + 'a>,
+    store: Store,
+    /// Samples of each randomisation.
+    done: u64,
+    rays: u64,
+    partition: Partition,
+}
+
+enum Store {
+    /// All, shape `[randomisations, sums]`, those of other partitions empty: these can grow.
+    All(Vec<Vec<Sums>>),
+    /// The spread of each of the sums over complete randomisations, and the largest imbalance.
+    Folded(Vec<Spread>, Option<f64>),
+}
+
+impl<'a> ReplicateSums<'a> {
+    /// No samples yet. Large sums are folded as soon as they are complete, and cannot grow.
+    pub(in crate::transport) fn new(tracer: impl SampleTracer + 'a) -> Self {
+        let store = if bytes_of_all(&tracer.shapes()) > MAX_BYTES {
+            Store::Folded(Vec::new(), None)
+        } else {
+            Store::All((0..RANDOMISATIONS).map(|_| Vec::new()).collect())
+        };
+        Self { tracer: Box::new(tracer), store, done: 0, rays: 0, partition: Partition::ALL }
+    }
+
+    /// Allocates the memory of a partition, as late as possible: films that are never traced need none.
+    fn set_up(&mut self, partition: Partition) {
+        let shapes = self.tracer.shapes();
+        match &mut self.store {
+            Store::All(rows) => {
+                let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
+                let missing = owned.filter(|(_, row)| row.is_empty());
+                missing.for_each(|(_, row)| *row = empty(&shapes));
+            }
+            Store::Folded(spreads, _) => {
+                let empty = |(cells, columns): &(usize, usize)| Spread::new(cells * columns);
+                *spreads = shapes.iter().map(empty).collect();
+            }
+        }
+    }
+
+    /// One of the sums of each randomisation; none if they are folded.
+    pub(in crate::transport) fn rows(&self, index: usize) -> impl Iterator<Item = &Sums> {
+        let rows = match &self.store {
+            Store::All(rows) => rows.as_slice(),
+            Store::Folded(..) => &[],
+        };
+        rows.iter().filter_map(move |row| row.get(index))
+    }
+
+    /// Spread over the randomisations of one of the sums, per sample.
+    ///
+    /// # Panics
+    /// If there is no such sum.
+    #[must_use]
+    pub fn spread(&self, index: usize) -> Spread {
+        match &self.store {
+            Store::All(_) => {
+                let (cells, columns) = self.tracer.shapes()[index];
+                let mut spread = Spread::new(cells * columns);
+                self.rows(index).for_each(|sums| push(&mut spread, sums, self.done));
+                spread
+            }
+            Store::Folded(spreads, _) => spreads[index].clone(),
+        }
+    }
+
+    /// Number of its sums.
+    pub(in crate::transport) fn count(&self) -> usize {
+        self.tracer.shapes().len()
+    }
+}
+
+fn empty(shapes: &[(usize, usize)]) -> Vec<Sums> {
+    shapes.iter().map(|&(cells, columns)| Sums::new(cells, columns)).collect()
+}
+
+/// Memory of the sums of one randomisation, bytes.
+fn bytes_of_one(shapes: &[(usize, usize)]) -> u64 {
+    let bytes = shapes.iter().map(|&(cells, columns)| Sums::bytes(cells, columns));
+    bytes.fold(0, u64::saturating_add)
+}
+
+/// Memory of the sums of all randomisations, bytes.
+fn bytes_of_all(shapes: &[(usize, usize)]) -> u64 {
+    bytes_of_one(shapes).saturating_mul(RANDOMISATIONS.into())
+}
+
+fn push(spread: &mut Spread, sums: &Sums, samples: u64) {
+    let means: Vec<f64> = sums.values().iter().map(|sum| sum / samples as f64).collect();
+    spread.push(&means);
+}
+
+impl Film for ReplicateSums<'_> {
+    fn trace(&mut self, to: u64, progress: ProgressFn<'_>) {
+        let from = self.done;
+        assert_eq!(blocks::last_end(from), from, "a block that ended too early ends a run");
+        assert!(from == 0 || self.can_grow().is_ok(), "what is folded cannot grow");
+        self.set_up(self.partition);
+        self.tracer.prepare();
+        let Self { tracer, store, rays, partition, .. } = self;
+        let owned = (0..u64::from(RANDOMISATIONS)).filter(|row| partition.owns(*row as usize));
+        let (mut traced, all) = (0, (to - from) * owned.clone().count() as u64);
+        let jobs = owned.flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
+        let mut current = Vec::new();
+        blocks::in_order(
+            jobs,
+            |(row, samples)| (row, samples.clone(), tracer.trace(row, samples)),
+            |(row, samples, (sums, traced_rays))| {
+                *rays += traced_rays;
+                let into = match store {
+                    Store::All(rows) => &mut rows[row as usize],
+                    Store::Folded(..) if current.is_empty() => {
+                        current = empty(&tracer.shapes());
+                        &mut current
+                    }
+                    Store::Folded(..) => &mut current,
+                };
+                for (total, part) in into.iter_mut().zip(&sums) {
+                    total.merge(part);
+                }
+                if let Store::Folded(spreads, imbalance) = store
+                    && samples.end == to
+                {
+                    let part = tracer.imbalance(&current);
+                    *imbalance = max_of(*imbalance, part);
+                    for (spread, sums) in spreads.iter_mut().zip(&current) {
+                        push(spread, sums, to);
+                    }
+                    current.clear();
+                }
+                traced += samples.end - samples.start;
+                progress(traced as f64 / all as f64);
+            },
+        );
+        self.done = to;
+    }
+
+    fn restrict(&mut self, partition: Partition) {
+        self.partition = partition;
+    }
+
+    fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        save_u64(out, &[self.rays])?;
+        let Store::All(rows) = &self.store else { return Ok(()) };
+        let owned = rows.iter().enumerate().filter(|(row, _)| self.partition.owns(*row));
+        owned.flat_map(|(_, row)| row).try_for_each(|sums| save_f64(out, sums.values()))
+    }
+
+    fn restore(&mut self, partition: Partition, done: u64, input: &mut dyn Read) -> io::Result<()> {
+        let mut rays = [0];
+        restore_u64(input, &mut rays)?;
+        self.rays += rays[0];
+        self.done = done;
+        self.set_up(partition);
+        let Store::All(rows) = &mut self.store else { return Ok(()) };
+        let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
+        owned.flat_map(|(_, row)| row).try_for_each(|sums| restore_f64(input, sums.values_mut()))
+    }
+
+    fn can_grow(&self) -> Result<(), u64> {
+        match &self.store {
+            Store::All(_) => Ok(()),
+            Store::Folded(..) => Err(bytes_of_all(&self.tracer.shapes())),
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        let rows = match &self.store {
+            Store::All(rows) => {
+                (0..rows.len()).filter(|row| self.partition.owns(*row)).count() as u64
+            }
+            // Mean and squares.
+            Store::Folded(..) => 2,
+        };
+        let shapes = self.tracer.shapes();
+        let each = (shapes.len() * size_of::<Sums>()) as u64;
+        bytes_of_one(&shapes).saturating_add(each).saturating_mul(rows)
+    }
+
+    fn bytes_beside(&self) -> u64 {
+        let one = bytes_of_one(&self.tracer.shapes());
+        let waiting =
+            self.tracer.block_bytes(blocks::LARGEST).saturating_mul(blocks::ahead() as u64);
+        let tracing = match &self.store {
+            Store::All(_) => waiting,
+            // The randomisation that is being traced, and its means.
+            Store::Folded(..) => waiting.saturating_add(one.saturating_mul(2)),
+        };
+        // Mean, squares and error, and what mean and error are scaled to.
+        tracing.max(one.saturating_mul(5))
+    }
+
+    fn samples(&self) -> u64 {
+        self.done * u64::from(RANDOMISATIONS)
+    }
+
+    fn rays(&self) -> u64 {
+        self.rays
+    }
+
+    fn imbalance(&self) -> Option<f64> {
+        match &self.store {
+            Store::All(rows) => {
+                rows.iter().map(|row| self.tracer.imbalance(row)).fold(None, max_of)
+            }
+            Store::Folded(_, imbalance) => *imbalance,
+        }
+    }
+}
+
+/// The larger of two values, if there are any.
+fn max_of(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    a.zip(b).map(|(a, b)| a.max(b)).or(a).or(b)
+}

@@ -1,0 +1,184 @@
+use std::array;
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::history::{BLOCK, Block, History};
+use super::tracer::{PathTracer, RayQueue, RayResults};
+use crate::accel::{Hit, Ray};
+use crate::extract::{Light, Stage};
+use crate::sampling::{Key, Sampler};
+use crate::scattering::{Interaction, Lobe, SpectrumTable};
+use crate::transport::photons::{Part, spectra};
+use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
+
+/// Backward path tracer with next-event estimation: the radiance that arrives along a ray, `L / E` in sr⁻¹.
+/// Each point of a random walk adds the sun's light, and the sky adds its light where the walk leaves the
+/// scene. Direct light of sun and sky, which the sensor would look into, is left out.
+///
+/// `reference.rs` is the same estimator as one plain loop.
+#[derive(Clone, Debug)]
+pub(in crate::transport) struct BackwardPath {
+    history: History,
+    /// Throughput in the representative bands.
+    throughput: Vec<f32>,
+    /// Pending weight of next-event estimation, if the shadow ray meets nothing.
+    next_event: Option<Lobe>,
+    /// Pending weight of the continuation ray.
+    continuation: Option<Lobe>,
+    /// Direction of the continuation ray, if one is queued.
+    direction: Option<DVec3>,
+    sampler: Sampler,
+    /// True if light of different orders is kept apart.
+    separates_orders: bool,
+    /// Length of the history before the second scattering.
+    single: usize,
+    /// Number of scattering events, and whether the first was at the ground.
+    order: u32,
+    has_met_ground: bool,
+    has_hit: bool,
+}
+
+impl BackwardPath {
+    /// A path for stages with this number of bands.
+    pub(in crate::transport) fn new(bands: usize, separates_orders: bool) -> Self {
+        Self {
+            history: History::default(),
+            throughput: vec![0.0; SpectrumTable::representatives_len(bands)],
+            next_event: None,
+            continuation: None,
+            direction: None,
+            sampler: Sampler::new(Key::new(0), 0),
+            separates_orders,
+            single: 0,
+            order: 0,
+            has_met_ground: true,
+            has_hit: false,
+        }
+    }
+
+    /// Shadow ray towards the sun, if the surface would scatter light from there.
+    fn sample_sun(&mut self, stage: &Stage, hit: &Hit, surface: &Interaction<'_>) -> Option<Ray> {
+        let beam = stage.light.beam.as_ref()?;
+        let wi = beam.towards(&mut self.sampler);
+        let f = surface.f(wi)?;
+        // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
+        let cosine = hit.normal.dot(wi).abs();
+        let scale = (cosine / wi.z * Light::RADIANCE_OF_SHARE) as f32;
+        self.next_event = Some(f.scaled(scale));
+        Some(hit.leave(wi))
+    }
+
+    /// Continuation ray, if the path survives Russian roulette.
+    fn scatter(&mut self, stage: &Stage, hit: &Hit, surface: &Interaction<'_>) -> Option<Ray> {
+        // Light of the last order can still come from the sky; without a sky the path ends.
+        if self.order == stage.rules.max_order && stage.light.dome.is_none() {
+            return None;
+        }
+        // Sky light that is scattered once varies little between paths.
+        let has_low_variance = self.order == 1 && stage.light.dome.is_some();
+        let threshold =
+            if has_low_variance { RouletteThreshold::Low } else { RouletteThreshold::High };
+        let roulette = RussianRoulette { rules: &stage.rules, threshold, initial: 1.0 };
+        let u = self.sampler.next_event();
+        let sample = sample_with_roulette(surface, &roulette, self.order, &mut self.throughput, u)?;
+        self.continuation = Some(sample.weight);
+        Some(hit.leave(sample.wi))
+    }
+
+    fn add_sky(&mut self, light: &Light) {
+        if let Some(dome) = &light.dome {
+            self.history.see(dome.share, Light::RADIANCE_OF_SHARE as f32);
+        }
+    }
+}
+
+impl PathTracer for BackwardPath {
+    fn start(&mut self, ray: &Ray, sampler: Sampler) {
+        self.history.clear();
+        self.throughput.fill(1.0);
+        (self.sampler, self.direction) = (sampler, Some(ray.direction));
+        (self.next_event, self.continuation) = (None, None);
+        // Light that met nothing at all is uncollided.
+        (self.order, self.has_met_ground, self.has_hit) = (0, true, false);
+    }
+
+    fn advance(&mut self, stage: &Stage, results: RayResults<'_>, queue: &mut RayQueue) {
+        if let (Some(f), true, Some(beam)) =
+            (self.next_event.take(), results.is_lit, &stage.light.beam)
+        {
+            self.history.light(f, beam.share, 1.0);
+        }
+        let Some(direction) = self.direction.take() else { return };
+        if let Some(weight) = self.continuation.take() {
+            self.history.scatter(weight);
+        }
+        let Some(hit) = results.hit else {
+            if self.has_hit && direction.z > 0.0 {
+                self.add_sky(&stage.light);
+            }
+            return;
+        };
+        if stage.is_cut(hit) {
+            return;
+        }
+        self.has_hit = true;
+        if self.order == stage.rules.max_order {
+            return;
+        }
+        self.order += 1;
+        match self.order {
+            1 => self.has_met_ground = stage.is_ground(hit),
+            2 => self.single = self.history.len(),
+            _ => {}
+        }
+        let surface = stage.interaction(hit, -direction);
+        if let Some(ray) = self.sample_sun(stage, hit, &surface) {
+            queue.push_shadow(ray);
+        }
+        if let Some(ray) = self.scatter(stage, hit, &surface) {
+            self.direction = Some(ray.direction);
+            queue.push_closest(ray);
+        }
+    }
+
+    fn has_hit(&self) -> bool {
+        self.has_hit
+    }
+
+    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+        if direction.z <= 0.0 {
+            return false;
+        }
+        self.history.clear();
+        self.add_sky(&stage.light);
+        true
+    }
+
+    fn spectra(&self) -> usize {
+        spectra(self.separates_orders)
+    }
+
+    /// The radiance or, with separate orders, the whole and its parts in a row. The differences are exact in
+    /// f64, so the parts sum to the whole.
+    #[inline(always)]
+    fn write_radiance(&self, stage: &Stage, bands: Range<usize>, radiance: &mut [Block]) {
+        let [whole, parts @ ..] = radiance else { return };
+        let history = &self.history;
+        history.radiance(&stage.models, history.len(), bands.clone(), whole);
+        if parts.is_empty() {
+            return;
+        }
+        let mut single = *whole;
+        if self.order >= 2 {
+            history.radiance(&stage.models, self.single, bands, &mut single);
+        }
+        for (part, values) in Part::ALL.iter().zip(parts) {
+            *values = match part {
+                Part::Multiple => array::from_fn(|band| whole[band] - single[band]),
+                part if *part == Part::from_order(1, self.has_met_ground) => single,
+                _ => [0.0; BLOCK],
+            };
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Light that was scattered once, by integration alone.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::history::{BLOCK, Block, History};
+use super::tracer::{PathTracer, RayQueue, RayResults};
+use crate::accel::Ray;
+use crate::extract::{Light, Stage};
+use crate::geometry::basis;
+use crate::sampling::{Key, Sampler, cosine_hemisphere};
+use crate::scattering::SpectrumId;
+use crate::transport::photons::Part;
+
+/// Radiance over irradiance, `L / E` in sr⁻¹, of light that was scattered exactly once: light of sun and sky
+/// that the first surface along a ray sends back. There is no random walk, no choice of lobes and no roulette:
+/// the points on the film, on the sun's disc and on the sky are low-discrepancy points of two dimensions each.
+///
+/// Directions towards the sky have the density `|cos θ| / π` about the normal over the upper hemisphere: one
+/// below the horizon is replaced by its opposite, which lies on the other side of the surface at the same angle.
+/// So `f |cos θ| / pdf` is `π f` of either side: its only noise is occlusion of the sky, for Lambertian surfaces.
+#[derive(Clone, Debug)]
+pub(in crate::transport) struct FirstOrderPath {
+    history: History,
+    sampler: Sampler,
+    direction: DVec3,
+    has_hit: bool,
+    part: Part,
+    separates_orders: bool,
+    rays: u64,
+}
+
+impl FirstOrderPath {
+    /// A path, with its parts kept apart on request.
+    pub(in crate::transport) fn new(separates_orders: bool) -> Self {
+        Self {
+            history: History::default(),
+            sampler: Sampler::new(Key::new(0), 0),
+            direction: DVec3::ZERO,
+            has_hit: false,
+            part: Part::Uncollided,
+            separates_orders,
+            rays: 0,
+        }
+    }
+
+    /// Number of spectra: the whole and, on request, its parts, none of which is multiply scattered.
+    pub(in crate::transport) const fn spectra(separates_orders: bool) -> usize {
+        if separates_orders { Part::ALL.len() } else { 1 }
+    }
+}
+
+impl PathTracer for FirstOrderPath {
+    fn start(&mut self, ray: &Ray, sampler: Sampler) {
+        self.history.clear();
+        (self.sampler, self.direction, self.has_hit) = (sampler, ray.direction, false);
+    }
+
+    fn advance(&mut self, stage: &Stage, results: RayResults<'_>, _: &mut RayQueue) {
+        let Some(hit) = results.hit.filter(|hit| !stage.is_cut(hit)) else { return };
+        self.has_hit = true;
+        self.part = Part::from_order(1, stage.is_ground(hit));
+        let surface = stage.interaction(hit, -self.direction);
+        let [sun_u, sun_v, sky_u, sky_v] = self.sampler.next_event();
+        let mut add = |wi: DVec3, source: SpectrumId, scale: f64| {
+            let Some(f) = surface.f(wi) else { return };
+            self.rays += 1;
+            if !stage.geometry.occluded(&hit.leave(wi)) {
+                self.history.light(f, source, (scale * Light::RADIANCE_OF_SHARE) as f32);
+            }
+        };
+        if let Some(beam) = &stage.light.beam {
+            let disc = beam.disc.as_ref();
+            let sun = disc.map_or(beam.direction, |disc| disc.direction(sun_u, sun_v));
+            // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
+            add(sun, beam.share, hit.normal.dot(sun).abs() / sun.z);
+        }
+        if let Some(dome) = &stage.light.dome {
+            let (tangent, bitangent) = basis(hit.normal);
+            let local = cosine_hemisphere(sky_u, sky_v);
+            let sky = tangent * local.x + bitangent * local.y + hit.normal * local.z;
+            let sky = if sky.z < 0.0 { -sky } else { sky };
+            // A horizontal ray would never leave a flat scene.
+            if sky.z > 0.0 {
+                add(sky, dome.share, 1.0);
+            }
+        }
+    }
+
+    fn has_hit(&self) -> bool {
+        self.has_hit
+    }
+
+    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+        if direction.z <= 0.0 {
+            return false;
+        }
+        self.history.clear();
+        self.part = Part::Uncollided;
+        if let Some(dome) = &stage.light.dome {
+            self.history.see(dome.share, Light::RADIANCE_OF_SHARE as f32);
+        }
+        true
+    }
+
+    fn spectra(&self) -> usize {
+        Self::spectra(self.separates_orders)
+    }
+
+    /// The whole and, with separate orders, its parts in a row.
+    #[inline(always)]
+    fn write_radiance(&self, stage: &Stage, bands: Range<usize>, radiance: &mut [Block]) {
+        let [whole, parts @ ..] = radiance else { return };
+        self.history.radiance(&stage.models, self.history.len(), bands, whole);
+        for (part, values) in Part::ALL.iter().zip(parts) {
+            *values = if *part == self.part { *whole } else { [0.0; BLOCK] };
+        }
+    }
+
+    fn rays(&self) -> u64 {
+        self.rays
+    }
+}

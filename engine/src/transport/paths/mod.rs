@@ -1,0 +1,17 @@
+//! Paths from the sensor, one file an integrator.
+
+mod backward;
+mod first_hit;
+mod first_order;
+mod history;
+mod thermal;
+mod tracer;
+
+pub(super) use backward::BackwardPath;
+pub(super) use first_hit::FirstHitPath;
+pub use first_hit::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS};
+pub(super) use first_order::FirstOrderPath;
+pub(super) use history::{BLOCK, Block, blocks};
+pub(super) use thermal::ThermalPath;
+pub use tracer::TracedRay;
+pub(super) use tracer::{PathBatch, PathTracer, RayQueue, RayResults, write_each};

@@ -1,0 +1,118 @@
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::history::{Block, History};
+use super::tracer::{PathTracer, RayQueue, RayResults};
+use crate::accel::{Hit, Ray};
+use crate::extract::{Stage, Thermal};
+use crate::sampling::{Key, Sampler};
+use crate::scattering::SpectrumTable;
+use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
+
+/// A random walk from the sensor that gathers the radiance that surfaces and the sky emit,
+/// W m⁻² sr⁻¹ nm⁻¹; 0 in bands that hold no emission.
+///
+/// At each point the surface adds `(1 - ρ - τ) B(T)` with the reflectance of the visible side, and the sky adds
+/// its radiance where the walk leaves the scene. The sun adds nothing. `T` is the sunlit temperature where the
+/// sun is visible from the point, on either side.
+#[derive(Clone, Debug)]
+pub(in crate::transport) struct ThermalPath {
+    history: History,
+    /// Throughput in the representative bands.
+    throughput: Vec<f32>,
+    sampler: Sampler,
+    /// Direction of the queued ray.
+    direction: DVec3,
+    order: u32,
+    has_hit: bool,
+    rays: u64,
+}
+
+impl ThermalPath {
+    pub(in crate::transport) fn new(bands: usize) -> Self {
+        Self {
+            history: History::default(),
+            throughput: vec![0.0; SpectrumTable::representatives_len(bands)],
+            sampler: Sampler::new(Key::new(0), 0),
+            direction: DVec3::ZERO,
+            order: 0,
+            has_hit: false,
+            rays: 0,
+        }
+    }
+
+    /// Adds the emission of a surface; returns the continuation ray, if the path survives.
+    fn scatter(&mut self, stage: &Stage, thermal: &Thermal, hit: &Hit) -> Option<Ray> {
+        let surface = stage.interaction(hit, -self.direction);
+        let (black_body, rays) = thermal.black_body(stage, hit, &mut self.sampler);
+        self.rays += rays;
+        self.history.light(surface.absorbed_fraction(), black_body, 1.0);
+        if self.order == stage.rules.max_order {
+            return None;
+        }
+        self.order += 1;
+        // Emission varies little between paths.
+        let roulette = RussianRoulette {
+            rules: &stage.rules,
+            threshold: RouletteThreshold::Low,
+            initial: 1.0,
+        };
+        let u = self.sampler.next_event();
+        let sample =
+            sample_with_roulette(&surface, &roulette, self.order, &mut self.throughput, u)?;
+        self.history.scatter(sample.weight);
+        Some(hit.leave(sample.wi))
+    }
+}
+
+impl PathTracer for ThermalPath {
+    fn start(&mut self, ray: &Ray, sampler: Sampler) {
+        self.history.clear();
+        (self.sampler, self.direction) = (sampler, ray.direction);
+        (self.order, self.has_hit) = (0, false);
+    }
+
+    fn advance(&mut self, stage: &Stage, results: RayResults<'_>, queue: &mut RayQueue) {
+        let Some(thermal) = &stage.thermal else { return };
+        if !self.has_hit {
+            self.throughput.copy_from_slice(stage.models.spectra.representatives(thermal.bands));
+            self.history.scatter(thermal.bands.into());
+        }
+        let Some(hit) = results.hit else {
+            if self.has_hit && self.direction.z > 0.0 {
+                self.history.see(thermal.sky, 1.0);
+            }
+            return;
+        };
+        if stage.is_cut(hit) {
+            return;
+        }
+        self.has_hit = true;
+        if let Some(ray) = self.scatter(stage, thermal, hit) {
+            self.direction = ray.direction;
+            queue.push_closest(ray);
+        }
+    }
+
+    fn has_hit(&self) -> bool {
+        self.has_hit
+    }
+
+    fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
+        let Some(thermal) = &stage.thermal else { return false };
+        self.history.clear();
+        self.history.see(thermal.sky, 1.0);
+        direction.z > 0.0
+    }
+
+    #[inline(always)]
+    fn write_radiance(&self, stage: &Stage, bands: Range<usize>, radiance: &mut [Block]) {
+        let [radiance, ..] = radiance else { return };
+        self.history.radiance(&stage.models, self.history.len(), bands, radiance);
+    }
+
+    fn rays(&self) -> u64 {
+        self.rays
+    }
+}

@@ -1,0 +1,178 @@
+use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec3;
+
+use super::virtual_photon_roulette::VirtualPhotonRoulette;
+use super::{Counter, Event, Tally, WeightFactor};
+use crate::accel::{Batch, Ray};
+use crate::extract::Stage;
+use crate::sampling::Key;
+use crate::scattering::Lobe;
+use crate::transport::{LightSource, OrthographicCamera};
+
+/// Virtual photons: at each scattering or emission, the power that a surface sends towards each of several
+/// parallel projections, per steradian (LESS manual eq. 7); cells are the pixels of each projection
+/// and, if it has more than one, their total, projection by projection.
+///
+/// A cell's sum is `Σ w f cos θ V`, per steradian. A contribution `c` below the mean `m` that leaves the scene
+/// is traced with probability `c / m` and divided by it.
+#[derive(Clone, Debug)]
+pub struct ViewCounter {
+    cameras: Vec<OrthographicCamera>,
+    first_cells: Vec<usize>,
+    cells: usize,
+    /// Russian roulette of virtual photons, if there is one: shared by the parts of the light.
+    roulette: Option<Arc<PendingRoulette>>,
+}
+
+/// Source and random stream of a pilot run, and its result once it has run.
+#[derive(Debug)]
+struct PendingRoulette {
+    source: LightSource,
+    key: Key,
+    roulette: OnceLock<VirtualPhotonRoulette>,
+}
+
+/// A virtual photon whose shadow ray is traced.
+struct VirtualPhoton<'c> {
+    camera: &'c OrthographicCamera,
+    first_cell: usize,
+    factor: WeightFactor,
+    scale: f64,
+}
+
+impl ViewCounter {
+    /// A counter of the pixels of these cameras.
+    #[must_use]
+    pub fn new(cameras: Vec<OrthographicCamera>) -> Self {
+        let mut cells = 0;
+        let first_cells = cameras
+            .iter()
+            .map(|camera| {
+                let first = cells;
+                cells += camera.pixels() + usize::from(camera.pixels() > 1);
+                first
+            })
+            .collect();
+        Self { cameras, first_cells, cells, roulette: None }
+    }
+
+    /// The counter with Russian roulette of virtual photons of a source. A pilot run of a few packets finds its
+    /// threshold before the first packet is traced.
+    #[must_use]
+    pub fn with_roulette(self, source: LightSource, key: Key) -> Self {
+        let roulette = PendingRoulette { source, key, roulette: OnceLock::new() };
+        Self { roulette: Some(Arc::new(roulette)), ..self }
+    }
+
+    /// The cameras.
+    #[must_use]
+    pub fn cameras(&self) -> &[OrthographicCamera] {
+        &self.cameras
+    }
+
+    /// First cell of each camera.
+    #[must_use]
+    pub fn first_cells(&self) -> &[usize] {
+        &self.first_cells
+    }
+}
+
+/// Fraction of a packet's weight that an event sends towards a view, before the cosine; `None` if it sends
+/// nothing.
+fn sent_towards(stage: &Stage, event: &Event<'_>, towards: DVec3) -> Option<WeightFactor> {
+    match event {
+        Event::Arrival { surface, .. } => surface.f(towards).map(WeightFactor::Lobe),
+        Event::Emission { hit, ray, scale, band, .. } => {
+            let surface = stage.interaction(hit, ray.direction);
+            surface.is_same_side(towards).then(|| {
+                let emitted = stage.interaction(hit, towards).absorbed_fraction();
+                WeightFactor::Lobe(match band {
+                    None => emitted.scaled(*scale),
+                    Some(band) => {
+                        let value = |fraction| stage.models.value(&fraction, *band);
+                        let along_ray = value(surface.absorbed_fraction());
+                        Lobe::ONE.scaled(value(emitted) / along_ray)
+                    }
+                })
+            })
+        }
+        _ => None,
+    }
+}
+
+impl ViewCounter {
+    /// Virtual photons of an event that are traced, with their shadow rays.
+    fn sample(&self, stage: &Stage, event: &Event<'_>) -> (Vec<VirtualPhoton<'_>>, Vec<Ray>) {
+        let (mut photons, mut rays) = (Vec::new(), Vec::new());
+        let (hit, throughput, sampler) = match event {
+            Event::Arrival { is_last: false, hit, throughput, sampler, .. }
+            | Event::Emission { hit, throughput, sampler, .. } => (*hit, *throughput, *sampler),
+            _ => return (photons, rays),
+        };
+        let is_emitted = matches!(event, Event::Emission { .. });
+        let roulette = self.roulette.as_ref().and_then(|pending| pending.roulette.get());
+        let mut u = sampler.aside();
+        // Most views see the same side.
+        let mut last: Option<(WeightFactor, f64)> = None;
+        for (camera, &first_cell) in self.cameras.iter().zip(&self.first_cells) {
+            let Some(factor) = sent_towards(stage, event, camera.towards) else { continue };
+            let cosine = hit.normal.dot(camera.towards).abs();
+            let probability = roulette.map_or(1.0, |roulette| {
+                let (_, ratio) = last.filter(|(last, _)| *last == factor).unwrap_or_else(|| {
+                    // The throughput of emitted light holds the emitted fraction.
+                    let rest = if is_emitted { WeightFactor::One } else { factor };
+                    let ratio = f64::from(roulette.largest_ratio(stage, throughput, rest));
+                    *last.insert((factor, ratio))
+                });
+                // Contribution to the reflectance factor over its mean.
+                VirtualPhotonRoulette::probability(ratio * cosine / camera.towards.z)
+            });
+            // One number for all views: as many are traced as the probabilities sum to, or one more, whatever
+            // part of the scene they show.
+            u += probability;
+            if u < 1.0 {
+                continue;
+            }
+            u -= 1.0;
+            if camera.shows(hit.point, stage) {
+                let scale = cosine / (probability * PI);
+                photons.push(VirtualPhoton { camera, first_cell, factor, scale });
+                rays.push(hit.leave(camera.towards));
+            }
+        }
+        (photons, rays)
+    }
+}
+
+impl Counter for ViewCounter {
+    fn prepare(&self, stage: &Stage) {
+        if let Some(PendingRoulette { source, key, roulette }) = self.roulette.as_deref() {
+            let pilot_run = || VirtualPhotonRoulette::from_pilot_run(stage, *source, *key);
+            roulette.get_or_init(pilot_run);
+        }
+    }
+
+    fn cells(&self) -> usize {
+        self.cells
+    }
+
+    fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+        let (photons, rays) = self.sample(stage, event);
+        let (Event::Arrival { hit, .. } | Event::Emission { hit, .. }) = event else { return 0 };
+        let mut dark = vec![false; rays.len()];
+        let batch = Batch { shadows: &rays, dark: &mut dark, rays: &[], hits: &mut [] };
+        stage.geometry.trace_each(batch);
+        let visible = photons.into_iter().zip(&dark).filter(|(_, is_dark)| !**is_dark);
+        for (VirtualPhoton { camera, first_cell, factor, scale }, _) in visible {
+            camera.for_each_pixel(hit.point, stage, |pixel| {
+                tally.add(first_cell + pixel, factor, scale);
+                if camera.pixels() > 1 {
+                    tally.add(first_cell + camera.pixels(), factor, scale);
+                }
+            });
+        }
+        rays.len() as u64
+    }
+}

@@ -1,0 +1,94 @@
+use glam::DVec3;
+
+use super::counters::{Counter, Event, Visited};
+use super::packet::{PacketOptions, photon_film};
+use super::tally::{Tally, WeightFactor};
+use crate::extract::Stage;
+use crate::sampling::Key;
+use crate::transport::{Film, LightSource, PhotonKind, ReferencePlane, RouletteThreshold};
+
+/// Fractions of an isolated scene's light on lines beside its reference plane, in the band where each
+/// is largest.
+///
+/// Such light makes values per area of the plane surprising: a tree over the edge of the ground, or high above
+/// it under a low sun, is lit and visible on lines that do not pass through the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightBeside {
+    /// Fraction of the light of sun and sky that the scene intercepts.
+    pub incoming: f64,
+    /// Fraction of the scattered light that leaves upwards: no BRF or albedo holds it.
+    pub outgoing: f64,
+}
+
+/// Packets of each randomisation. The fractions decide a warning and no result.
+const PILOT: u64 = 64;
+
+impl LightBeside {
+    /// Estimate from a pilot run; `None` for a periodic scene, which has no sides, and without light.
+    #[must_use]
+    pub fn from_pilot_run(stage: &Stage) -> Option<Self> {
+        let is_lit = stage.light.beam.is_some() || stage.light.dome.is_some();
+        if stage.periodic || !is_lit {
+            return None;
+        }
+        let plane = ReferencePlane::new(None, stage);
+        let counter: Box<dyn Counter> = Box::new(BesideCounter { plane: plane.clone() });
+        let kind = PhotonKind::Packet(RouletteThreshold::Low);
+        let options = PacketOptions { source: LightSource::Reflected, kind, plane };
+        let mut film =
+            photon_film(stage, options, [counter], Key::new(stage.rules.seed).path("beside"));
+        film.trace(PILOT, &|_| {});
+        let spread = film.spread(1);
+        let cell = |cell: usize| &spread.mean()[cell * stage.bands..(cell + 1) * stage.bands];
+        let largest = |part: usize, whole: usize| {
+            let fractions = cell(part).iter().zip(cell(whole)).map(|(part, whole)| part / whole);
+            fractions.filter(|fraction| fraction.is_finite()).fold(0.0, f64::max)
+        };
+        Some(Self {
+            incoming: largest(BesideCounter::INCOMING_BESIDE, BesideCounter::INCOMING),
+            outgoing: largest(BesideCounter::OUTGOING_BESIDE, BesideCounter::OUTGOING),
+        })
+    }
+}
+
+/// Power that arrives from outside and that leaves upwards, each in all and on lines beside a plane.
+struct BesideCounter {
+    plane: ReferencePlane,
+}
+
+impl BesideCounter {
+    const INCOMING: usize = 0;
+    const INCOMING_BESIDE: usize = 1;
+    const OUTGOING: usize = 2;
+    const OUTGOING_BESIDE: usize = 3;
+    const CELLS: usize = 4;
+
+    /// Returns whether a line through `point` passes beside the plane; `up` is its direction upwards.
+    fn is_beside(&self, point: DVec3, up: DVec3) -> bool {
+        !self.plane.is_left_by(point, up)
+    }
+}
+
+impl Counter for BesideCounter {
+    fn cells(&self) -> usize {
+        Self::CELLS
+    }
+
+    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+        let (cells, is_beside) = match event {
+            Event::Arrival { hit, wo, visited: Visited { order: 0, .. }, .. } => {
+                ([Self::INCOMING, Self::INCOMING_BESIDE], self.is_beside(hit.point, *wo))
+            }
+            Event::Escape { ray, visited: Visited { order: 1.., .. } } if ray.direction.z > 0.0 => {
+                ([Self::OUTGOING, Self::OUTGOING_BESIDE], self.is_beside(ray.origin, ray.direction))
+            }
+            _ => return 0,
+        };
+        let [all, beside] = cells;
+        tally.add(all, WeightFactor::One, 1.0);
+        if is_beside {
+            tally.add(beside, WeightFactor::One, 1.0);
+        }
+        0
+    }
+}

@@ -1,0 +1,34 @@
+//! Photon packets: their source, flight, weights, and the counters that they add to.
+
+mod analog;
+mod counters;
+mod hemisphere;
+mod light_beside;
+mod packet;
+mod parts;
+mod source;
+mod spectrum_products;
+mod tally;
+mod thermal_emission;
+
+pub use counters::{
+    AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
+    FluxLevel, GROUND_TERMS, LayerCounter, ViewCounter,
+};
+pub use hemisphere::{Cell, Hemisphere};
+pub use light_beside::LightBeside;
+pub use packet::{PacketOptions, photon_film};
+pub use parts::{Part, PartCounter, spectra};
+pub use tally::Tally;
+
+use super::RouletteThreshold;
+
+/// Representation of light that starts at its source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PhotonKind {
+    /// Packets with power in every band, which lose a part of it wherever they are scattered, with Russian
+    /// roulette.
+    Packet(RouletteThreshold),
+    /// Photons of one band, which are absorbed or scattered as a whole.
+    Photon,
+}

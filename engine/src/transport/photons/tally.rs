@@ -1,0 +1,225 @@
+//! Contributions of packets to the cells of counters, recorded before any spectrum is evaluated.
+
+use std::ops::Range;
+
+use super::spectrum_products::{ProductId, SpectrumProducts};
+use crate::film::Sums;
+use crate::scattering::{LANES, Lobe, SurfaceModels, with_simd};
+use crate::transport::paths::blocks;
+
+/// Contributions of packets to cells. A packet weighs one of [`SpectrumProducts`] times a number; contributions
+/// of several packets to a cell by the same product are added before any band is evaluated. Bands are then
+/// evaluated block by block, so that a block of the products stays in the cache.
+#[derive(Clone, Debug)]
+pub struct Tally<'m> {
+    models: &'m SurfaceModels,
+    products: SpectrumProducts,
+    /// The packet's weight: this product times this scale.
+    weight: Weight,
+    entries: Vec<Entry>,
+    /// The factor that was evaluated last: several cells in a row may get the same.
+    last: Option<(WeightFactor, Weight)>,
+    sums: Vec<Sums>,
+    /// Index of the sums that are added to.
+    current: usize,
+}
+
+/// A product of spectra times a number.
+#[derive(Clone, Copy, Debug)]
+struct Weight {
+    product: ProductId,
+    scale: f64,
+}
+
+impl Weight {
+    const ONE: Self = Self { product: SpectrumProducts::ONE, scale: 1.0 };
+}
+
+/// A contribution to a cell, which starts at `start` in some of the sums.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    weight: Weight,
+    sums: usize,
+    start: usize,
+}
+
+/// Fraction of a packet's weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum WeightFactor {
+    /// All of it.
+    One,
+    /// The weight times a lobe.
+    Lobe(Lobe),
+    /// The weight times 1 minus a lobe.
+    Complement(Lobe),
+}
+
+/// Flush beyond this many entries: enough that many share their cells.
+const MAX_ENTRIES: usize = 1 << 15;
+
+/// Flush beyond this many products: few enough that a block of them fits the cache.
+const MAX_PRODUCTS: usize = 1 << 10;
+
+impl<'m> Tally<'m> {
+    /// A tally of these sums, without entries.
+    pub(super) fn new(models: &'m SurfaceModels, sums: Vec<Sums>) -> Self {
+        let products = SpectrumProducts::new(sums.iter().any(|sums| sums.bands() > LANES));
+        let (weight, entries) = (Weight::ONE, Vec::new());
+        Self { models, products, weight, entries, last: None, sums, current: 0 }
+    }
+
+    /// Starts a packet with a weight of 1 in every band.
+    pub(super) const fn start(&mut self) {
+        (self.weight, self.last) = (Weight::ONE, None);
+    }
+
+    /// Multiplies the packet's weight by a lobe.
+    pub(super) fn scatter(&mut self, lobe: Lobe) {
+        self.weight = self.times(lobe);
+        self.last = None;
+    }
+
+    /// Selects the sums that are added to.
+    pub(super) const fn select(&mut self, sums: usize) {
+        self.current = sums;
+    }
+
+    /// Adds a fraction of the packet's weight, times a scale, to a cell.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub(super) fn add(&mut self, cell: usize, factor: WeightFactor, scale: f64) {
+        let weight = match self.last {
+            Some((last, weight)) if last == factor => weight,
+            _ => self.evaluate(factor),
+        };
+        let (sums, start) = (self.current, self.sums[self.current].start(cell));
+        let weight = Weight { scale: weight.scale * scale, ..weight };
+        self.entries.push(Entry { weight, sums, start });
+    }
+
+    fn evaluate(&mut self, factor: WeightFactor) -> Weight {
+        let weight = match factor {
+            WeightFactor::One => self.weight,
+            WeightFactor::Lobe(lobe) => self.times(lobe),
+            WeightFactor::Complement(Lobe { spectrum, scale }) => {
+                let product = self.products.complement(self.weight.product, spectrum, scale);
+                Weight { product, ..self.weight }
+            }
+        };
+        self.last = Some((factor, weight));
+        weight
+    }
+
+    fn times(&mut self, lobe: Lobe) -> Weight {
+        let largest = self.models.normalisation(&lobe.spectrum);
+        Weight {
+            product: self.products.times(self.weight.product, lobe.spectrum),
+            scale: self.weight.scale * (f64::from(largest) * f64::from(lobe.scale)),
+        }
+    }
+
+    /// Returns whether it is time to flush, at the end of a packet.
+    pub(super) const fn is_full(&self) -> bool {
+        self.entries.len() > MAX_ENTRIES || self.products.len() > MAX_PRODUCTS
+    }
+
+    /// Adds all entries to the sums, of packets with power in these bands alone. The next packet starts anew.
+    pub(super) fn flush(&mut self, bands: Range<usize>) {
+        let Self { models, products, entries, sums, .. } = self;
+        if bands.len() > LANES {
+            let place = |entry: &Entry| (entry.weight.product, entry.sums, entry.start);
+            entries.sort_by_key(place);
+            entries.dedup_by(|next, last| {
+                let is_same = place(next) == place(last);
+                last.weight.scale += if is_same { next.weight.scale } else { 0.0 };
+                is_same
+            });
+        }
+        let mut values = Vec::new();
+        with_simd(
+            #[inline(always)]
+            || {
+                for block in blocks(bands) {
+                    products.write(models, &block, &mut values);
+                    for &Entry { weight, sums: index, start } in &*entries {
+                        let cell = start + block.start..start + block.end;
+                        let cell = sums[index].values_mut()[cell].iter_mut();
+                        let Weight { product, scale } = weight;
+                        let values = &values[product * block.len()..(product + 1) * block.len()];
+                        for (sum, value) in cell.zip(values) {
+                            *sum += value * scale;
+                        }
+                    }
+                }
+            },
+        );
+        entries.clear();
+        products.clear();
+        self.start();
+    }
+
+    /// The sums.
+    pub(super) fn into_sums(self) -> Vec<Sums> {
+        self.sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scattering::SpectrumId;
+    use crate::transport::paths::BLOCK;
+
+    /// Whatever is flushed when, each band of each cell holds the sum of its fractions of the weights.
+    #[test]
+    fn cells_hold_their_fractions_of_packet_weights() {
+        let bands = 2 * BLOCK + 7;
+        let mut models = SurfaceModels::new(bands);
+        let [a, b, c] = [1, 2, 3].map(|seed: usize| {
+            let value = move |band: usize| ((band * 31 + seed * 17) % 7) as f32 / 8.0;
+            models.spectra.add((0..bands).map(value))
+        });
+        let mut tally = Tally::new(&models, vec![Sums::new(2, bands), Sums::new(1, bands)]);
+        let rounds = 5;
+        for round in 0..rounds {
+            tally.start();
+            tally.scatter(Lobe::from(a).scaled(2.0));
+            tally.add(0, WeightFactor::One, 1.0);
+            tally.add(1, WeightFactor::Lobe(b.into()), 0.5);
+            tally.select(1);
+            tally.add(0, WeightFactor::Lobe(b.into()), 3.0);
+            tally.scatter(Lobe::from(b).scaled(0.5));
+            tally.add(0, WeightFactor::Complement(c.into()), 1.0);
+            tally.select(0);
+            if round % 2 == 0 {
+                tally.flush(0..bands);
+            }
+        }
+        assert!(tally.entries.is_empty());
+        let sums = tally.into_sums();
+        for band in 0..bands {
+            let [a, b, c] = [a, b, c].map(|id| f64::from(models.spectra.lanes(id)[band]));
+            let n = f64::from(rounds);
+            let expected = [2.0 * a, a * b, 6.0 * a * b + a * b * (1.0 - c)].map(|sum| n * sum);
+            let sums =
+                [sums[0].values()[band], sums[0].values()[bands + band], sums[1].values()[band]];
+            for (sum, expected) in sums.into_iter().zip(expected) {
+                // Eighths and their products are exact.
+                assert!((sum - expected).abs() < 1e-12, "{band}: {sum} for {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_flush_of_one_band_leaves_the_others() {
+        let models = SurfaceModels::new(20);
+        let mut tally = Tally::new(&models, vec![Sums::new(1, 20)]);
+        tally.start();
+        tally.scatter(Lobe::from(SpectrumId::ONE).scaled(3.0));
+        tally.add(0, WeightFactor::One, 1.0);
+        tally.flush(17..18);
+        let expected: Vec<f64> = (0..20).map(|band| if band == 17 { 3.0 } else { 0.0 }).collect();
+        assert_eq!(tally.into_sums()[0].values(), expected);
+    }
+}
