@@ -31,23 +31,6 @@ impl<B: BandModel> Directional<B> {
         Self { bands: bands.to_vec(), fractions: FractionTable::new(bands, spectra) }
     }
 
-    pub(super) fn f(&self, at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
-        let angles = Angles::new(at.normal, at.wo, wi);
-        let spectrum = LobeSpectrum::Model(at.surface, angles);
-        at.is_same_side(wi).then_some(Lobe { spectrum, scale: 1.0 })
-    }
-
-    pub(super) fn sample_f(&self, at: &Interaction<'_>, u: [f64; 3]) -> Option<BsdfSample> {
-        let [_, u, v] = u;
-        let wi = cosine_direction(if at.is_front() { at.normal } else { -at.normal }, u, v);
-        // f |cos θ| / pdf = π f.
-        self.f(at, wi).map(|weight| BsdfSample { wi, weight })
-    }
-
-    pub(super) fn pdf(&self, at: &Interaction<'_>, wi: DVec3) -> f64 {
-        if at.is_same_side(wi) { at.normal.dot(wi).abs() / PI } else { 0.0 }
-    }
-
     pub(super) fn scattered_fraction(&self, at: &Interaction<'_>) -> Lobe {
         FractionTable::at(&self.fractions.scattered, at.cos_o())
     }
@@ -74,6 +57,24 @@ impl<B: BandModel> Directional<B> {
             *value = middle.max(SpectrumTable::LEAST * first.max(last));
         }
     }
+}
+
+/// `π f` of a model that depends on both directions; `None` between the two sides.
+pub(super) fn f(at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
+    let spectrum = LobeSpectrum::Model(at.surface, Angles::new(at.normal, at.wo, wi));
+    at.is_same_side(wi).then_some(Lobe { spectrum, scale: 1.0 })
+}
+
+/// Samples the cosine.
+pub(super) fn sample_f(at: &Interaction<'_>, [_, u, v]: [f64; 3]) -> Option<BsdfSample> {
+    let wi = cosine_direction(if at.is_front() { at.normal } else { -at.normal }, u, v);
+    // f |cos θ| / pdf = π f.
+    f(at, wi).map(|weight| BsdfSample { wi, weight })
+}
+
+/// `cos θ / π` on the side of `wo`.
+pub(super) fn pdf(at: &Interaction<'_>, wi: DVec3) -> f64 {
+    if at.is_same_side(wi) { at.normal.dot(wi).abs() / PI } else { 0.0 }
 }
 
 /// Direction about a normal with the density `cos θ / π`, from two uniform numbers.
@@ -156,8 +157,8 @@ const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
     (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
     (0.237_233_795_041_835_5, 0.156_853_322_938_943_6),
-    (0.408_282_678_752_175_1, 0.181_341_891_689_181_0),
-    (0.591_717_321_247_824_9, 0.181_341_891_689_181_0),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
+    (0.591_717_321_247_825, 0.181_341_891_689_181),
     (0.762_766_204_958_164_5, 0.156_853_322_938_943_6),
     (0.898_333_238_706_813_4, 0.111_190_517_226_687_2),
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),

@@ -150,8 +150,7 @@ impl<'m> Interaction<'m> {
         match self.bsdf() {
             Bsdf::BiLambertian(model) => model.f(self, wi),
             Bsdf::GlossyLeaf(model) => model.f(self, wi),
-            Bsdf::Rpv(model) => model.f(self, wi),
-            Bsdf::Soilspect(model) => model.f(self, wi),
+            Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::f(self, wi),
         }
     }
 
@@ -162,8 +161,7 @@ impl<'m> Interaction<'m> {
         match self.bsdf() {
             Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
             Bsdf::GlossyLeaf(model) => model.sample_f(self, importance, u),
-            Bsdf::Rpv(model) => model.sample_f(self, u),
-            Bsdf::Soilspect(model) => model.sample_f(self, u),
+            Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::sample_f(self, u),
         }
     }
 
@@ -173,8 +171,7 @@ impl<'m> Interaction<'m> {
         match self.bsdf() {
             Bsdf::BiLambertian(model) => model.pdf(self, importance, wi),
             Bsdf::GlossyLeaf(model) => model.pdf(self, importance, wi),
-            Bsdf::Rpv(model) => model.pdf(self, wi),
-            Bsdf::Soilspect(model) => model.pdf(self, wi),
+            Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::pdf(self, wi),
         }
     }
 

@@ -27,7 +27,7 @@ fn radiance(
     let spectrum = |id| stage.models.spectra.lanes(id);
     let mut radiance = vec![0.0; stage.bands];
     let mut throughput = vec![1.0; stage.bands];
-    let (mut hit, mut direction) = (Some(first.clone()), ray.direction);
+    let (mut hit, mut direction) = (Some(*first), ray.direction);
     for order in 1.. {
         // The path leaves the scene: upwards it meets the sky, of radiance E_sky / π.
         let Some(surface_hit) = hit else {
@@ -76,7 +76,9 @@ fn radiance(
             if survival >= probability {
                 break;
             }
-            throughput.iter_mut().for_each(|weight| *weight /= probability);
+            for weight in &mut throughput {
+                *weight /= probability;
+            }
         }
         direction = sample.wi;
         *rays += 1;
@@ -122,7 +124,7 @@ impl ReferencePath {
 
 impl PathTracer for ReferencePath {
     fn start(&mut self, ray: &Ray, sampler: Sampler) {
-        (self.ray, self.sampler, self.has_hit) = (ray.clone(), sampler, false);
+        (self.ray, self.sampler, self.has_hit) = (*ray, sampler, false);
     }
 
     fn advance(&mut self, stage: &Stage, results: RayResults<'_>, _: &mut RayQueue) {
