@@ -104,12 +104,10 @@ fn sphere(index: u32, seed: u64) -> DVec3 {
 
 const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
 
-/// Directions from which fractions are tested: along the normal, oblique, and at 80° and 89°.
-fn directions() -> Vec<DVec3> {
+/// Unit vector at an angle from the normal, degrees.
+fn oblique(degrees: f64) -> DVec3 {
     let tangent = NORMAL.cross(DVec3::Z).try_normalize().expect("the normal is no vertical");
-    let at =
-        |degrees: f64| NORMAL * degrees.to_radians().cos() + tangent * degrees.to_radians().sin();
-    vec![NORMAL, -NORMAL, sphere(3, 1), sphere(4, 1), at(80.0), at(89.0)]
+    NORMAL * degrees.to_radians().cos() + tangent * degrees.to_radians().sin()
 }
 
 /// `∫ f |cos θ| dω` over the sphere is the scattered fraction, over the side of `wo` the reflected one; the absorbed
