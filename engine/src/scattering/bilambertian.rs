@@ -13,6 +13,7 @@ pub struct BiLambertian {
     front: Side,
     back: Side,
     transmitted: SpectrumId,
+    is_opaque: bool,
 }
 
 /// Fractions of the light that arrives on one side.
@@ -20,6 +21,8 @@ pub struct BiLambertian {
 struct Side {
     /// ρ.
     reflected: SpectrumId,
+    /// True if ρ is 0 in every band.
+    is_black: bool,
     /// ρ + τ.
     scattered: SpectrumId,
     /// 1 - ρ - τ.
@@ -34,14 +37,17 @@ impl BiLambertian {
         let mut side = |rho: &[f32]| {
             // ρ + τ = 1 may round to an ulp above 1, which would absorb less than nothing.
             let scattered = rho.iter().zip(tau).map(|(r, t)| (r + t).min(1.0));
+            let reflected = spectra.add(rho.iter().copied());
             Side {
-                reflected: spectra.add(rho.iter().copied()),
+                reflected,
+                is_black: spectra.is_zero(reflected),
                 absorbed: spectra.add(scattered.clone().map(|scattered| 1.0 - scattered)),
                 scattered: spectra.add(scattered),
             }
         };
         let (front, back) = (side(optics.front()), side(optics.back()));
-        Self { front, back, transmitted: spectra.add(tau.iter().copied()) }
+        let transmitted = spectra.add(tau.iter().copied());
+        Self { front, back, transmitted, is_opaque: spectra.is_zero(transmitted) }
     }
 
     const fn side(&self, is_front: bool) -> &Side {
@@ -58,9 +64,15 @@ impl BiLambertian {
         [self.reflected(at).into(), self.transmitted.into()]
     }
 
+    #[inline(always)]
     pub(super) fn f(&self, at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
-        let spectrum = self.spectrum(at, wi);
-        (!at.models.spectra.is_zero(spectrum)).then(|| spectrum.into())
+        let (spectrum, is_zero) = if at.is_same_side(wi) {
+            let side = self.side(at.is_front());
+            (side.reflected, side.is_black)
+        } else {
+            (self.transmitted, self.is_opaque)
+        };
+        (!is_zero).then(|| spectrum.into())
     }
 
     /// ρ + τ.
@@ -78,14 +90,17 @@ impl BiLambertian {
     }
 
     /// Power of reflection and of transmission.
+    #[inline(always)]
     fn powers(&self, at: &Interaction<'_>, importance: Importance<'_>) -> [f64; 2] {
-        [self.reflected(at), self.transmitted].map(|spectrum| {
-            let is_zero = at.models.spectra.is_zero(spectrum);
+        let side = self.side(at.is_front());
+        let power = |spectrum: SpectrumId, is_zero: bool| {
             let power = || at.models.power(&spectrum.into(), importance);
             f64::from(if is_zero { 0.0 } else { power() })
-        })
+        };
+        [power(side.reflected, side.is_black), power(self.transmitted, self.is_opaque)]
     }
 
+    #[inline(always)]
     pub(super) fn sample_f(
         &self,
         at: &Interaction<'_>,

@@ -60,12 +60,14 @@ impl<B: BandModel> Directional<B> {
 }
 
 /// `π f` of a model that depends on both directions; `None` between the two sides.
+#[inline(never)]
 pub(super) fn f(at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
     let spectrum = LobeSpectrum::Model(at.surface, Angles::new(at.normal, at.wo, wi));
     at.is_same_side(wi).then_some(Lobe { spectrum, scale: 1.0 })
 }
 
 /// Samples the cosine.
+#[inline(never)]
 pub(super) fn sample_f(at: &Interaction<'_>, [_, u, v]: [f64; 3]) -> Option<BsdfSample> {
     let wi = cosine_direction(if at.is_front() { at.normal } else { -at.normal }, u, v);
     // f |cos θ| / pdf = π f.

@@ -66,6 +66,7 @@ impl GlossyLeaf {
         (enters * (1.0 - self.reflected(cos_o)) / (1.0 - self.mean_reflected)) as f32
     }
 
+    #[inline(never)]
     pub(super) fn f(&self, at: &Interaction<'_>, wi: DVec3) -> Option<Lobe> {
         let (cos_o, cos_i) = (at.cos_o(), at.normal.dot(wi).abs());
         let coupling = self.coupling(cos_o, cos_i);
@@ -104,6 +105,7 @@ impl GlossyLeaf {
         (total > 0.0).then(|| powers.map(|power| power / total))
     }
 
+    #[inline(never)]
     pub(super) fn sample_f(
         &self,
         at: &Interaction<'_>,

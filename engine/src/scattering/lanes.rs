@@ -17,29 +17,46 @@ fn with_simd_if_many<R>(lanes: usize, work: impl Fn() -> R) -> R {
 }
 
 /// `Σ a b` of spectra of whole groups of lanes.
+#[inline(always)]
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     debug_assert!(a.len().is_multiple_of(LANES) && a.len() == b.len(), "whole groups of lanes");
+    // One group needs neither a loop nor dispatch.
+    if let ([a], [b]) = (a.as_chunks::<LANES>().0, b.as_chunks::<LANES>().0) {
+        let products: [f32; LANES] = from_fn(|lane| a[lane] * b[lane]);
+        return folded(products, |a, b| a + b);
+    }
+    dot_of_many(a, b)
+}
+
+#[inline(never)]
+fn dot_of_many(a: &[f32], b: &[f32]) -> f32 {
     with_simd_if_many(
         a.len(),
         #[inline(always)]
-        || dot_of(a, b),
+        || {
+            let mut sums = [0.0; LANES];
+            for (a, b) in groups(a).zip(groups(b)) {
+                for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+                    *sum += a * b;
+                }
+            }
+            folded(sums, |a, b| a + b)
+        },
     )
 }
 
-#[inline(always)]
-fn dot_of(a: &[f32], b: &[f32]) -> f32 {
-    let mut sums = [0.0; LANES];
-    for (a, b) in groups(a).zip(groups(b)) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    folded(sums, |a, b| a + b)
-}
-
 /// Maximum of 0 and a spectrum of whole groups of lanes.
+#[inline(always)]
 pub(crate) fn largest(spectrum: &[f32]) -> f32 {
     debug_assert!(spectrum.len().is_multiple_of(LANES), "whole groups of lanes");
+    if let [group] = spectrum.as_chunks::<LANES>().0 {
+        return largest_of([*group].into_iter());
+    }
+    largest_of_many(spectrum)
+}
+
+#[inline(never)]
+fn largest_of_many(spectrum: &[f32]) -> f32 {
     with_simd_if_many(
         spectrum.len(),
         #[inline(always)]

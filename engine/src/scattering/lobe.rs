@@ -52,41 +52,52 @@ impl From<SpectrumId> for Lobe {
     }
 }
 
-/// Angles between two directions and the normal of a surface, as surface models take them.
-///
-/// What cancels near the hot spot is computed in f64, from differences of directions.
+/// Angles between two directions and the normal of a surface: they determine the value of an isotropic surface
+/// model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles {
-    /// Cosine of the angle between `wi` and the normal, at least 0.
+    /// Cosine of the angle between `wi` and the normal, above 0.
     pub cos_i: f32,
-    /// Cosine of the angle between `wo` and the normal, at least 0.
+    /// Cosine of the angle between `wo` and the normal, above 0.
     pub cos_o: f32,
-    /// Cosine of the phase angle, between `wi` and `wo`.
-    pub cos_phase: f32,
-    /// Cosine of the angle between `wo` and the mirror direction of `wi`.
-    pub cos_mirror: f32,
-    /// Tangent of half the phase angle.
+    /// Tangent of half the phase angle, between `wi` and `wo`. Unlike the cosine it is accurate at the hot spot.
     pub tan_half_phase: f32,
-    /// `√(tan²θi + tan²θo - 2 tan θi tan θo cos φ)`: distance between the points where the two directions meet
-    /// a plane at unit height.
-    pub hot_spot_distance: f32,
 }
 
 impl Angles {
     /// Angles of two unit vectors on the same side of a surface.
     #[must_use]
     pub fn new(normal: DVec3, wo: DVec3, wi: DVec3) -> Self {
-        let (signed_o, signed_i) = (normal.dot(wo), normal.dot(wi));
-        let cos_phase = wo.dot(wi);
-        let on_plane = |w: DVec3, cosine: f64| w / cosine.abs().max(f64::MIN_POSITIVE);
-        Self {
-            cos_i: signed_i.abs() as f32,
-            cos_o: signed_o.abs() as f32,
-            cos_phase: cos_phase as f32,
-            cos_mirror: (2.0 * signed_i * signed_o - cos_phase) as f32,
-            tan_half_phase: ((wi - wo).length() / (wi + wo).length()) as f32,
-            hot_spot_distance: on_plane(wi, signed_i).distance(on_plane(wo, signed_o)) as f32,
-        }
+        let cosine = |w: DVec3| (normal.dot(w).abs() as f32).max(f32::MIN_POSITIVE);
+        let tan_half_phase = (wi - wo).length() / (wi + wo).length().max(1e-9);
+        let (cos_i, cos_o) = (cosine(wi), cosine(wo));
+        Self { cos_i, cos_o, tan_half_phase: tan_half_phase as f32 }
+    }
+
+    /// Cosine of the phase angle.
+    #[must_use]
+    pub fn cos_phase(&self) -> f32 {
+        1.0 - self.versine()
+    }
+
+    /// Cosine of the angle between `wo` and the mirror direction of `wi`.
+    #[must_use]
+    pub fn cos_mirror(&self) -> f32 {
+        2.0 * self.cos_i * self.cos_o - self.cos_phase()
+    }
+
+    /// `√(tan²θi + tan²θo - 2 tan θi tan θo cos φ)`: distance between the points where the two directions meet
+    /// a plane at unit height.
+    #[must_use]
+    pub fn hot_spot_distance(&self) -> f32 {
+        let (i, o) = (1.0 / self.cos_i, 1.0 / self.cos_o);
+        ((i - o) * (i - o) + 2.0 * self.versine() * i * o).sqrt()
+    }
+
+    /// 1 - cos g.
+    fn versine(&self) -> f32 {
+        let squared = self.tan_half_phase * self.tan_half_phase;
+        2.0 * squared / (1.0 + squared)
     }
 }
 
@@ -102,8 +113,9 @@ impl SurfaceModels {
         match *spectrum {
             LobeSpectrum::Table(id) => &self.spectra.lanes(id)[lanes],
             LobeSpectrum::Sum(terms) => {
-                let lanes_of = |id| &self.spectra.lanes(id)[lanes.clone()];
-                sum(terms, lanes_of, &mut buffer[..lanes.len()])
+                let buffer = &mut buffer[..lanes.len()];
+                add(terms, |id| &self.spectra.lanes(id)[lanes.clone()], buffer);
+                buffer
             }
             LobeSpectrum::Model(surface, angles) => {
                 let buffer = &mut buffer[..lanes.len()];
@@ -113,25 +125,36 @@ impl SurfaceModels {
         }
     }
 
-    /// Spectral part of a lobe in the representative bands; in `buffer` if it has to be computed.
+    /// Calls a function with the spectral part of a lobe in the representative bands.
     #[inline(always)]
-    pub(crate) fn representatives<'v>(
-        &'v self,
+    pub(crate) fn with_representatives<R>(
+        &self,
         spectrum: &LobeSpectrum,
-        buffer: &'v mut [f32; SpectrumTable::REPRESENTATIVES],
-    ) -> &'v [f32] {
-        let count = SpectrumTable::representatives_len(self.spectra.bands());
+        function: impl FnOnce(&[f32]) -> R,
+    ) -> R {
+        if let LobeSpectrum::Table(id) = *spectrum {
+            function(self.spectra.representatives(id))
+        } else {
+            let mut buffer = [0.0; SpectrumTable::REPRESENTATIVES];
+            function(self.evaluate_representatives(spectrum, &mut buffer))
+        }
+    }
+
+    #[inline(never)]
+    fn evaluate_representatives<'b>(
+        &self,
+        spectrum: &LobeSpectrum,
+        buffer: &'b mut [f32; SpectrumTable::REPRESENTATIVES],
+    ) -> &'b [f32] {
+        let buffer = &mut buffer[..SpectrumTable::representatives_len(self.spectra.bands())];
         match *spectrum {
-            LobeSpectrum::Table(id) => self.spectra.representatives(id),
-            LobeSpectrum::Sum(terms) => {
-                sum(terms, |id| self.spectra.representatives(id), &mut buffer[..count])
-            }
+            LobeSpectrum::Table(id) => buffer.copy_from_slice(self.spectra.representatives(id)),
+            LobeSpectrum::Sum(terms) => add(terms, |id| self.spectra.representatives(id), buffer),
             LobeSpectrum::Model(surface, angles) => {
-                let buffer = &mut buffer[..count];
                 self.bsdf(surface).evaluate_representatives(&angles, buffer);
-                buffer
             }
         }
+        buffer
     }
 
     /// Largest value of the spectral part of a lobe if it is known at no cost; 1 if it is not.
@@ -149,13 +172,13 @@ impl SurfaceModels {
     }
 }
 
-fn sum<'v>(
+/// Writes the sum of two spectra, each times a factor.
+fn add<'v>(
     [(a, of_a), (b, of_b)]: [(SpectrumId, f32); 2],
     values: impl Fn(SpectrumId) -> &'v [f32],
-    buffer: &'v mut [f32],
-) -> &'v [f32] {
-    for ((sum, a), b) in buffer.iter_mut().zip(values(a)).zip(values(b)) {
+    sums: &mut [f32],
+) {
+    for ((sum, a), b) in sums.iter_mut().zip(values(a)).zip(values(b)) {
         *sum = a * of_a + b * of_b;
     }
-    buffer
 }

@@ -123,11 +123,12 @@ impl SurfaceModels {
     }
 
     /// Power of a lobe in the bands that importance names.
+    #[inline(always)]
     fn power(&self, lobe: &Lobe, importance: Importance<'_>) -> f32 {
         match importance {
             Importance::Representatives(throughput) => {
-                let mut buffer = [0.0; SpectrumTable::REPRESENTATIVES];
-                dot(throughput, self.representatives(&lobe.spectrum, &mut buffer)) * lobe.scale
+                let dot = |lobe: &[f32]| dot(throughput, lobe);
+                self.with_representatives(&lobe.spectrum, dot) * lobe.scale
             }
             Importance::Band(band) => self.value(lobe, band),
         }
@@ -145,6 +146,7 @@ impl<'m> Interaction<'m> {
     }
 
     /// `π f(wi, wo)`; `None` where it is zero in every band, so that no shadow ray is traced for it.
+    #[inline(always)]
     #[must_use]
     pub fn f(&self, wi: DVec3) -> Option<Lobe> {
         match self.bsdf() {
@@ -156,6 +158,7 @@ impl<'m> Interaction<'m> {
 
     /// A direction in which a path continues, from three uniform numbers; `None` where everything is absorbed.
     /// Lobes are chosen in proportion to the power that each would carry.
+    #[inline(always)]
     #[must_use]
     pub fn sample_f(&self, importance: Importance<'_>, u: [f64; 3]) -> Option<BsdfSample> {
         match self.bsdf() {

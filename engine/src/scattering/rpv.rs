@@ -16,9 +16,9 @@ impl BandModel for RpvParameters {
         let minnaert = (cos_i * cos_o * (cos_i + cos_o)).powf(self.k - 1.0);
         let asymmetry = self.asymmetry;
         let squared = asymmetry * asymmetry;
-        let cosines = 1.0 + 2.0 * asymmetry * angles.cos_phase + squared;
+        let cosines = 1.0 + 2.0 * asymmetry * angles.cos_phase() + squared;
         let henyey_greenstein = (1.0 - squared) / (cosines * cosines.sqrt());
-        let hot_spot = 1.0 + (1.0 - self.hot_spot) / (1.0 + angles.hot_spot_distance);
+        let hot_spot = 1.0 + (1.0 - self.hot_spot) / (1.0 + angles.hot_spot_distance());
         self.rho0 * minnaert * henyey_greenstein * hot_spot
     }
 }

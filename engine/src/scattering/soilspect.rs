@@ -11,7 +11,7 @@ use crate::components::SoilspectParameters;
 impl BandModel for SoilspectParameters {
     fn f(&self, angles: &Angles) -> f32 {
         let legendre = |cosine: f32| (3.0 * cosine * cosine - 1.0) / 2.0;
-        let (phase, mirror) = (angles.cos_phase, angles.cos_mirror);
+        let (phase, mirror) = (angles.cos_phase(), angles.cos_mirror());
         let opposition = self.hot_spot / (1.0 + angles.tan_half_phase / self.roughness);
         let phase_function = 1.0
             + self.backward[0] * phase

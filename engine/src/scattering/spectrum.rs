@@ -27,6 +27,10 @@ impl SpectrumId {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectrumTable {
     bands: usize,
+    /// Length of a row of `values`.
+    lanes: usize,
+    /// Length of a row of `representatives`.
+    representative_lanes: usize,
     /// Shape `[spectra, lanes]`.
     values: Vec<f32>,
     /// Shape `[spectra, representative lanes]`.
@@ -46,7 +50,14 @@ impl SpectrumTable {
     #[must_use]
     pub fn new(bands: usize) -> Self {
         let (values, representatives, largest) = (Vec::new(), Vec::new(), Vec::new());
-        let mut table = Self { bands, values, representatives, largest };
+        let mut table = Self {
+            bands,
+            lanes: bands.next_multiple_of(LANES),
+            representative_lanes: Self::representatives_len(bands),
+            values,
+            representatives,
+            largest,
+        };
         for constant in [0.0, 1.0] {
             table.add(std::iter::repeat_n(constant, bands));
         }
@@ -73,26 +84,29 @@ impl SpectrumTable {
     }
 
     /// The spectrum, padded with zeros to whole groups of [`LANES`]; shape `[lanes]`.
+    #[inline]
     #[must_use]
     pub fn lanes(&self, id: SpectrumId) -> &[f32] {
-        let width = self.bands.next_multiple_of(LANES);
-        &self.values[id.index() * width..][..width]
+        &self.values[id.index() * self.lanes..][..self.lanes]
     }
 
     /// Its representative bands, padded with zeros to whole groups of [`LANES`].
+    #[inline]
     #[must_use]
     pub fn representatives(&self, id: SpectrumId) -> &[f32] {
-        let width = Self::representatives_len(self.bands);
-        &self.representatives[id.index() * width..][..width]
+        let lanes = self.representative_lanes;
+        &self.representatives[id.index() * lanes..][..lanes]
     }
 
     /// Its largest value.
+    #[inline]
     #[must_use]
     pub fn largest(&self, id: SpectrumId) -> f32 {
         self.largest[id.index()]
     }
 
     /// Returns whether it is 0 in every band.
+    #[inline]
     #[must_use]
     pub fn is_zero(&self, id: SpectrumId) -> bool {
         self.largest(id) == 0.0

@@ -1,7 +1,7 @@
 //! Russian roulette of paths and packets.
 
 use crate::extract::Rules;
-use crate::scattering::{BsdfSample, Importance, Interaction, SpectrumTable, largest, multiply};
+use crate::scattering::{BsdfSample, Importance, Interaction, Lobe, largest, multiply};
 
 /// Throughput threshold below which Russian roulette starts, as a fraction of the initial throughput.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +74,7 @@ impl RussianRoulette<'_> {
 /// Samples the direction in which a path continues after `order` scattering events, this one included; `None`
 /// at its end. The weight includes the factor of Russian roulette; the representative bands of the throughput
 /// are multiplied by it.
+#[inline]
 pub(super) fn sample_with_roulette(
     surface: &Interaction<'_>,
     roulette: &RussianRoulette<'_>,
@@ -82,9 +83,8 @@ pub(super) fn sample_with_roulette(
     [lobe, u, v, survival]: [f64; 4],
 ) -> Option<BsdfSample> {
     let sample = surface.sample_f(Importance::Representatives(throughput), [lobe, u, v])?;
-    let mut buffer = [0.0; SpectrumTable::REPRESENTATIVES];
-    let weight = surface.models().representatives(&sample.weight.spectrum, &mut buffer);
-    multiply(throughput, weight, sample.weight.scale);
+    let Lobe { spectrum, scale } = sample.weight;
+    surface.models().with_representatives(&spectrum, |weight| multiply(throughput, weight, scale));
     let factor = roulette.survive(order, throughput, survival)?;
     Some(BsdfSample { weight: sample.weight.scaled(factor), ..sample })
 }

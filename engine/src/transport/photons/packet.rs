@@ -274,8 +274,7 @@ pub(super) struct SurfaceEmission<'h> {
 
 /// Multiplies the representative bands of a throughput by a lobe.
 fn multiply_by_lobe(throughput: &mut [f32], models: &SurfaceModels, lobe: Lobe) {
-    let mut buffer = [0.0; SpectrumTable::REPRESENTATIVES];
-    multiply(throughput, models.representatives(&lobe.spectrum, &mut buffer), lobe.scale);
+    models.with_representatives(&lobe.spectrum, |weight| multiply(throughput, weight, lobe.scale));
 }
 
 /// Traces the flight of a packet; returns what it meets, if it does not end, and the number of rays.

@@ -1,7 +1,7 @@
 use super::{AlbedoCounter, WeightFactor};
 use crate::extract::Stage;
 use crate::sampling::Key;
-use crate::scattering::{SpectrumTable, largest_product, representatives_of};
+use crate::scattering::{largest_product, representatives_of};
 use crate::transport::photons::{PacketOptions, PhotonKind, photon_film};
 use crate::transport::{Film, LightSource, ReferencePlane, RouletteThreshold};
 
@@ -48,9 +48,8 @@ impl VirtualPhotonRoulette {
         let mean = &self.reciprocal_mean;
         match factor {
             WeightFactor::Lobe(lobe) => {
-                let mut buffer = [0.0; SpectrumTable::REPRESENTATIVES];
-                let values = stage.models.representatives(&lobe.spectrum, &mut buffer);
-                largest_product([throughput, values, mean]) * lobe.scale
+                let largest = |lobe: &[f32]| largest_product([throughput, lobe, mean]);
+                stage.models.with_representatives(&lobe.spectrum, largest) * lobe.scale
             }
             WeightFactor::One | WeightFactor::Complement(_) => largest_product([throughput, mean]),
         }
