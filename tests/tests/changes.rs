@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use sunfleck::components::{
-    BlackBody, Emission, LeafArea, Placement, SceneId, Sensor, Sky, Sun, SurfaceOptics,
-    TerrainPatch,
+    BlackBody, Emission, Instance, LeafArea, SceneId, Sensor, Sky, Sun, SurfaceOptics, TerrainPatch,
 };
 use sunfleck::document::{Options, Scene, read_text};
 use sunfleck::run::SceneWorld;
@@ -123,8 +122,9 @@ fn contents(world: &SceneWorld) -> Vec<String> {
             }
         )+};
     }
-    list!(BlackBody, Emission, LeafArea, Placement, Sensor, Sky, Sun, SurfaceOptics, TerrainPatch);
+    list!(BlackBody, Emission, LeafArea, Sensor, Sky, Sun, SurfaceOptics, TerrainPatch);
     texts.sort();
+    texts.extend(Instance::in_order(&world.world).iter().map(|one| format!("{one:?}")));
     let messages = &world.resources.messages;
     texts.extend(messages.diagnostics().map(|one| format!("{one:?}")));
     texts.extend(messages.notes().chain(messages.skipped()).cloned());

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use glam::DVec2;
-use sunfleck::components::Placement;
+use sunfleck::components::{Instance, Placement};
 use sunfleck::document::{Options, read_text};
 use sunfleck::run::SceneWorld;
 
@@ -45,12 +45,11 @@ fn instances(text: &str, folder: &Path) -> Result<Vec<(String, Placement)>, Stri
     assert!(reading.diagnostics.is_empty(), "{}", reading.render());
     let built =
         SceneWorld::from_scene(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;
-    let mut all: Vec<Placement> = built.world.query::<&Placement>().iter().copied().collect();
-    all.sort_by_key(|placement| placement.id);
+    let all = Instance::in_order(&built.world);
     let name = |p: &Placement| {
         reading.scene.meshes.get_index(p.prototype.0 as usize).expect("a mesh").0.clone()
     };
-    Ok(all.iter().map(|p| (name(p), Placement { id: all[0].id, ..*p })).collect())
+    Ok(all.iter().map(|one| (name(&one.placement), one.placement)).collect())
 }
 
 fn placed(list: &str) -> Vec<(String, Placement)> {
@@ -92,9 +91,9 @@ fn stems_stand_inside_the_stand_and_outside_of_its_holes() {
             assert!(within(10.0, 90.0) && !within(20.0, 40.0), "({x}, {y})");
             assert!(x <= 60.0 || (x - 60.0) / 20.0 + (y - 10.0) / 80.0 >= 1.0, "({x}, {y})");
             assert!((tree.position.z - 11.9).abs() < 1e-12);
-            let height = f64::from(tree.scale_vertical) * if name == "oak" { 5.0 } else { 10.0 };
+            let height = f64::from(tree.scale.vertical) * if name == "oak" { 5.0 } else { 10.0 };
             assert!((9.9..40.0).contains(&height), "{name} of {height} m");
-            assert_eq!(tree.scale_horizontal.to_bits(), tree.scale_vertical.to_bits());
+            assert_eq!(tree.scale.horizontal.to_bits(), tree.scale.vertical.to_bits());
             for (_, other) in &trees[..index] {
                 distance = distance.min((tree.position - other.position).length());
             }

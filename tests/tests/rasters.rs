@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use glam::DVec2;
-use sunfleck::components::Placement;
+use sunfleck::components::{Instance, Placement};
 use sunfleck::document::{Options, read_text};
 use sunfleck::run::SceneWorld;
 use sunfleck::sampling::Key;
@@ -82,10 +82,9 @@ fn stand(folder: &Path, text: &str) -> Result<(Vec<(Placement, DVec2)>, String),
     assert!(reading.diagnostics.is_empty(), "{}", reading.render());
     let built =
         SceneWorld::from_scene(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;
-    let mut all: Vec<Placement> = built.world.query::<&Placement>().iter().copied().collect();
-    all.sort_by_key(|placement| placement.id);
+    let all = Instance::in_order(&built.world).into_iter().map(|one| one.placement);
     let sizes = [DVec2::new(3.0, 5.0), DVec2::new(4.0, 10.0), DVec2::new(2.0, 15.0)];
-    let all = all.into_iter().map(|p| (p, sizes[p.prototype.0 as usize])).collect();
+    let all = all.map(|p| (p, sizes[p.prototype.0 as usize])).collect();
     Ok((all, reading.source.render(&built.diagnostics())))
 }
 
@@ -182,9 +181,9 @@ fn a_canopy_height_model_becomes_its_trees() {
         assert!(distance(tree) < 0.25, "{} m off {place}", distance(tree));
         let ground = bowl(tree.position.truncate());
         assert!((tree.position.z - ground + 0.2).abs() < SAG + 1e-3, "{}", tree.position);
-        let top = tree.position.z + f64::from(tree.scale_vertical) * size.y - ground;
+        let top = tree.position.z + f64::from(tree.scale.vertical) * size.y - ground;
         worst = worst.max((top / height - 1.0).abs());
-        let width = f64::from(tree.scale_horizontal) * size.x;
+        let width = f64::from(tree.scale.horizontal) * size.x;
         assert!((width - diameter).abs() < SQRT_2 * 0.25, "{width} for {diameter}");
         used[tree.prototype.0 as usize] += 1;
     }

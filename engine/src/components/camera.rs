@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 
 use super::{View, VirtualPlane};
 
-/// How points of an image become rays.
+/// Projection of the points of an image to rays.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Optics {
     /// Parallel rays.
@@ -16,17 +16,17 @@ pub enum Optics {
 /// Parallel projection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orthographic {
-    /// What the image shows.
+    /// Part of the scene that the image shows.
     pub footprint: Footprint,
     /// Side of a square pixel, m: the footprint grows to whole pixels around its middle.
     pub pixel: Option<f64>,
-    /// Where the sensor is.
+    /// Direction towards the sensor.
     pub view: View,
-    /// Only light that leaves through it is seen.
+    /// Plane that light must leave through to be seen.
     pub plane: Option<VirtualPlane>,
 }
 
-/// What a parallel projection shows.
+/// Part of the scene that a parallel projection shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Footprint {
     /// A rectangle in the plane perpendicular to the view.
@@ -43,54 +43,54 @@ pub enum Footprint {
 /// Perspective projection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Perspective {
-    /// Where the camera is and where it looks.
+    /// Position and orientation of the camera.
     pub stand: Stand,
     /// Full angles of view across and down the image, rad, each below π.
     pub field: DVec2,
-    /// Whether it sees the sky where nothing stands before it; otherwise there is no data.
+    /// True if pixels without a hit show the sky; otherwise they hold no data.
     pub sees_sky: bool,
 }
 
 /// Fisheye projection: a disc in the middle of the image, as wide as the image's shorter side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fisheye {
-    /// Where the camera is and where it looks.
+    /// Position and orientation of the camera.
     pub stand: Stand,
-    /// How angles become distances from the middle.
+    /// Mapping of angles to distances from the middle.
     pub mapping: Mapping,
     /// Full angle of view, rad: what the disc's edge shows is half of it off the axis.
     pub field: f64,
-    /// Whether it sees the sky where nothing stands before it; otherwise there is no data.
+    /// True if pixels without a hit show the sky; otherwise they hold no data.
     pub sees_sky: bool,
 }
 
 /// Distance from the middle of a fisheye image over an angle θ off the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mapping {
-    /// As `sin(θ/2)`: equal solid angles are equal areas.
+    /// Proportional to `sin(θ/2)`: equal solid angles are equal areas.
     Equisolid,
-    /// As `θ`.
+    /// Proportional to `θ`.
     Equidistant,
-    /// As `sin θ`: equal irradiance on a plane is equal area.
+    /// Proportional to `sin θ`: equal irradiance on a plane is equal area.
     Orthographic,
-    /// As `tan(θ/2)`: circles stay circles.
+    /// Proportional to `tan(θ/2)`: circles stay circles.
     Stereographic,
 }
 
-/// Where a camera is and where it looks.
+/// Position and orientation of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stand {
     /// Position, m, local frame.
     pub position: DVec3,
-    /// What lies in the middle of the image.
+    /// Direction or point in the middle of the image.
     pub look: Look,
-    /// What is up in the image; it need not be perpendicular to the view.
+    /// Direction that is up in the image; it need not be perpendicular to the view.
     pub up: DVec3,
-    /// Whether the heights of position and target are above the ground below each of them.
+    /// True if the heights of position and target count from the ground below each of them.
     pub above_ground: bool,
 }
 
-/// What lies in the middle of a camera's image.
+/// Direction or point in the middle of a camera's image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
     /// A direction from the camera; a unit vector.
@@ -99,7 +99,7 @@ pub enum Look {
     Target(DVec3),
 }
 
-/// How the picture of an image is coloured.
+/// Colours of the picture of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Picture {
     /// By wavelength, stretched.

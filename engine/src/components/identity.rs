@@ -15,3 +15,7 @@ pub struct MaterialId(pub u32);
 /// A mesh prototype, by its place in document order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PrototypeId(pub u32);
+
+/// A planting (an entry of `instances`), by its place in document order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PlantingId(pub u32);

@@ -8,7 +8,7 @@
 //! | mesh prototype | [`SceneId`], [`Name`], `document::Mesh` | [`Mesh`], [`PartMaterials`], [`MeshBounds`], [`LeafArea`], [`InstanceCount`] |
 //! | material | [`SceneId`], [`Name`], `document::Material` | [`SurfaceOptics`], [`BlackBody`] where it emits |
 //! | planting (an entry of `instances`) | [`SceneId`], `document::Instances` | [`ShownMeshes`], [`InstanceRange`] |
-//! | instance | | [`Placement`] (it holds its own scene id: there are millions of them) |
+//! | instance | | [`SceneId`], [`PlantingId`], [`PrototypeId`], [`Position`], [`Yaw`], [`Scale`], [`Lean`] if it is not upright |
 //! | terrain | `document::Terrain` | [`TerrainPatch`], `Ground`, `Georeference` |
 //! | sun | `document::Sun` | [`Sun`] |
 //! | sky | `document::Sky`, `document::ThermalSky` | [`Sky`], [`Emission`] where a sensor measures it |
@@ -30,18 +30,18 @@ pub use camera::{
     Channels, Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Picture, Stand,
 };
 pub use extents::{InstanceCount, LeafArea, MeshBounds, SceneExtents};
-pub use identity::{MaterialId, Name, PrototypeId, SceneId};
+pub use identity::{MaterialId, Name, PlantingId, PrototypeId, SceneId};
 pub use light::{Sky, Sun};
 pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
 pub use optics::{
     EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, RpvParameters, SoilspectParameters,
     SurfaceOptics,
 };
-pub use placement::Placement;
+pub use placement::{Instance, InstanceQuery, Lean, Placement, Position, Scale, Yaw};
 pub use planting::{InstanceRange, ShownMeshes};
 pub use sensor::{
     Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, Per, PhotonMeasure, Photons,
-    Sensor, Stop, System, View, VirtualPlane,
+    Sensor, StopCriterion, System, View, VirtualPlane,
 };
 pub use terrain::{Projection, TerrainPatch};
 pub use thermal::{BlackBody, Emission};

@@ -9,14 +9,14 @@ pub enum Sensor {
     Image(ImageSensor),
     /// The whole scene seen from given directions.
     Directions(Directions),
-    /// What becomes of photons sent from sun and sky.
+    /// Fates of photons from sun and sky.
     Photons(Photons),
 }
 
 impl Sensor {
-    /// What ends its measurement.
+    /// Criteria that end its measurement.
     #[must_use]
-    pub fn until(&self) -> &[Stop] {
+    pub fn until(&self) -> &[StopCriterion] {
         match self {
             Self::Image(sensor) => &sensor.until,
             Self::Directions(sensor) => &sensor.until,
@@ -32,7 +32,7 @@ pub enum System {
     Backward,
     /// Photon packets from sun and sky, or from what emits.
     Forward,
-    /// The same as photons of one band, absorbed or scattered as a whole.
+    /// Photons of one band each, absorbed or scattered as a whole.
     Analog,
     /// Light that was scattered once, integrated.
     FirstOrder,
@@ -45,7 +45,7 @@ pub enum System {
 pub struct View {
     /// From the vertical, rad.
     pub zenith: f64,
-    /// Where the sensor is, clockwise from north, rad.
+    /// Azimuth of the sensor, clockwise from north, rad.
     pub azimuth: f64,
 }
 
@@ -59,65 +59,65 @@ impl View {
     }
 }
 
-/// What an image holds.
+/// Quantity of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageMeasure {
     /// Radiance, W m⁻² sr⁻¹ nm⁻¹.
     Radiance,
     /// Bidirectional reflectance factor `π L / E`; the HDRF under a sky.
     Brf,
-    /// The same split by order of scattering: uncollided, single, multiple.
+    /// The BRF split by order of scattering: uncollided, single, multiple.
     Orders,
     /// Temperature of the black body of this radiance, K, in bands that hold emission.
     BrightnessTemperature,
-    /// Shares of sunlit and shaded ground and canopy.
+    /// Fractions of sunlit and shaded ground and canopy.
     FourComponents,
-    /// Share of the ground, or of the sky in a camera that looks up.
+    /// Fraction of the ground, or of the sky in a camera that looks up.
     GapFraction,
 }
 
 impl ImageMeasure {
-    /// Whether it is made of light, and not of what is seen first.
+    /// Returns whether it is made of light, and not of the first surface along each ray.
     #[must_use]
     pub const fn is_light(self) -> bool {
         matches!(self, Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature)
     }
 }
 
-/// How many paths an image is made of.
+/// Number of paths of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImageSamples {
-    /// So many a pixel.
+    /// Paths per pixel.
     PerPixel(u32),
-    /// So many a square metre of a parallel projection's footprint, perpendicular to the view.
+    /// Paths per square metre of the footprint of a parallel projection, measured perpendicular to the view direction.
     PerArea(f64),
 }
 
 /// An image of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageSensor {
-    /// Columns and rows; where the projection has a pixel size, they follow from the stage.
+    /// Columns and rows; if the projection has a pixel size, they follow from the stage.
     pub size: UVec2,
-    /// How its points become rays.
+    /// Projection of its points to rays.
     pub optics: Optics,
-    /// Paths traced for it, unless `until` says more.
+    /// Paths traced for it without `until`.
     pub samples: ImageSamples,
     /// The first that holds ends the measurement; without any, `samples` do.
-    pub until: Vec<Stop>,
-    /// What to report.
+    pub until: Vec<StopCriterion>,
+    /// Quantities to report.
     pub measure: Vec<ImageMeasure>,
-    /// How its picture is coloured.
+    /// Colours of its picture.
     pub picture: Picture,
-    /// Which transport system estimates it; photon packets draw parallel projections alone.
+    /// Transport system that estimates it; photon packets support only parallel projections.
     pub system: System,
 }
 
-/// When a measurement is good enough.
+/// Criterion that ends a measurement.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Stop {
+pub enum StopCriterion {
     /// The median relative standard error of each product is at most this.
     RelError(f64),
-    /// That of each of these products is at most this.
+    /// The median relative standard error of each of these products is at most this.
     RelErrors(Vec<(String, f64)>),
     /// This much time has passed, s.
     Seconds(f64),
@@ -128,19 +128,19 @@ pub enum Stop {
 /// Reflectance factors of the scene towards given directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
-    /// Where the sensors are.
+    /// Directions towards the sensors.
     pub views: Vec<View>,
     /// The first that holds ends the measurement.
-    pub until: Vec<Stop>,
-    /// What to report.
+    pub until: Vec<StopCriterion>,
+    /// Quantities to report.
     pub measure: Vec<ImageMeasure>,
-    /// Only light that leaves through it counts.
+    /// Plane that light must leave through to count.
     pub plane: Option<VirtualPlane>,
-    /// Which transport system estimates it; none if the one that takes fewer rays is to.
+    /// Transport system that estimates it; if absent, the one that takes fewer rays.
     pub system: Option<System>,
 }
 
-/// What photons are counted for.
+/// Quantity that photons are counted for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PhotonMeasure {
     /// BRF in this many equal-area cells of the hemisphere.
@@ -161,10 +161,9 @@ pub enum PhotonMeasure {
     BrightnessTemperature,
     /// BRF within cones of directions.
     BrfCones(Vec<Cone>),
-    /// Splits what the sensor says of reflected light by order of scattering.
+    /// Splits the other measures of reflected light by order of scattering.
     Orders,
-    /// Fraction of the incident flux that each material absorbs in each horizontal layer, and what
-    /// reaches the ground.
+    /// Fractions of the incident flux that each material absorbs in each horizontal layer, and that reach the ground.
     Fapar(Layers),
     /// Power that each instance absorbs, or each of its triangles and discs too.
     Absorbed(Per),
@@ -178,7 +177,7 @@ pub enum PhotonMeasure {
 }
 
 impl PhotonMeasure {
-    /// Whether it holds light in absolute units, of whatever sources the bands name.
+    /// Returns whether it is in absolute units and includes emitted light.
     #[must_use]
     pub const fn is_absolute(&self) -> bool {
         match self {
@@ -205,12 +204,12 @@ pub struct Photons {
     /// Packets a square metre of the terrain's rectangle; of emitted light, lines along which some start.
     pub per_area: f64,
     /// The first that holds ends the measurement; without any, `per_area` does.
-    pub until: Vec<Stop>,
-    /// What to report.
+    pub until: Vec<StopCriterion>,
+    /// Quantities to report.
     pub measure: Vec<PhotonMeasure>,
-    /// Only what leaves through it, or lies below it, counts.
+    /// Plane that light must leave through, or lie below, to count.
     pub plane: Option<VirtualPlane>,
-    /// What they are followed as: packets or photons.
+    /// Transport system: packets or photons.
     pub system: System,
 }
 
@@ -234,7 +233,7 @@ pub struct Cone {
     pub half_angle: f64,
 }
 
-/// What absorbed power is told of, the finer with the coarser.
+/// Resolution of absorbed power; the finer one includes the coarser one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Per {
     /// Each instance, the terrain as the first.

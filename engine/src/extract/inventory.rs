@@ -4,22 +4,22 @@ use glam::{DMat3, DVec3};
 use hecs::World;
 
 use super::InstanceInput;
-use crate::components::{Mesh, Name, Per, PhotonMeasure, Placement, SceneId, Sensor, TerrainPatch};
+use crate::components::{Instance, Mesh, Name, Per, PhotonMeasure, SceneId, Sensor, TerrainPatch};
 
-/// All that stands in a scene, for reports of each instance.
+/// Instances of a scene, for reports of each of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inventory {
     /// Instances by the id that hits carry, the terrain first.
-    pub instances: Vec<Standing>,
-    /// What they are made of, the terrain first; empty unless triangles are reported.
+    pub instances: Vec<PlacedInstance>,
+    /// Their meshes, the terrain first; empty unless triangles are reported.
     pub meshes: Vec<Mesh>,
     /// Number of the terrain's triangles that are ground: the rest cuts it out of the earth.
     pub ground: usize,
 }
 
-/// An instance.
+/// Instance with its name and its place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Standing {
+pub struct PlacedInstance {
     /// Name of its mesh, and its number among the instances of this mesh in document order from 0:
     /// `tree[3]`; or `terrain`.
     pub name: String,
@@ -42,11 +42,12 @@ pub struct Face {
 }
 
 impl Inventory {
-    /// Of these instances, the terrain's first; `None` unless a sensor reports what they absorb.
-    pub(super) fn of(
+    /// Inventory of instances, the terrain's first; `None` unless a sensor reports their absorbed power.
+    pub(super) fn new(
         world: &World,
         terrain: &TerrainPatch,
-        (placements, instances): (&[Placement], &[InstanceInput]),
+        placed: &[Instance],
+        instances: &[InstanceInput],
         prototypes: &[(&SceneId, &Mesh)],
     ) -> Option<Self> {
         let finest = |sensor: &Sensor| match sensor {
@@ -58,7 +59,8 @@ impl Inventory {
         let names: BTreeMap<u32, &str> =
             query.iter().map(|(id, name, _)| (id.0, name.0.as_str())).collect();
         let mut counts: BTreeMap<u32, u32> = BTreeMap::new();
-        let numbered = placements.iter().map(|Placement { prototype, .. }| {
+        let numbered = placed.iter().map(|Instance { placement, .. }| {
+            let prototype = placement.prototype;
             let count = counts.entry(prototype.0).or_default();
             *count += 1;
             format!("{}[{}]", names[&prototype.0], *count - 1)
@@ -66,7 +68,7 @@ impl Inventory {
         let names = std::iter::once("terrain".to_owned()).chain(numbered);
         let standing = |(name, one): (String, &InstanceInput)| {
             let InstanceInput { mesh, linear, translation: origin } = *one;
-            Standing { name, mesh, linear, origin }
+            PlacedInstance { name, mesh, linear, origin }
         };
         let meshes = std::iter::once(&terrain.mesh).chain(prototypes.iter().map(|&(_, mesh)| mesh));
         let meshes = if per == Per::Triangle { meshes.cloned().collect() } else { Vec::new() };
@@ -77,8 +79,8 @@ impl Inventory {
         })
     }
 
-    /// Where the primitives of each instance start when all are counted in a row; one number more
-    /// than there are instances.
+    /// Index of the first primitive of each instance, counted over all instances, and the total number; shape
+    /// `[instances + 1]`.
     #[must_use]
     pub fn starts(&self) -> Vec<usize> {
         let mut starts = vec![0];
@@ -107,7 +109,7 @@ impl Inventory {
     }
 
     fn face(&self, instance: usize, primitive: usize) -> Face {
-        let Standing { mesh, linear, origin, .. } = &self.instances[instance];
+        let PlacedInstance { mesh, linear, origin, .. } = &self.instances[instance];
         let mesh = &self.meshes[*mesh as usize];
         let corners: Vec<DVec3> = if primitive < mesh.triangles.len() {
             mesh.corners(primitive).iter().map(|corner| corner.as_dvec3()).collect()

@@ -1,4 +1,4 @@
-//! World to [`Stage`]: what this run needs, flat and immutable, and nothing else.
+//! World to [`Stage`]: the data that a run needs, flat and immutable.
 
 mod inventory;
 mod light;
@@ -12,33 +12,32 @@ use hecs::World;
 
 use crate::accel::{self, Boundary, BuildError, Domain, InstanceInput, MeshInput};
 use crate::components::{
-    MaterialId, Mesh, Name, PartMaterials, Placement, SceneId, SurfaceOptics, TerrainPatch,
+    Instance, MaterialId, Mesh, Name, PartMaterials, SceneId, SurfaceOptics, TerrainPatch,
 };
 use crate::scattering::SurfaceModels;
 
-pub use inventory::{Face, Inventory, Standing};
+pub use inventory::{Face, Inventory, PlacedInstance};
 pub use light::{Beam, Disc, Dome, Light};
 pub use stage::{Rules, Stage};
 pub use thermal::{SurfaceBlackBody, Thermal};
 
-/// What the document decides beyond entities.
+/// Settings of a scene that belong to no entity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Number of spectral bands.
     pub bands: usize,
-    /// What lies beyond the terrain's rectangle.
+    /// Boundary of the scene.
     pub boundary: Boundary,
-    /// How paths are traced.
+    /// Rules of transport.
     pub rules: Rules,
 }
 
-/// Builds the stage of a world. Reads every component; of sensors, whether they ask for the inventory.
+/// Extracts the stage of a world. Reads all derived components.
 ///
-/// `built` is the geometry of a stage that was extracted from the same meshes, instances and terrain;
-/// without it, the ray engine's trees are built.
+/// `built` are the trees of the ray engine of the same meshes, instances and terrain; without them, they are built.
 ///
-/// Entities are taken in document order, because a `World` has none. Prototypes that nothing
-/// instantiates and materials that no used part wears do not reach the stage.
+/// Entities are sorted by document order, because a `World` has none. Prototypes without instances and materials
+/// without surfaces are left out.
 ///
 /// # Errors
 /// A mesh that the ray engine refuses.
@@ -53,10 +52,9 @@ pub fn extract(
 ) -> Result<Stage, BuildError> {
     let mut terrains = world.query::<&TerrainPatch>();
     let terrain = terrains.iter().next().expect("a scene has a terrain");
-    let mut placements: Vec<Placement> = world.query::<&Placement>().iter().copied().collect();
-    placements.sort_unstable_by_key(|placement| placement.id);
+    let placed = Instance::in_order(world);
     let used: BTreeMap<u32, u32> = {
-        let mut prototypes: Vec<u32> = placements.iter().map(|p| p.prototype.0).collect();
+        let mut prototypes: Vec<u32> = placed.iter().map(|one| one.placement.prototype.0).collect();
         prototypes.sort_unstable();
         prototypes.dedup();
         // Mesh 0 of the stage is the ground.
@@ -78,29 +76,22 @@ pub fn extract(
         linear: terrain.world_from_object(),
         translation: terrain.origin(),
     }];
-    instances.extend(placements.iter().map(|placement| InstanceInput {
+    instances.extend(placed.iter().map(|Instance { placement, .. }| InstanceInput {
         mesh: used[&placement.prototype.0],
         linear: placement.world_from_object(),
         translation: placement.position,
     }));
-    let build = || {
-        let mut meshes = vec![MeshInput { mesh: &terrain.mesh, surfaces: &ground_surfaces }];
-        meshes.extend(
-            prototypes
-                .iter()
-                .zip(&part_surfaces)
-                .map(|(&(_, mesh, _), surfaces)| MeshInput { mesh, surfaces }),
-        );
-        let domain = Domain {
-            min: terrain.corner,
-            max: terrain.corner + terrain.size,
-            boundary: setting.boundary,
-        };
-        accel::Scene::build(&meshes, &instances, domain)
-    };
-    let geometry = match built {
-        Some(geometry) => geometry,
-        None => Arc::new(build()?),
+    let geometry = if let Some(geometry) = built {
+        geometry
+    } else {
+        let of_parts = prototypes.iter().zip(&part_surfaces);
+        let ground = MeshInput { mesh: &terrain.mesh, surfaces: &ground_surfaces };
+        let meshes: Vec<MeshInput<'_>> = std::iter::once(ground)
+            .chain(of_parts.map(|(&(_, mesh, _), surfaces)| MeshInput { mesh, surfaces }))
+            .collect();
+        let (min, max) = (terrain.corner, terrain.corner + terrain.size);
+        let domain = Domain { min, max, boundary: setting.boundary };
+        Arc::new(accel::Scene::build(&meshes, &instances, domain)?)
     };
     let (mut models, surface_names) = surfaces.models(world, setting.bands);
     let thermal = Thermal::from_world(world, &surfaces.ordered, &mut models.spectra);
@@ -119,10 +110,11 @@ pub fn extract(
         models,
         surface_names,
         light,
-        inventory: Inventory::of(
+        inventory: Inventory::new(
             world,
             terrain,
-            (&placements, &instances),
+            &placed,
+            &instances,
             &prototypes.iter().map(|&(id, mesh, _)| (id, mesh)).collect::<Vec<_>>(),
         )
         .map(Arc::new),

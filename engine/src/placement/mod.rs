@@ -1,12 +1,12 @@
-//! Where instances stand: rules and areas to places, places to instances.
+//! Placement of instances: rules and areas to places, places to trees.
 //!
 //! | step | file |
 //! |---|---|
 //! | areas to a [`Region`] of known size | `region`, `crossings` |
 //! | places: each on its own, at a distance, in rows | `uniform`, `poisson_disc`, `rows` |
 //! | places as dense as a raster says | `map` |
-//! | what stands there, and how | `stand`, `distribution` |
-//! | what is left out | `pattern` |
+//! | trees at the places | `trees`, `distribution` |
+//! | patterns of instances that are left out | `pattern` |
 //!
 //! Each number comes from a stream that is keyed by the seed, the instances' name, what it is for,
 //! and the number of the stem. So neither threads nor other instances nor one more species move a stem.
@@ -21,9 +21,9 @@ mod pattern;
 mod poisson_disc;
 mod region;
 mod rows;
-mod stand;
 #[cfg(test)]
 mod tests;
+mod trees;
 mod uniform;
 
 use glam::DVec2;
@@ -42,7 +42,7 @@ pub use error::PlacementError;
 pub use pattern::Pattern;
 pub(crate) use pattern::is_like;
 pub use region::Region;
-pub use stand::{Habit, Species, stand};
+pub use trees::{Habit, Species, instantiate_trees};
 
 /// Most stems of one scatter.
 const MOST_STEMS: usize = 20_000_000;

@@ -283,7 +283,7 @@ fn species(name: &str, share: f64, prototype: u32) -> Species<'_> {
 fn trees(count: u32, species: &[Species<'_>], habit: &Habit<'_>) -> Vec<Placement> {
     let stems = Amount::Count(count);
     let stems = places(&Rule::Uniform, stems, &whole(), TERRAIN, false, Key::new(4)).expect("room");
-    stand(&stems, species, habit, |place| Some(0.1 * place.x), Key::new(4))
+    instantiate_trees(&stems, species, habit, |place| Some(0.1 * place.x), Key::new(4))
 }
 
 #[test]

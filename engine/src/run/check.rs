@@ -1,49 +1,48 @@
-//! What is refused before anything is traced.
+//! Checks of sensors before anything is traced.
 
-use super::checkpoint::Keeper;
-use super::forecast::{self, Size};
-use super::growth::is_ledger;
-use super::sensors::{MOST_SAMPLES, begin};
+use super::checkpoint::CheckpointStore;
+use super::convergence::is_energy_balance;
+use super::cost::{self, CostEstimate};
+use super::sensors::{Begun, MOST_SAMPLES, MeasureContext, SensorEntity, begin};
 use super::{Failure, Options};
-use crate::components::{ImageSamples, Sensor, Stop};
+use crate::components::{ImageSamples, Sensor, StopCriterion};
 use crate::document::{Diagnostic, suggestion, unknown_name};
 use crate::extract::Stage;
-use crate::products::{Context, Product};
+use crate::products::Product;
 use crate::transport::{Camera, Partition, RANDOMISATIONS};
 
-/// Refuses what cannot be measured, before anything is traced.
+/// Refuses sensors that cannot be measured.
 ///
 /// # Errors
-/// If all sensors together take more memory than there is, or any is asked for what it cannot do.
+/// If all sensors together take more memory than is free, or one of them cannot measure what it is asked for.
 pub(super) fn check(
-    sensors: &[(String, Sensor)],
-    scene: (&Stage, &Context),
+    sensors: &[SensorEntity],
+    scene: MeasureContext<'_>,
     options: &Options,
-    keeper: &Keeper,
+    store: &CheckpointStore,
 ) -> Result<(), Failure> {
-    check_memory(sensors, scene, options, keeper)?;
-    let check = |(name, sensor): &(String, Sensor)| {
-        problems_of(name, sensor, scene, options.quality, keeper)
-    };
+    check_memory(sensors, scene, options, store)?;
+    let check =
+        |one: &SensorEntity| problems_of(&one.name, &one.sensor, scene, options.quality, store);
     let problems: Vec<Diagnostic> = sensors.iter().flat_map(check).collect();
     if problems.is_empty() { Ok(()) } else { Err(Failure::Problems(problems)) }
 }
 
-/// What a sensor cannot do.
+/// Errors of a sensor.
 fn problems_of(
     name: &str,
     sensor: &Sensor,
-    scene: (&Stage, &Context),
+    scene: MeasureContext<'_>,
     quality: f64,
-    keeper: &Keeper,
+    store: &CheckpointStore,
 ) -> Vec<Diagnostic> {
-    let (mut measurement, plan) = begin(name, sensor, scene, quality);
+    let Begun { mut measurement, convergence } = begin(name, sensor, scene, quality);
     let path = format!("sensors.{name}.until");
     let mut problems = Vec::new();
-    problems.extend(too_many_samples(name, sensor, scene.0, quality));
+    problems.extend(too_many_samples(name, sensor, scene.stage, quality));
     let films = measurement.films();
     let fixed = films.iter().find_map(|paced| paced.film.can_grow().err());
-    if let Some(bytes) = fixed.filter(|_| !plan.is_fixed()) {
+    if let Some(bytes) = fixed.filter(|_| !convergence.is_fixed()) {
         let gib = bytes as f64 / f64::from(1 << 30);
         let message = format!(
             "the sums of {RANDOMISATIONS} randomisations take {gib:.1} GiB: too many to grow until they are good enough"
@@ -51,7 +50,7 @@ fn problems_of(
         let help = "write `until: Samples(n)`, or measure fewer cells, pixels or bands";
         problems.push(Diagnostic::error(&path, message).help(help));
     }
-    if let Some(bytes) = fixed.filter(|_| keeper.keeps()) {
+    if let Some(bytes) = fixed.filter(|_| store.is_enabled()) {
         let gib = bytes as f64 / f64::from(1 << 30);
         let message = format!(
             "the sums of {RANDOMISATIONS} randomisations take {gib:.1} GiB: too many for a checkpoint"
@@ -59,18 +58,19 @@ fn problems_of(
         let help = "measure fewer cells, pixels or bands, or run it without `--checkpoint`";
         problems.push(Diagnostic::error(format!("sensors.{name}"), message).help(help));
     }
-    if keeper.share() != Partition::ALL && !plan.is_fixed() {
+    if store.share() != Partition::ALL && !convergence.is_fixed() {
         let message = "a part of a run cannot tell when the whole is good enough";
         let help = "write `until: Samples(n)` alone: all parts then end at the same place";
         problems.push(Diagnostic::error(&path, message).help(help));
     }
-    let named = plan.until.iter().enumerate().filter_map(|(index, stop)| match stop {
-        Stop::RelErrors(limits) => Some((index, limits)),
+    let named = convergence.until.iter().enumerate().filter_map(|(index, stop)| match stop {
+        StopCriterion::RelErrors(limits) => Some((index, limits)),
         _ => None,
     });
     let mut known: Option<Vec<Product>> = None;
     for (index, limits) in named {
-        let at = if plan.until.len() == 1 { path.clone() } else { format!("{path}[{index}]") };
+        let at =
+            if convergence.until.len() == 1 { path.clone() } else { format!("{path}[{index}]") };
         let known = known.get_or_insert_with(|| {
             // Without a single sample.
             measurement.films().into_iter().for_each(|paced| paced.film.trace(0, &|_| ()));
@@ -80,7 +80,7 @@ fn problems_of(
             if !known.iter().any(|one| one.name == *product) {
                 let names = known.iter().map(|one| one.name.as_str());
                 let problem = unknown_name(&at, "product", product, names.clone());
-                let list: Vec<&str> = names.filter(|name| !is_ledger(name)).collect();
+                let list: Vec<&str> = names.filter(|name| !is_energy_balance(name)).collect();
                 let help = suggestion(product, &list, "this sensor reports");
                 problems.push(problem.help(help));
             }
@@ -89,7 +89,7 @@ fn problems_of(
     problems
 }
 
-/// A problem if a density makes more samples in a pixel than it may have.
+/// Returns an error if a density makes more samples in a pixel than it may have.
 fn too_many_samples(
     name: &str,
     sensor: &Sensor,
@@ -108,22 +108,21 @@ fn too_many_samples(
     })
 }
 
-/// What each sensor will take.
+/// Checks the memory of all sensors.
 ///
 /// # Errors
-/// If all together take more memory than there is.
+/// If all together take more memory than is free.
 fn check_memory(
-    sensors: &[(String, Sensor)],
-    scene: (&Stage, &Context),
+    sensors: &[SensorEntity],
+    scene: MeasureContext<'_>,
     options: &Options,
-    keeper: &Keeper,
+    store: &CheckpointStore,
 ) -> Result<(), Failure> {
-    let size = |name: &str, sensor: &Sensor| {
-        let (mut measurement, _) = begin(name, sensor, scene, options.quality);
-        Size::of(measurement.as_mut(), keeper)
+    let cost = |name: &str, sensor: &Sensor| {
+        let Begun { mut measurement, .. } = begin(name, sensor, scene, options.quality);
+        CostEstimate::new(measurement.as_mut(), store)
     };
-    let sizes = sensors.iter().map(|(name, sensor)| size(name, sensor)).collect();
-    match forecast::check(sensors, sizes, options.free_memory(), size) {
+    match cost::check_memory(sensors, options.free_memory(), cost) {
         Some(problem) => Err(Failure::Problems(vec![problem])),
         None => Ok(()),
     }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
+use super::sensors::SensorEntity;
 use crate::accel::Ray;
 use crate::components::{Optics, Sensor};
 use crate::document::Diagnostic;
@@ -17,8 +18,8 @@ const RAYS: u64 = 64;
 const ENCLOSED: f64 = 0.95;
 
 /// Warns of cameras around which all surfaces show their back and belong to one instance.
-pub(super) fn warnings(sensors: &[(String, Sensor)], stage: &Stage) -> Vec<Diagnostic> {
-    let warning = |(name, sensor): &(String, Sensor)| {
+pub(super) fn warnings(sensors: &[SensorEntity], stage: &Stage) -> Vec<Diagnostic> {
+    let warning = |SensorEntity { name, sensor, .. }: &SensorEntity| {
         let Sensor::Image(image) = sensor else { return None };
         if matches!(image.optics, Optics::Orthographic(_)) {
             return None;

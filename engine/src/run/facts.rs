@@ -1,4 +1,4 @@
-//! What a scene consists of, for its author to compare with what was meant.
+//! Contents of a scene, for its author to check.
 
 use std::collections::BTreeMap;
 
@@ -6,18 +6,17 @@ use glam::{DVec2, DVec3};
 use hecs::World;
 use serde::Serialize;
 
-use super::checkpoint::Keeper;
-use super::forecast::Size;
-use super::sensors::begin;
-use super::{Options, sensors};
+use super::Options;
+use super::checkpoint::CheckpointStore;
+use super::cost::CostEstimate;
+use super::sensors::{Begun, MeasureContext, SensorEntity, begin, in_order};
 use crate::accel::Ray;
 use crate::components::{
-    InstanceCount, LeafArea, MaterialId, Mesh, Name, Placement, SceneId, Sensor, Stop, Sun,
+    Instance, InstanceCount, LeafArea, MaterialId, Mesh, Name, SceneId, Sensor, StopCriterion, Sun,
     SurfaceOptics, TerrainPatch,
 };
 use crate::document::{self, Diagnostic, PhotonMeasure, Scene};
 use crate::extract::Stage;
-use crate::products::Context;
 use crate::sampling::Key;
 
 /// Vertical rays along each side of the grid that canopy cover is found with.
@@ -25,7 +24,7 @@ const COVER_RAYS: u32 = 64;
 /// Square metres of a hectare.
 const HECTARE: f64 = 1e4;
 
-/// What a scene consists of.
+/// Contents of a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneFacts {
     /// Title of the scene.
@@ -94,11 +93,11 @@ pub struct MeshFacts {
     pub height_m: f64,
     /// Mean one-sided area of an instance's surfaces of `Leaf` materials, m².
     pub leaf_area_m2: f64,
-    /// What the instances add to the leaf area index of the scene.
+    /// Contribution of the instances to the leaf area index of the scene.
     pub leaf_area_index: f64,
 }
 
-/// Where the sun is.
+/// Position of the sun.
 #[derive(Clone, Debug, Serialize)]
 pub struct SunFacts {
     /// Angle from the vertical, degrees.
@@ -133,7 +132,7 @@ pub struct SensorFacts {
     pub name: String,
     /// Its kind as the scene names it.
     pub kind: &'static str,
-    /// What it measures.
+    /// Quantities that it measures.
     pub measures: Vec<String>,
     /// Number of pixels or views; none of photons.
     pub pixels: Option<u64>,
@@ -146,13 +145,14 @@ pub struct SensorFacts {
 }
 
 impl SceneFacts {
-    /// Collects them from a scene that was read, spawned and built.
+    /// Facts of a scene and its stage.
     pub(super) fn new(
         scene: &Scene,
         world: &World,
-        (stage, context): (&Stage, &Context),
+        measured: MeasureContext<'_>,
         options: &Options,
     ) -> Self {
+        let stage = measured.stage;
         let ground = ground(scene, world);
         let area = ground.size_m[0] * ground.size_m[1];
         let meshes = meshes(world, area);
@@ -170,7 +170,7 @@ impl SceneFacts {
             canopy_cover_error,
             sun: sun(scene),
             bands: bands(scene, world, stage),
-            sensors: sensor_facts(scene, world, (stage, context), options),
+            sensors: sensor_facts(scene, world, measured, options),
             geometry_bytes: (memory.mesh_bytes + memory.instance_bytes) as u64,
             ground,
             meshes,
@@ -253,9 +253,9 @@ fn meshes(world: &World, area: f64) -> Vec<MeshFacts> {
         }
     }
     let mut sums: BTreeMap<u32, InstanceSums> = BTreeMap::new();
-    for placement in &mut world.query::<&Placement>() {
+    for Instance { placement, .. } in Instance::in_order(world) {
         let Some(size) = sizes.get(&placement.prototype.0) else { continue };
-        let up = f64::from(placement.scale_vertical);
+        let up = f64::from(placement.scale.vertical);
         let sum = sums.entry(placement.prototype.0).or_default();
         sum.count += 1;
         sum.height += size.height * up.abs();
@@ -326,18 +326,18 @@ fn bands(scene: &Scene, world: &World, stage: &Stage) -> Vec<BandFacts> {
 fn sensor_facts(
     scene: &Scene,
     world: &World,
-    (stage, context): (&Stage, &Context),
+    measured: MeasureContext<'_>,
     options: &Options,
 ) -> Vec<SensorFacts> {
-    let facts = |(name, sensor): &(String, Sensor)| {
-        let (mut measurement, plan) = begin(name, sensor, (stage, context), options.quality);
+    let facts = |SensorEntity { name, sensor, .. }: &SensorEntity| {
+        let Begun { mut measurement, convergence } = begin(name, sensor, measured, options.quality);
         let pixels = match sensor {
             Sensor::Image(image) => Some(u64::from(image.size.x) * u64::from(image.size.y)),
             Sensor::Directions(directions) => Some(directions.views.len() as u64),
             Sensor::Photons(_) => None,
         };
-        let limit = plan.until.iter().find_map(|stop| match stop {
-            Stop::Samples(samples) => Some(samples.saturating_mul(pixels.unwrap_or(1))),
+        let limit = convergence.until.iter().find_map(|stop| match stop {
+            StopCriterion::Samples(samples) => Some(samples.saturating_mul(pixels.unwrap_or(1))),
             _ => None,
         });
         let (kind, measures) = scene.sensors.get(name.as_str()).map(describe).unwrap_or_default();
@@ -347,11 +347,12 @@ fn sensor_facts(
             measures,
             pixels,
             samples: limit,
-            ends: plan.until.iter().map(ends).collect::<Vec<_>>().join(" or "),
-            memory_bytes: Size::of(measurement.as_mut(), &Keeper::idle()).memory(),
+            ends: convergence.until.iter().map(ends).collect::<Vec<_>>().join(" or "),
+            memory_bytes: CostEstimate::new(measurement.as_mut(), &CheckpointStore::disabled())
+                .memory(),
         }
     };
-    sensors::in_order(world).iter().map(facts).collect()
+    in_order(world).iter().map(facts).collect()
 }
 
 /// Kind and measures of a sensor as the scene names them.
@@ -377,14 +378,14 @@ fn describe(sensor: &document::Sensor) -> (&'static str, Vec<String>) {
     (kind, measures)
 }
 
-fn ends(stop: &Stop) -> String {
+fn ends(stop: &StopCriterion) -> String {
     match stop {
-        Stop::RelError(limit) => format!("relative error {limit:?}"),
-        Stop::RelErrors(limits) => {
+        StopCriterion::RelError(limit) => format!("relative error {limit:?}"),
+        StopCriterion::RelErrors(limits) => {
             let texts = limits.iter().map(|(name, limit)| format!("{name} {limit:?}"));
             format!("relative error of {}", texts.collect::<Vec<_>>().join(", "))
         }
-        Stop::Seconds(limit) => format!("{limit:?} s"),
-        Stop::Samples(limit) => format!("{limit} samples"),
+        StopCriterion::Seconds(limit) => format!("{limit:?} s"),
+        StopCriterion::Samples(limit) => format!("{limit} samples"),
     }
 }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use crate::document::{Diagnostic, Source, legible};
 
-/// Why a scene was not run.
+/// Reason for which a scene was not run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "each variant's message names its fields")]
@@ -28,7 +28,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The same with the lines of the scene that it speaks of.
+    /// Failure with the lines of the scene that it is about.
     #[must_use]
     pub fn with_source(self, source: &Source) -> Self {
         match self {
@@ -38,7 +38,7 @@ impl Failure {
     }
 }
 
-/// A rendered text without `error: ` at its start, which whoever shows the failure writes.
+/// Rendered text without `error: ` at its start, which the program adds.
 fn without_severity(text: &str) -> &str {
     text.strip_prefix("error: ").unwrap_or(text)
 }

@@ -1,5 +1,6 @@
 //! Warnings about light of isolated scenes that takes another way than through the footprint.
 
+use super::sensors::SensorEntity;
 use crate::components::Sensor;
 use crate::extract::Stage;
 use crate::transport::LightBeside;
@@ -8,13 +9,13 @@ use crate::transport::LightBeside;
 const NOTABLE: f64 = 0.01;
 
 /// Warnings for sensors that measure per area of the ground's rectangle, from a pilot run.
-pub(super) fn warnings(sensors: &[(String, Sensor)], stage: &Stage) -> Vec<String> {
+pub(super) fn warnings(sensors: &[SensorEntity], stage: &Stage) -> Vec<String> {
     let refers_to_ground = |sensor: &Sensor| match sensor {
         Sensor::Image(_) => false,
         Sensor::Directions(directions) => directions.plane.is_none(),
         Sensor::Photons(photons) => photons.plane.is_none(),
     };
-    if !sensors.iter().any(|(_, sensor)| refers_to_ground(sensor)) {
+    if !sensors.iter().any(|one| refers_to_ground(&one.sensor)) {
         return Vec::new();
     }
     let Some(LightBeside { incoming, outgoing }) = LightBeside::from_pilot_run(stage) else {

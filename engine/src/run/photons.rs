@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use super::growth::{Measurement, Paced};
+use super::convergence::{Measurement, PacedFilm};
+use super::sensors::MeasureContext;
 use crate::components::{PhotonMeasure, Photons, System, View};
 use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
@@ -13,22 +14,19 @@ use crate::transport::{
     ViewCounter, photon_film,
 };
 
-/// Photon packets of sun and sky, and of what emits, and what they are counted for.
+/// Measurement by photon packets of sun and sky, and of emission.
 pub(super) struct PhotonRun<'a> {
     sensor: &'a Photons,
-    scene: (&'a Stage, &'a Context),
+    scene: MeasureContext<'a>,
     kinds: Vec<(&'a PhotonMeasure, Kind)>,
     reflected: Option<Counted<'a>>,
     emitted: Option<Counted<'a>>,
 }
 
 impl<'a> PhotonRun<'a> {
-    /// No packet yet.
-    pub(super) fn new(
-        sensor: &'a Photons,
-        (stage, context): (&'a Stage, &'a Context),
-        key: Key,
-    ) -> Self {
+    /// Measurement before its first packet.
+    pub(super) fn new(sensor: &'a Photons, scene: MeasureContext<'a>, key: Key) -> Self {
+        let MeasureContext { stage, context } = scene;
         let plane = ReferencePlane::new(sensor.plane.as_ref(), stage);
         let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
             .measure
@@ -68,19 +66,19 @@ impl<'a> PhotonRun<'a> {
         let asked = numbered().filter(|(_, (measure, _))| emits && measure.is_absolute());
         let asked = asked.map(|(index, _)| (index, None)).collect();
         let emitted = film(LightSource::Emitted, asked, key.path("emission"));
-        Self { sensor, scene: (stage, context), kinds, reflected, emitted }
+        Self { sensor, scene, kinds, reflected, emitted }
     }
 }
 
-/// Parts of the light that are reported one by one.
+/// Parts of the light that are reported separately.
 fn parts(sensor: &Photons) -> &'static [Part] {
     if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] }
 }
 
 impl Measurement for PhotonRun<'_> {
-    fn films(&mut self) -> Vec<Paced<'_>> {
+    fn films(&mut self) -> Vec<PacedFilm<'_>> {
         let both = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
-        both.map(|counted| Paced::evenly(&mut counted.film)).collect()
+        both.map(|counted| PacedFilm::evenly(&mut counted.film)).collect()
     }
 
     fn largest(&self) -> usize {
@@ -90,7 +88,7 @@ impl Measurement for PhotonRun<'_> {
     }
 
     fn extents(&self) -> Vec<Extent> {
-        let (stage, context) = self.scene;
+        let MeasureContext { stage, context } = self.scene;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let films: Vec<_> = [reflected, emitted].into_iter().flatten().collect();
         let bands = context.bands.len() as u64;
@@ -112,7 +110,7 @@ impl Measurement for PhotonRun<'_> {
     }
 
     fn products(&self) -> Vec<Product> {
-        let (stage, context) = self.scene;
+        let MeasureContext { stage, context } = self.scene;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let parts = parts(sensor);
         let mut found = Vec::new();
@@ -155,7 +153,7 @@ impl Measurement for PhotonRun<'_> {
     }
 }
 
-/// What was asked for, kinds by number, and counted.
+/// Counters of one source: the index of the measure and the part of the light of each, and their sums.
 struct Counted<'a> {
     asked: Vec<(usize, Option<Part>)>,
     film: ReplicateSums<'a>,
@@ -169,7 +167,7 @@ impl Counted<'_> {
     }
 }
 
-/// A counter with what its product needs.
+/// Counter of a measure, with the data that its products take.
 enum Kind {
     Albedo(AlbedoCounter),
     Cells(CellCounter),
@@ -215,7 +213,7 @@ impl Kind {
         })
     }
 
-    /// Whether it counts light that leaves the scene, and nothing else.
+    /// Returns whether it counts only light that leaves the scene.
     const fn is_of_reflection(&self) -> bool {
         match self {
             Self::Albedo(_) | Self::Cells(_) | Self::Cones(_) | Self::Views(..) => true,
@@ -223,12 +221,12 @@ impl Kind {
         }
     }
 
-    /// Whether it counts radiance, which has a temperature.
+    /// Returns whether it counts radiance, which has a brightness temperature.
     const fn is_of_radiance(&self) -> bool {
         matches!(self, Self::Cells(_) | Self::Cones(_) | Self::Views(..))
     }
 
-    /// What its products consist of.
+    /// Extents of its products.
     fn extents(&self, bands: u64) -> Vec<Extent> {
         let table = |rows: usize, axes: u64| vec![Extent::Table { rows: rows as u64, axes, bands }];
         match self {
@@ -253,7 +251,7 @@ impl Kind {
         }
     }
 
-    /// What its spread tells.
+    /// Products of its sums.
     fn products(&self, spread: &Spread, stage: &Stage, context: &Context) -> Vec<Product> {
         match self {
             Self::Albedo(albedo) => vec![products::albedo(spread, albedo, context)],
@@ -272,7 +270,7 @@ impl Kind {
         }
     }
 
-    /// Its counter for packets of a source.
+    /// Counter for packets of a source.
     fn with_roulette(&self, source: LightSource, key: Key) -> Box<dyn Counter> {
         match self {
             Self::Views(counter, _) => Box::new(counter.clone().with_roulette(source, key)),

@@ -19,8 +19,7 @@ fn of(scene: &Scene, files: &[PathBuf]) -> Result<blake3::Hash, Failure> {
     Ok(hasher.finalize())
 }
 
-/// The same of a scene without what says how long its sensors measure: equal hashes have the same
-/// samples, as many as one likes.
+/// Hash of a scene without the stop criteria of its sensors: scenes with equal hashes draw the same samples.
 pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], Failure> {
     let mut scene = scene.clone();
     for sensor in scene.sensors.values_mut() {

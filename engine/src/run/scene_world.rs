@@ -34,7 +34,7 @@ impl SceneWorld {
     /// World of a scene.
     ///
     /// # Errors
-    /// All that is wrong with the scene.
+    /// All errors of the scene.
     pub fn from_scene(scene: &Scene, folder: &Path) -> Result<Self, Vec<Diagnostic>> {
         let mut world = Self::new(folder);
         world.set(scene)?;
@@ -50,7 +50,7 @@ impl SceneWorld {
     /// Makes the world that of a scene. Meshes, spectra and materials that nothing uses are neither read nor built.
     ///
     /// # Errors
-    /// All that is wrong with the scene.
+    /// All errors of the scene.
     pub fn set(&mut self, scene: &Scene) -> Result<(), Vec<Diagnostic>> {
         let missing = missing_files(scene, &self.resources.folder);
         if !missing.is_empty() {

@@ -1,11 +1,13 @@
-use hecs::World;
+use hecs::{Entity, World};
 
-use super::checkpoint::Keeper;
-use super::growth::{Ending, Measurement, Paced, Plan, grow, is_ledger};
+use super::check::check;
+use super::checkpoint::CheckpointStore;
+use super::convergence::{Convergence, Measurement, PacedFilm, is_energy_balance};
 use super::photons::PhotonRun;
+use super::rounds::{MeasurementEnd, measure_until};
 use super::{Failure, Options, Progress};
 use crate::components::{
-    Directions, ImageMeasure, ImageSensor, Name, Photons, SceneId, Sensor, Stop, System,
+    Directions, ImageMeasure, ImageSensor, Name, Photons, SceneId, Sensor, StopCriterion, System,
 };
 use crate::extract::Stage;
 use crate::products::{self, Context, Extent, Product, SensorReport};
@@ -15,129 +17,191 @@ use crate::transport::{
     LightSettings, LightSource, RANDOMISATIONS, ReferencePlane, Schedule, image_components_film,
 };
 
-/// All sensors in document order.
-pub(super) fn in_order(world: &World) -> Vec<(String, Sensor)> {
-    let mut query = world.query::<(&SceneId, &Name, &Sensor)>();
-    let mut sensors: Vec<_> = query.iter().collect();
-    sensors.sort_unstable_by_key(|&(id, ..)| *id);
-    sensors.into_iter().map(|(_, name, sensor)| (name.0.clone(), sensor.clone())).collect()
+/// Scene that sensors measure, and the data that products are made with.
+#[derive(Clone, Copy)]
+pub(super) struct MeasureContext<'a> {
+    pub(super) stage: &'a Stage,
+    pub(super) context: &'a Context,
 }
 
-/// A measurement before its first sample, and how far it goes.
-pub(super) type Begun<'a> = (Box<dyn Measurement + 'a>, Plan);
+impl<'a> MeasureContext<'a> {
+    /// Both as the functions of `products` take them.
+    pub(super) const fn pair(self) -> (&'a Stage, &'a Context) {
+        (self.stage, self.context)
+    }
+}
 
+/// A sensor of the world.
+pub(super) struct SensorEntity {
+    pub(super) entity: Entity,
+    pub(super) name: String,
+    pub(super) sensor: Sensor,
+}
+
+/// Sensors in document order.
+pub(super) fn in_order(world: &World) -> Vec<SensorEntity> {
+    let mut query = world.query::<(Entity, &SceneId, &Name, &Sensor)>();
+    let mut sensors: Vec<_> = query.iter().collect();
+    sensors.sort_unstable_by_key(|&(_, id, ..)| *id);
+    let owned = |(entity, _, name, sensor): (Entity, &SceneId, &Name, &Sensor)| SensorEntity {
+        entity,
+        name: name.0.clone(),
+        sensor: sensor.clone(),
+    };
+    sensors.into_iter().map(owned).collect()
+}
+
+/// Measures all sensors in document order; returns a warning if the checkpoint could not be saved. Reads [`Sensor`];
+/// writes [`SensorReport`].
+pub(super) fn measure_sensors(
+    world: &mut World,
+    scene: MeasureContext<'_>,
+    options: &Options,
+    store: &mut CheckpointStore,
+    progress: &dyn Progress,
+) -> Result<Option<String>, Failure> {
+    let sensors = in_order(world);
+    check(&sensors, scene, options, store)?;
+    for one in &sensors {
+        // Whatever is absent already need not be removed.
+        drop(world.remove_one::<SensorReport>(one.entity));
+    }
+    for one in &sensors {
+        let report = measure(one, scene, options, store, progress)?;
+        world.insert_one(one.entity, report).expect("sensors exist");
+    }
+    store.finish()
+}
+
+/// Moves the reports of all sensors out of the world, in document order.
+pub(super) fn take_reports(world: &mut World) -> Vec<SensorReport> {
+    let sensors = in_order(world).into_iter();
+    sensors.filter_map(|one| world.remove_one::<SensorReport>(one.entity).ok()).collect()
+}
+
+/// Measurement before its first sample, and what ends it.
+pub(super) struct Begun<'a> {
+    pub(super) measurement: Box<dyn Measurement + 'a>,
+    pub(super) convergence: Convergence,
+}
+
+/// Begins the measurement of a sensor; `quality` is the factor on its numbers of samples.
 pub(super) fn begin<'a>(
     name: &str,
     sensor: &'a Sensor,
-    (stage, context): (&'a Stage, &'a Context),
+    scene: MeasureContext<'a>,
     quality: f64,
 ) -> Begun<'a> {
-    let key = Key::new(stage.rules.seed).path("sensors").path(name);
+    let key = Key::new(scene.stage.rules.seed).path("sensors").path(name);
     match sensor {
-        Sensor::Image(sensor) => image(sensor, (stage, context), (key, quality)),
-        Sensor::Directions(sensor) => directions(sensor, (stage, context), (key, quality)),
-        Sensor::Photons(sensor) => photons(sensor, (stage, context), (key, quality)),
+        Sensor::Image(sensor) => image(sensor, scene, key, quality),
+        Sensor::Directions(sensor) => directions(sensor, scene, key, quality),
+        Sensor::Photons(sensor) => photons(sensor, scene, key, quality),
     }
 }
 
 /// Measures one sensor.
 pub(super) fn measure(
-    name: &str,
-    sensor: &Sensor,
-    scene: (&Stage, &Context),
+    SensorEntity { name, sensor, .. }: &SensorEntity,
+    scene: MeasureContext<'_>,
     options: &Options,
-    keeper: &mut Keeper,
+    store: &mut CheckpointStore,
     progress: &dyn Progress,
 ) -> Result<SensorReport, Failure> {
-    let (mut measurement, plan) = begin(name, sensor, scene, options.quality);
-    let ending = grow(name, measurement.as_mut(), &plan, keeper, (progress, options.forecast))?;
+    let Begun { mut measurement, convergence } = begin(name, sensor, scene, options.quality);
+    let measurement = measurement.as_mut();
+    let end = measure_until(name, measurement, &convergence, store, progress, options.forecast)?;
     let films = measurement.films();
-    let sum = |of: &dyn Fn(&Paced<'_>) -> u64| films.iter().map(of).sum();
+    let sum = |of: &dyn Fn(&PacedFilm<'_>) -> u64| films.iter().map(of).sum();
     let samples = sum(&|paced| paced.film.samples());
     let noun = if matches!(sensor, Sensor::Photons(_)) { "packets" } else { "samples" };
     Ok(SensorReport {
-        name: name.to_owned(),
-        seconds: ending.seconds,
+        name: name.clone(),
+        seconds: end.seconds,
         rays: sum(&|paced| paced.film.rays()),
         samples,
-        ended_by: ended_by(&ending, &format!("{samples} {noun}")),
+        ended_by: ended_by(&end, &format!("{samples} {noun}")),
         energy_imbalance: films.iter().filter_map(|paced| paced.film.imbalance()).reduce(f64::max),
-        forecast: ending.forecast,
-        products: ending.products,
+        forecast: end.forecast,
+        products: end.products,
     })
 }
 
-/// What ended a measurement, for a person.
-fn ended_by(ending: &Ending, samples: &str) -> String {
-    let shown = |(name, error): &(String, f64), limit: f64| {
+/// Text that says which criterion ended a measurement.
+fn ended_by(end: &MeasurementEnd, samples: &str) -> String {
+    let text = |(name, error): &(String, f64), limit: f64| {
         format!("{name}: median relative standard error {error:.2e} at most {limit:.2e}")
     };
-    match &ending.stop {
-        Stop::RelError(limit) => {
-            let asked = ending.errors.iter().filter(|(name, _)| !is_ledger(name));
+    match &end.criterion {
+        StopCriterion::RelError(limit) => {
+            let asked = end.errors.iter().filter(|(name, _)| !is_energy_balance(name));
             let worst = asked.max_by(|a, b| a.1.total_cmp(&b.1));
-            worst.map_or_else(|| samples.to_owned(), |worst| shown(worst, *limit))
+            worst.map_or_else(|| samples.to_owned(), |worst| text(worst, *limit))
         }
-        Stop::RelErrors(limits) => {
+        StopCriterion::RelErrors(limits) => {
             let of = |(name, limit): &(String, f64)| {
-                let found = ending.errors.iter().find(|(known, _)| known == name);
-                found.map(|found| shown(found, *limit))
+                let product = end.errors.iter().find(|(known, _)| known == name);
+                product.map(|product| text(product, *limit))
             };
             let texts: Vec<String> = limits.iter().filter_map(of).collect();
             if texts.is_empty() { samples.to_owned() } else { texts.join("; ") }
         }
-        Stop::Seconds(limit) => format!("{limit} s: {samples}"),
-        Stop::Samples(_) => samples.to_owned(),
+        StopCriterion::Seconds(limit) => format!("{limit} s: {samples}"),
+        StopCriterion::Samples(_) => samples.to_owned(),
     }
 }
 
-/// Conditions under another number of samples.
-fn at_quality(until: &[Stop], quality: f64) -> Vec<Stop> {
+/// Stop criteria for `quality` times the number of samples.
+fn at_quality(until: &[StopCriterion], quality: f64) -> Vec<StopCriterion> {
     let error = |limit: f64| limit / quality.sqrt();
-    let stop = |stop: &Stop| match stop {
-        Stop::RelError(limit) => Stop::RelError(error(*limit)),
-        Stop::RelErrors(limits) => {
+    let scaled = |criterion: &StopCriterion| match criterion {
+        StopCriterion::RelError(limit) => StopCriterion::RelError(error(*limit)),
+        StopCriterion::RelErrors(limits) => {
             let limits = limits.iter().map(|(name, limit)| (name.clone(), error(*limit)));
-            Stop::RelErrors(limits.collect())
+            StopCriterion::RelErrors(limits.collect())
         }
-        Stop::Seconds(limit) => Stop::Seconds(limit * quality),
-        Stop::Samples(limit) => Stop::Samples((*limit as f64 * quality).ceil() as u64),
+        StopCriterion::Seconds(limit) => StopCriterion::Seconds(limit * quality),
+        StopCriterion::Samples(limit) => {
+            StopCriterion::Samples((*limit as f64 * quality).ceil() as u64)
+        }
     };
-    until.iter().map(stop).collect()
+    until.iter().map(scaled).collect()
 }
 
-/// Samples of each randomisation that make up so many.
+/// Samples of each randomisation that make up a total.
 fn each_of(samples: u64) -> u64 {
     samples.div_ceil(RANDOMISATIONS.into()).max(1)
 }
 
-/// Samples that a pixel may have.
+/// Largest number of samples per pixel.
 pub(super) const MOST_SAMPLES: f64 = 16_777_216.0;
 
-/// Pixels of an image from which on the median of their errors is one from eight samples on.
+/// Number of pixels from which on eight samples per pixel are enough for a first check of errors.
 const MANY_PIXELS: u64 = 256;
 
 struct ImageRun<'a> {
     sensor: &'a ImageSensor,
-    scene: (&'a Stage, &'a Context),
+    scene: MeasureContext<'a>,
     reflected: Option<ImageFilm<'a>>,
     emitted: Option<ImageFilm<'a>>,
     components: Option<ImageTiles<'a>>,
-    /// Samples of a pixel for each of the measurement.
+    /// Samples of a pixel for each sample of the measurement.
     pace: (u64, u64),
 }
 
 fn image<'a>(
     sensor: &'a ImageSensor,
-    (stage, context): (&'a Stage, &'a Context),
-    (key, quality): (Key, f64),
+    scene: MeasureContext<'a>,
+    key: Key,
+    quality: f64,
 ) -> Begun<'a> {
+    let MeasureContext { stage, context } = scene;
     let camera = Camera::new(sensor, stage);
     let until = if sensor.until.is_empty() {
         let samples = camera.samples(sensor.samples) * quality;
         // Areas are rounded: what is a whole number but for that is one.
         let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES);
-        vec![Stop::Samples(samples as u64)]
+        vec![StopCriterion::Samples(samples as u64)]
     } else {
         at_quality(&sensor.until, quality)
     };
@@ -153,48 +217,60 @@ fn image<'a>(
     let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
         .then(|| image_components_film(stage, &camera, key.path("components")));
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
-    let scene = (stage, context);
     let run = |pace| ImageRun { sensor, scene, reflected, emitted, components, pace };
     if sensor.system == System::Forward {
         let each = move |samples: u64| each_of(samples.saturating_mul(pixels));
-        let plan = Plan { until, schedule: Schedule::Blocks, each: Box::new(each) };
-        return (Box::new(run((RANDOMISATIONS.into(), pixels))), plan);
+        let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each) };
+        let measurement = Box::new(run((RANDOMISATIONS.into(), pixels)));
+        return Begun { measurement, convergence };
     }
     let first = if pixels < MANY_PIXELS { u64::from(RANDOMISATIONS) } else { 8 };
     let each = |samples: u64| samples.max(2);
-    let plan = Plan { until, schedule: Schedule::Samples(first), each: Box::new(each) };
-    (Box::new(run((1, 1))), plan)
+    let schedule = Schedule::Samples(first);
+    let convergence = Convergence { until, schedule, each: Box::new(each) };
+    Begun { measurement: Box::new(run((1, 1))), convergence }
 }
 
 impl Measurement for ImageRun<'_> {
-    fn films(&mut self) -> Vec<Paced<'_>> {
+    fn films(&mut self) -> Vec<PacedFilm<'_>> {
         let pace = self.pace;
         let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
-        let mut films: Vec<Paced<'_>> = light
+        let mut films: Vec<PacedFilm<'_>> = light
             .map(|image| match image {
-                ImageFilm::Packets(packets) => Paced::evenly(&mut packets.sums),
-                ImageFilm::Paths(tiles) => Paced { film: tiles, pace },
+                ImageFilm::Packets(packets) => PacedFilm::evenly(&mut packets.sums),
+                ImageFilm::Paths(tiles) => PacedFilm { film: tiles, pace },
             })
             .collect();
-        films.extend(self.components.iter_mut().map(|film| -> Paced<'_> { Paced { film, pace } }));
+        films.extend(
+            self.components.iter_mut().map(|film| -> PacedFilm<'_> { PacedFilm { film, pace } }),
+        );
         films
     }
 
     fn extents(&self) -> Vec<Extent> {
         let zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
         let found = (self.reflected.is_some(), self.emitted.is_some(), zones);
-        products::extents_of_image(self.sensor, found, self.scene.1)
+        products::extents_of_image(self.sensor, found, self.scene.context)
     }
 
     fn products(&self) -> Vec<Product> {
         let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
         let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
-        let mut products =
-            products::of_image(self.sensor, reflected.as_ref(), emitted.as_ref(), self.scene);
+        let mut products = products::of_image(
+            self.sensor,
+            reflected.as_ref(),
+            emitted.as_ref(),
+            self.scene.pair(),
+        );
         if let Some(components) = &self.components {
             let outcome = components.outcome();
             for &measure in &self.sensor.measure {
-                let of = products::components_of_image(measure, self.sensor, &outcome, self.scene);
+                let of = products::components_of_image(
+                    measure,
+                    self.sensor,
+                    &outcome,
+                    self.scene.pair(),
+                );
                 products.extend(of);
             }
         }
@@ -212,9 +288,11 @@ struct DirectionsRun<'a> {
 
 fn directions<'a>(
     sensor: &'a Directions,
-    (stage, context): (&'a Stage, &'a Context),
-    (key, quality): (Key, f64),
+    scene: MeasureContext<'a>,
+    key: Key,
+    quality: f64,
 ) -> Begun<'a> {
+    let MeasureContext { stage, context } = scene;
     let views = sensor.views.as_slice();
     let plane = &ReferencePlane::new(sensor.plane.as_ref(), stage);
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
@@ -230,17 +308,18 @@ fn directions<'a>(
     let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
         .then(|| ComponentsFilm::new(stage, views, plane, key.path("components")));
     let until = at_quality(&sensor.until, quality);
-    let plan = Plan { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
-    (Box::new(DirectionsRun { sensor, context, reflected, emitted, components }), plan)
+    let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
+    let measurement = Box::new(DirectionsRun { sensor, context, reflected, emitted, components });
+    Begun { measurement, convergence }
 }
 
 impl Measurement for DirectionsRun<'_> {
-    fn films(&mut self) -> Vec<Paced<'_>> {
+    fn films(&mut self) -> Vec<PacedFilm<'_>> {
         let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
         let films = light.map(|one| &mut one.film);
         films
             .chain(self.components.iter_mut().map(|one| &mut one.film))
-            .map(|film| Paced::evenly(film))
+            .map(|film| PacedFilm::evenly(film))
             .collect()
     }
 
@@ -267,11 +346,11 @@ impl Measurement for DirectionsRun<'_> {
     }
 }
 
-/// The system that finds what directions see with the fewest rays, unless the sensor names one.
+/// Transport system of a sensor: the one that it names, or the one that takes fewest rays for the same error.
 ///
-/// Packets serve all views at once: of 31 views they take half of the rays of paths for the same error,
-/// of one view as many or more (`transport/README.md`). But most packets miss a small plane, and what
-/// surfaces emit is seen at once from the sensor's side.
+/// Packets serve all views at once: for 31 views they take half of the rays of paths, for one view as many or more
+/// (`transport/README.md`). Most packets miss a small plane, and emitted radiance is found directly by paths from the
+/// sensor.
 fn system_of(sensor: &Directions, source: LightSource) -> System {
     let best = match source {
         LightSource::Reflected if sensor.plane.is_none() && sensor.views.len() > 1 => {
@@ -282,7 +361,7 @@ fn system_of(sensor: &Directions, source: LightSource) -> System {
     sensor.system.unwrap_or(best)
 }
 
-/// Whether a measure takes what is reflected of sun and sky.
+/// Returns whether a measure takes reflected light of sun and sky.
 fn needs_reflection(measures: &[ImageMeasure], context: &Context) -> bool {
     measures.iter().any(|measure| match measure {
         ImageMeasure::Brf | ImageMeasure::Orders => true,
@@ -294,7 +373,7 @@ fn needs_reflection(measures: &[ImageMeasure], context: &Context) -> bool {
     })
 }
 
-/// Whether a measure takes what surfaces and the sky emit.
+/// Returns whether a measure takes emitted light of surfaces and sky.
 fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
     let takes = |measure: &ImageMeasure| {
         matches!(measure, ImageMeasure::Radiance | ImageMeasure::BrightnessTemperature)
@@ -304,14 +383,17 @@ fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
 
 fn photons<'a>(
     sensor: &'a Photons,
-    (stage, context): (&'a Stage, &'a Context),
-    (key, quality): (Key, f64),
+    scene: MeasureContext<'a>,
+    key: Key,
+    quality: f64,
 ) -> Begun<'a> {
+    let MeasureContext { stage, .. } = scene;
     let until = if sensor.until.is_empty() {
-        vec![Stop::Samples((sensor.per_area * stage.area() * quality).ceil() as u64)]
+        vec![StopCriterion::Samples((sensor.per_area * stage.area() * quality).ceil() as u64)]
     } else {
         at_quality(&sensor.until, quality)
     };
-    let run = PhotonRun::new(sensor, (stage, context), key);
-    (Box::new(run), Plan { until, schedule: Schedule::Blocks, each: Box::new(each_of) })
+    let measurement = Box::new(PhotonRun::new(sensor, scene, key));
+    let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
+    Begun { measurement, convergence }
 }

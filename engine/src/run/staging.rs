@@ -1,12 +1,14 @@
-//! World to stage, with places in the document for whatever the ray engine refuses.
+//! World to stage, with places in the document for errors of the ray engine.
 
+use super::Failure;
 use super::scene_world::SceneWorld;
-use super::{Failure, setting};
+use super::setting::setting;
 use crate::accel::BuildError;
-use crate::components::{InstanceCount, SceneId};
+use crate::components::{InstanceCount, SceneExtents, SceneId};
 use crate::document::{Diagnostic, Scene};
 use crate::extract::{Stage, extract};
-use crate::systems::{Resources, check_memory, place_of_instance};
+use crate::products::data_size;
+use crate::systems::{Resources, place_of_instance};
 
 /// Extracts the stage of a world; builds the trees of the ray engine unless they are there. `free` is the memory that
 /// the ray engine may take, bytes.
@@ -27,7 +29,7 @@ pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result
     Ok(stage)
 }
 
-/// What the ray engine refuses, at its place in the document.
+/// Error of the ray engine, at its place in the document.
 fn located(error: &BuildError, world: &SceneWorld) -> Diagnostic {
     let path = match *error {
         BuildError::Vertex { mesh, .. }
@@ -62,4 +64,34 @@ fn mesh_path(mesh: usize, SceneWorld { world, resources, .. }: &SceneWorld) -> S
         Some((name, _)) => format!("meshes.{name}"),
         None => "terrain".to_owned(),
     }
+}
+
+/// Memory of a triangle or disc while its tree is built, bytes.
+const PRIMITIVE_BYTES: u64 = 130;
+
+/// Memory of an instance or an image while the tree over them is built, bytes.
+const RECORD_BYTES: u64 = 330;
+
+/// Returns an error if the ray engine will take more memory for the scene than is free, bytes.
+fn check_memory(extents: &SceneExtents, free: u64) -> Option<Diagnostic> {
+    let meshes = extents.primitives.saturating_mul(PRIMITIVE_BYTES);
+    let records = extents.records.saturating_mul(RECORD_BYTES);
+    let all = meshes.saturating_add(records);
+    if all <= free {
+        return None;
+    }
+    let message = format!(
+        "the ray engine takes {} of memory for {} triangles and discs in meshes and {} instances, images \
+             in neighbouring tiles included, and {} are free",
+        data_size(all),
+        extents.primitives,
+        extents.records,
+        data_size(free)
+    );
+    let (path, help) = if records > meshes {
+        (&extents.most_records, "place fewer instances, or choose a larger tile")
+    } else {
+        (&extents.largest_mesh, "take meshes of fewer triangles, and place them more often")
+    };
+    Some(Diagnostic::error(path, message).help(help))
 }

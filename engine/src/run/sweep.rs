@@ -3,12 +3,11 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::pool::in_pool;
 use super::provenance::content;
+use super::reading::{choose_sensors, folder_of, read, sound};
 use super::scene_world::SceneWorld;
-use super::{
-    Failure, Options, Progress, choose_sensors, day, folder_of, in_pool, origin, params, read,
-    run_in, sound,
-};
+use super::{Failure, Options, Progress, day, origin, params, run_in};
 use crate::document::{
     self, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
 };
@@ -34,7 +33,7 @@ impl Sweep {
     /// Reads a scene file at every point.
     ///
     /// # Errors
-    /// What is wrong with it at the first point where anything is.
+    /// Errors of the scene at the first point that has any.
     pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
         let (Reading { scene, .. }, _) = read_point(file, options)?;
         let Some(sweep) = &scene.sweep else {
@@ -98,7 +97,7 @@ impl Sweep {
     /// Runs the scene at one of its points; a point without any light has a report without sensors.
     ///
     /// # Errors
-    /// All that is wrong with the scene there.
+    /// All errors of the scene there.
     pub fn run(&mut self, point: &Point, progress: &dyn Progress) -> Result<Report, Failure> {
         if let Some(why) = point.darkness() {
             let params = point.params.clone();
@@ -121,7 +120,7 @@ impl Sweep {
             .map_err(|source| wrong_at(point, source))
     }
 
-    /// What is common to all points: a report without sensors, whose hash is that of all points.
+    /// Report of what is common to all points: it has no sensors, and its hash is that of all points.
     #[must_use]
     pub fn report(&self) -> Report {
         let mut hasher = blake3::Hasher::new();
@@ -212,7 +211,7 @@ fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Gl
         let path = folder_of(file).join(named);
         let hash = match contents.get(&path) {
             Some(hash) => *hash,
-            // What is not there is told by the run, with its place.
+            // The run reports missing files with their places.
             None => match content(&path) {
                 Ok(hash) => *contents.entry(path).or_insert(hash),
                 Err(_not_there) => continue,

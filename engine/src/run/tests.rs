@@ -1,16 +1,18 @@
-//! Forecasts against what they foretell.
+//! Estimates compared with what they estimate.
 
 use std::path::Path;
 
-use super::checkpoint::Keeper;
-use super::growth::{relative_errors, trace};
-use super::{Options, SceneWorld, Unwatched, context, document, sensors, setting};
-use crate::components::Sensor;
-use crate::extract::{Stage, extract};
-use crate::products::{Context, Extent, Product};
+use super::checkpoint::CheckpointStore;
+use super::convergence::{ErrorCheck, Start, relative_errors};
+use super::rounds::trace;
+use super::sensors::{Begun, MeasureContext, SensorEntity, begin, in_order, measure};
+use super::setting::setting;
+use super::{Options, SceneWorld, Unwatched, context, document};
+use crate::extract::extract;
+use crate::products::{Extent, Product};
 
 /// A tree on soil in two bands of reflected light and one of emitted, with these sensors.
-fn with_scene(sensors: &str, look: impl Fn(&str, &Sensor, (&Stage, &Context))) {
+fn for_each_sensor(sensors: &str, test: impl Fn(&SensorEntity, MeasureContext<'_>)) {
     let text = format!(
         r#"Scene(
             format: 1,
@@ -39,19 +41,19 @@ fn with_scene(sensors: &str, look: impl Fn(&str, &Sensor, (&Stage, &Context))) {
     let reading =
         document::read_text("test.ron", &text, &document::Options::default()).expect("a scene");
     assert!(reading.is_sound(), "{}", reading.render());
-    let spawned = SceneWorld::from_scene(&reading.scene, Path::new("")).expect("a world");
-    let stage = extract(&spawned.world, &setting(&reading.scene), None).expect("a stage");
+    let built = SceneWorld::from_scene(&reading.scene, Path::new("")).expect("a world");
+    let stage = extract(&built.world, &setting(&reading.scene), None).expect("a stage");
     let context = context(&reading.scene, &stage);
-    for (name, sensor) in sensors::in_order(&spawned.world) {
-        look(&name, &sensor, (&stage, &context));
+    for sensor in in_order(&built.world) {
+        test(&sensor, MeasureContext { stage: &stage, context: &context });
     }
 }
 
-/// What was foretold of products is what they are, but for single numbers.
+/// Products have the extents that were estimated, except for single numbers.
 #[test]
-fn products_consist_of_what_was_foretold() {
+fn products_have_the_estimated_extents() {
     let many = |extent: &Extent| extent.values() > 3;
-    with_scene(
+    for_each_sensor(
         r#"
         "map": Orthographic(size_px: (20, 33), extent_m: (5.0, 5.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction]),
         "film": Orthographic(size_px: (7, 4), extent_m: (5.0, 5.0), system: Forward, samples_per_px: 50, measure: [Brf, Radiance, Orders]),
@@ -65,50 +67,50 @@ fn products_consist_of_what_was_foretold() {
         ]),
         "borders": Photons(per_m2: 20.0, measure: [Fapar(layer_m: [0.0, 1.5, 2.0, 9.0]), Absorbed(per: Instance)]),
         "#,
-        |name, sensor, scene| {
-            let (mut measurement, _) = sensors::begin(name, sensor, scene, 1.0);
-            let mut foretold: Vec<Extent> =
+        |sensor, scene| {
+            let Begun { mut measurement, .. } = begin(&sensor.name, &sensor.sensor, scene, 1.0);
+            let mut estimated: Vec<Extent> =
                 measurement.extents().into_iter().filter(many).collect();
             trace(measurement.as_mut(), 16, &|_| ());
             let products: Vec<Product> = measurement.products();
             let mut found: Vec<Extent> = products.iter().map(Extent::of).filter(many).collect();
             let order = |extent: &Extent| format!("{extent:?}");
-            foretold.sort_by_key(order);
+            estimated.sort_by_key(order);
             found.sort_by_key(order);
-            assert_eq!(foretold, found, "{name}");
+            assert_eq!(estimated, found, "{}", sensor.name);
         },
     );
 }
 
-/// What is done after the first samples tells within a factor of two how many it will be.
+/// The errors of the first samples give the number of all samples within a factor of two.
 #[test]
-fn the_first_errors_tell_how_many_samples_it_will_take() {
-    with_scene(
+fn first_errors_give_the_number_of_samples() {
+    for_each_sensor(
         r#"
         "map": Orthographic(size_px: (20, 20), extent_m: (5.0, 5.0), measure: [Brf], until: RelError(0.05)),
         "views": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 15.0), measure: [Brf], until: RelError(0.005)),
         "photons": Photons(measure: [BrfCells(50), Fapar(layer_m: 1.0)], until: RelError(0.03)),
         "counted": Photons(measure: [Albedo], until: [Samples(100000), RelError(1e-9)]),
         "#,
-        |name, sensor, scene| {
-            let (mut measurement, plan) = sensors::begin(name, sensor, scene, 1.0);
-            let look =
-                plan.schedule.evaluations().find(|&look| look >= 32).expect("looks never end");
+        |sensor, scene| {
+            let name = &sensor.name;
+            let Begun { mut measurement, convergence } = begin(name, &sensor.sensor, scene, 1.0);
+            let look = convergence
+                .schedule
+                .evaluations()
+                .find(|&look| look >= 32)
+                .expect("looks never end");
             trace(measurement.as_mut(), look, &|_| ());
-            let last = (look, relative_errors(measurement.as_mut()));
-            let foretold = plan.end((0, 0.0), 1.0, Some(&last));
-            let report = sensors::measure(
-                name,
-                sensor,
-                scene,
-                &Options::default(),
-                &mut Keeper::idle(),
-                &Unwatched,
-            );
+            let errors = relative_errors(measurement.as_mut());
+            let check = ErrorCheck { samples: look, errors };
+            let start = Start { samples: 0, seconds: 0.0 };
+            let estimated = convergence.expected_end(&start, 1.0, Some(&check));
+            let store = &mut CheckpointStore::disabled();
+            let report = measure(sensor, scene, &Options::default(), store, &Unwatched);
             let samples = report.expect("a report").samples as f64;
             let first = measurement.films().iter().map(|paced| paced.film.samples()).sum::<u64>();
-            let ratio = foretold * first as f64 / look as f64 / samples;
-            assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}, {foretold} from {look}");
+            let ratio = estimated * first as f64 / look as f64 / samples;
+            assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}, {estimated} from {look}");
         },
     );
 }

@@ -26,7 +26,7 @@ impl Changes {
     pub const MATERIALS: Self = Self(1 << 5);
     /// Names of materials and their order, which ids of materials follow.
     pub const MATERIAL_NAMES: Self = Self(1 << 6);
-    /// Which materials are leaves.
+    /// Kinds of the materials: leaf or not.
     pub const LEAVES: Self = Self(1 << 7);
     /// Mesh prototypes.
     pub const MESHES: Self = Self(1 << 8);
@@ -42,7 +42,7 @@ impl Changes {
     pub const SKY: Self = Self(1 << 13);
     /// Sensors.
     pub const SENSORS: Self = Self(1 << 14);
-    /// Whether a sensor measures emitted light.
+    /// Existence of a sensor that measures emitted light.
     pub const MEASURES_EMISSION: Self = Self(1 << 15);
 
     // Derived components and resources, which systems write.
@@ -66,7 +66,7 @@ impl Changes {
     /// Irradiance of sun and sky.
     pub const LIGHT: Self = Self(1 << 24);
 
-    /// All that the ray engine's trees are built from.
+    /// Kinds that the trees of the ray engine are built from.
     pub const GEOMETRY: Self =
         Self(Self::BOUNDARY.0 | Self::GROUND.0 | Self::LOADED_MESHES.0 | Self::INSTANCES.0);
 

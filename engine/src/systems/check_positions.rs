@@ -5,11 +5,11 @@ use hecs::World;
 
 use super::Resources;
 use super::coordinate_advice::{
-    AdvicePlace, far_from, is_far, other_coordinates, place_of_instance, planting_of,
+    AdvicePlace, far_from, is_far, other_coordinates, place_of_instance,
 };
 use super::georeference::MapFrame;
 use super::measure_bounds::placed_meshes;
-use crate::components::{Placement, SceneId};
+use crate::components::{PlantingId, Position, PrototypeId, SceneId};
 use crate::document::{Diagnostic, Instances, Terrain};
 use crate::geometry::place_text;
 use crate::terrain::Ground;
@@ -18,19 +18,21 @@ use crate::terrain::Ground;
 #[derive(Clone, Copy)]
 struct Stray {
     id: SceneId,
+    planting: PlantingId,
     position: DVec3,
 }
 
 /// Refuses instances so far from the ground that other coordinates must be meant, and warns of those beside the ground
-/// of an isolated scene. Reads [`Placement`], [`Ground`], [`MapFrame`], `document::Instances` and `document::Terrain`.
+/// of an isolated scene. Reads [`Position`], [`Ground`], [`MapFrame`], `document::Instances` and `document::Terrain`.
 pub(super) fn check_positions(world: &mut World, resources: &mut Resources) {
     let Ok(ground) = world.get::<&Ground>(resources.terrain) else { return };
     let mut far = Vec::new();
     let mut beside: BTreeMap<u32, Vec<Stray>> = BTreeMap::new();
     let (low, high) = (ground.corner(), ground.corner() + ground.size());
-    for &Placement { position, prototype, id, .. } in &mut world.query::<&Placement>() {
+    let mut query = world.query::<(&SceneId, &PlantingId, &PrototypeId, &Position)>();
+    for (&id, &planting, prototype, &Position(position)) in &mut query {
         let at = position.truncate();
-        let stray = Stray { id, position };
+        let stray = Stray { id, planting, position };
         if is_far(at, &ground) {
             far.push(stray);
         }
@@ -67,10 +69,9 @@ fn stray_help(
     world: &World,
     resources: &Resources,
 ) -> Option<String> {
-    let planting = |stray: &Stray| planting_of(stray.id, world, resources).map(|(index, _)| index);
-    let index = planting(strays.first()?)?;
-    let instances = world.get::<&Instances>(resources.plantings[index]).ok()?;
-    let of_planting = strays.iter().filter(|stray| planting(stray) == Some(index));
+    let planting = strays.first()?.planting;
+    let instances = world.get::<&Instances>(resources.plantings[planting.0 as usize]).ok()?;
+    let of_planting = strays.iter().filter(|stray| stray.planting == planting);
     let places: Vec<DVec3> = of_planting.map(|stray| stray.position).collect();
     let terrain = world.get::<&Terrain>(resources.terrain).ok()?;
     let map = world.get::<&MapFrame>(resources.terrain).ok()?;

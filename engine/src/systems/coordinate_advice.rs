@@ -47,11 +47,7 @@ pub(super) struct AdvicePlace<'a> {
 }
 
 /// Planting of an instance, and the number of the instance within it.
-pub(super) fn planting_of(
-    instance: SceneId,
-    world: &World,
-    resources: &Resources,
-) -> Option<(usize, u32)> {
+fn planting_of(instance: SceneId, world: &World, resources: &Resources) -> Option<(usize, u32)> {
     resources.plantings.iter().enumerate().find_map(|(index, &planting)| {
         let range = world.get::<&InstanceRange>(planting).ok()?;
         range.0.contains(&instance.0).then(|| (index, instance.0 - range.0.start))

@@ -2,15 +2,15 @@ use hecs::World;
 
 use super::Resources;
 use super::hide_and_select::needed_meshes;
-use crate::components::{InstanceCount, Mesh, Placement};
+use crate::components::{InstanceCount, Mesh, PrototypeId};
 use crate::document::Terrain;
 
-/// Counts the instances of each mesh prototype and notes prototypes without any. Reads [`Placement`], `ShownMeshes` and
+/// Counts the instances of each mesh prototype and notes prototypes without any. Reads [`PrototypeId`], `ShownMeshes` and
 /// `document::Terrain`; writes [`InstanceCount`] of mesh prototypes.
 pub(super) fn count_instances(world: &mut World, resources: &mut Resources) {
     let mut counts = vec![0_u64; resources.meshes.len()];
-    for placement in world.query_mut::<&Placement>() {
-        counts[placement.prototype.0 as usize] += 1;
+    for prototype in world.query_mut::<&PrototypeId>() {
+        counts[prototype.0 as usize] += 1;
     }
     for (&entity, &count) in resources.meshes.values().zip(&counts) {
         world.insert_one(entity, InstanceCount(count)).expect("meshes exist");

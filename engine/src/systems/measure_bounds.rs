@@ -2,20 +2,15 @@ use std::collections::BTreeMap;
 
 use hecs::World;
 
-use super::Resources;
+use super::{Resources, set_component};
 use crate::components::{InstanceCount, Mesh, MeshBounds, Name, SceneId};
 
 /// Measures the boxes around meshes. Reads [`Mesh`]; writes [`MeshBounds`] of meshes that hold any primitive.
 pub(super) fn measure_bounds(world: &mut World, resources: &mut Resources) {
     for &entity in resources.meshes.values() {
         let bounds = world.get::<&Mesh>(entity).ok().and_then(|mesh| mesh.bounds());
-        match bounds {
-            Some((low, high)) => {
-                world.insert_one(entity, MeshBounds { low, high }).expect("meshes exist");
-            }
-            // Whatever is absent already need not be removed.
-            None => drop(world.remove_one::<MeshBounds>(entity)),
-        }
+        let bounds = bounds.map(|(low, high)| MeshBounds { low, high });
+        set_component(world, entity, bounds);
     }
 }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::Resources;
 use super::coordinate_advice::place_of_instance;
 use super::measure_bounds::{PlacedMesh, placed_meshes};
-use crate::components::{Placement, SceneExtents, SceneId, TerrainPatch};
+use crate::components::{Instance, InstanceQuery, Placement, SceneExtents, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, HEIGHT, LENGTH, Range, SCALE};
 use crate::geometry::Bounds;
 
@@ -71,7 +71,8 @@ struct GroundHeights {
     highest: f64,
 }
 
-/// Measures the extents of all geometry, and refuses instances and meshes beyond the lawful ranges. Reads [`Placement`],
+/// Measures the extents of all geometry, and refuses instances and meshes beyond the lawful ranges. Reads the
+/// components of instances,
 /// `MeshBounds` and [`TerrainPatch`]; writes the resource `extents`.
 pub(super) fn measure_extents(world: &mut World, resources: &mut Resources) {
     resources.extents = SceneExtents::default();
@@ -135,17 +136,15 @@ fn check_placements(
     bounds: &BTreeMap<u32, Bounds>,
     resources: &mut Resources,
 ) -> bool {
-    let mut query = world.query::<&Placement>();
-    let is_unlawful = |placement: &&Placement| {
-        problem_of(placement, bounds.get(&placement.prototype.0)).is_some()
+    let problem_of_instance = |components: InstanceQuery<'_>| {
+        let Instance { id, placement, .. } = Instance::from_components(components);
+        Some((id, problem_of(&placement, bounds.get(&placement.prototype.0))?))
     };
+    let mut query = world.query::<InstanceQuery<'_>>();
     let batches = query.iter_batched(BATCH).par_bridge();
-    let first = batches
-        .filter_map(|batch| batch.filter(is_unlawful).min_by_key(|placement| placement.id))
-        .min_by_key(|placement| placement.id);
-    let problem = first.and_then(|placement| {
-        Some((placement.id, problem_of(placement, bounds.get(&placement.prototype.0))?))
-    });
+    let problem = batches
+        .filter_map(|batch| batch.filter_map(problem_of_instance).min_by_key(|&(id, _)| id))
+        .min_by_key(|&(id, _)| id);
     let Some((instance, (message, help))) = problem else { return true };
     let (path, name) = place_of_instance(instance, world, resources);
     resources.report(Diagnostic::error(path, format!("{name}: {message}")).help(help));
@@ -205,8 +204,12 @@ fn check_tiles_high(
 
 /// Refuses and warns of instances with the place, orientation, scale and mesh of another one.
 fn check_duplicates(world: &World, meshes: &BTreeMap<u32, PlacedMesh>, resources: &mut Resources) {
-    let mut query = world.query::<&Placement>();
-    let mut poses: Vec<([u64; 6], SceneId)> = query.iter().map(|p| (pose(p), p.id)).collect();
+    let pose_of = |components: InstanceQuery<'_>| {
+        let Instance { id, placement, .. } = Instance::from_components(components);
+        (pose(&placement), id)
+    };
+    let mut query = world.query::<InstanceQuery<'_>>();
+    let mut poses: Vec<([u64; 6], SceneId)> = query.iter().map(pose_of).collect();
     poses.par_sort_unstable();
     let (mut duplicates, mut most) = (0, &poses[..0]);
     for run in poses.chunk_by(|a, b| a.0 == b.0) {
@@ -239,13 +242,13 @@ fn check_duplicates(world: &World, meshes: &BTreeMap<u32, PlacedMesh>, resources
 
 /// Problem with the place of an instance, and advice.
 fn problem_of(placement: &Placement, bounds: Option<&Bounds>) -> Option<(String, &'static str)> {
-    let Placement { position, scale_horizontal, scale_vertical, .. } = placement;
+    let Placement { position, scale, .. } = placement;
     let all: [(&Range, f64); 5] = [
         (&LENGTH, position.x),
         (&LENGTH, position.y),
         (&HEIGHT, position.z),
-        (&SCALE, (*scale_horizontal).into()),
-        (&SCALE, (*scale_vertical).into()),
+        (&SCALE, scale.horizontal.into()),
+        (&SCALE, scale.vertical.into()),
     ];
     if let Some(problem) = all.into_iter().find_map(|(range, value)| range.problem(value)) {
         return Some(problem);
@@ -274,19 +277,19 @@ fn reach(
     corner: DVec2,
     tile: Option<DVec2>,
 ) -> Reach {
-    let of = |placement: &Placement| {
+    let of = |components: InstanceQuery<'_>| {
+        let Instance { id, placement, .. } = Instance::from_components(components);
         let Some(bounds) = bounds.get(&placement.prototype.0) else { return Reach::NOTHING };
-        let Bounds { min, max } = world_bounds(placement, bounds);
+        let Bounds { min, max } = world_bounds(&placement, bounds);
         let images = tile.map_or(1.0, |tile| {
             // Offsets k, in tiles, for which the box and the tile overlap.
             let first = ((corner - max.truncate()) / tile).ceil();
             let last = ((corner + tile - min.truncate()) / tile).floor();
             (last - first + 1.0).max(DVec2::ONE).element_product()
         });
-        let id = placement.id;
         Reach { high: (max.z, id), low: (min.z, id), records: images, most: (images, id) }
     };
-    let mut query = world.query::<&Placement>();
+    let mut query = world.query::<InstanceQuery<'_>>();
     let batches = query.iter_batched(BATCH).par_bridge();
     batches
         .map(|batch| batch.map(of).fold(Reach::NOTHING, Reach::union))
@@ -295,23 +298,14 @@ fn reach(
 
 /// Bits of all that decides where an instance is.
 fn pose(placement: &Placement) -> [u64; 6] {
-    let Placement {
-        position,
-        yaw,
-        tilt,
-        tilt_azimuth,
-        scale_horizontal,
-        scale_vertical,
-        prototype,
-        id: _,
-    } = placement;
+    let Placement { position, yaw, scale, lean, prototype } = placement;
     let pair = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
     [
         position.x.to_bits(),
         position.y.to_bits(),
         position.z.to_bits(),
-        pair(*yaw, *tilt),
-        pair(*scale_horizontal, *scale_vertical),
-        u64::from(prototype.0) << 32 | u64::from(tilt_azimuth.to_bits()),
+        pair(*yaw, lean.tilt),
+        pair(scale.horizontal, scale.vertical),
+        u64::from(prototype.0) << 32 | u64::from(lean.azimuth.to_bits()),
     ]
 }

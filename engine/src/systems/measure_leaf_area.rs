@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use hecs::World;
 
-use super::Resources;
+use super::{Resources, set_component};
 use crate::components::{LeafArea, Mesh, PartMaterials};
 use crate::document::Material;
 
@@ -25,10 +25,6 @@ pub(super) fn measure_leaf_area(world: &mut World, resources: &mut Resources) {
                 of_leaves.map(|(part, _)| mesh.part_area(part)).sum()
             })
         };
-        match area {
-            Some(area) => world.insert_one(entity, LeafArea(area)).expect("meshes exist"),
-            // Whatever is absent already need not be removed.
-            None => drop(world.remove_one::<LeafArea>(entity)),
-        }
+        set_component(world, entity, area.map(LeafArea));
     }
 }

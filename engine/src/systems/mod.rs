@@ -20,7 +20,6 @@
 mod changes;
 mod coordinate_advice;
 mod georeference;
-mod memory;
 mod messages;
 mod resources;
 mod schedule;
@@ -58,7 +57,19 @@ mod warn_sensor_heights;
 pub use changes::Changes;
 pub(crate) use coordinate_advice::place_of_instance;
 pub use georeference::{CoordinateSystem, Georeference, MapFrame};
-pub(crate) use memory::check_memory;
 pub use messages::Messages;
 pub use resources::Resources;
 pub use schedule::{ScheduleRun, run_schedule};
+
+/// Sets or removes a component of an entity.
+fn set_component<T: hecs::Component>(
+    world: &mut hecs::World,
+    entity: hecs::Entity,
+    value: Option<T>,
+) {
+    match value {
+        Some(value) => world.insert_one(entity, value).expect("entities of a scene exist"),
+        // Whatever is absent already need not be removed.
+        None => drop(world.remove_one::<T>(entity)),
+    }
+}

@@ -1,23 +1,16 @@
 use hecs::World;
 
-use super::Resources;
 use super::spectra::{Quantity, resolve_spectrum};
+use super::{Resources, set_component};
 use crate::components::{Sky, Sun, View};
 use crate::document::{self, Spectrum};
 
 /// Resolves the irradiance of sun and sky to bands. Reads `document::Sun`, `document::Sky` and the resources `spectra`
 /// and `bands`; writes [`Sun`] and [`Sky`].
 pub(super) fn resolve_light(world: &mut World, resources: &mut Resources) {
-    // Whatever is absent already need not be removed.
-    drop(world.remove_one::<Sun>(resources.sun));
-    drop(world.remove_one::<Sky>(resources.sky));
     let (sun, sky) = light(world, resources);
-    if let Some(sun) = sun {
-        world.insert_one(resources.sun, sun).expect("the sun exists");
-    }
-    if let Some(sky) = sky {
-        world.insert_one(resources.sky, sky).expect("the sky exists");
-    }
+    set_component(world, resources.sun, sun);
+    set_component(world, resources.sky, sky);
 }
 
 /// Sun and sky of the sources that the author wrote; `None` where there is none, and after an error.

@@ -1,7 +1,7 @@
 use hecs::World;
 
-use super::Resources;
 use super::spectra::{Quantity, reads_file, resolve_spectrum};
+use super::{Resources, set_component};
 use crate::components::{EnergyGain, LambertianOptics, MaterialId, SurfaceOptics};
 use crate::document::{Diagnostic, Material, Spectrum};
 
@@ -23,11 +23,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
                 spectra_of(&material).into_iter().any(|spectrum| reads_file(spectrum, resources));
             if is_used || !reads_file { optics(&material, &path, resources) } else { None }
         };
-        match optics.filter(|_| is_used) {
-            Some(optics) => world.insert_one(entity, optics).expect("materials exist"),
-            // Whatever is absent already need not be removed.
-            None => drop(world.remove_one::<SurfaceOptics>(entity)),
-        }
+        set_component(world, entity, optics.filter(|_| is_used));
     }
 }
 

@@ -1,8 +1,8 @@
 use hecs::World;
 
-use super::Resources;
 use super::resolve_temperatures::black_body_radiance;
 use super::spectra::{Quantity, resolve_spectrum};
+use super::{Resources, set_component};
 use crate::components::Emission;
 use crate::document::{Band, ThermalSky};
 
@@ -10,14 +10,9 @@ use crate::document::{Band, ThermalSky};
 /// `spectra` and `bands`; writes [`Emission`] of the sky.
 pub(super) fn resolve_sky_emission(world: &mut World, resources: &mut Resources) {
     let radiance = resources.measures_emission.then(|| radiance(world, resources)).flatten();
-    match radiance {
-        Some(sky) => {
-            let bands = resources.bands.iter().map(Band::emits).collect();
-            world.insert_one(resources.sky, Emission { bands, sky }).expect("the sky exists");
-        }
-        // Whatever is absent already need not be removed.
-        None => drop(world.remove_one::<Emission>(resources.sky)),
-    }
+    let bands = resources.bands.iter().map(Band::emits).collect();
+    let emission = radiance.map(|sky| Emission { bands, sky });
+    set_component(world, resources.sky, emission);
 }
 
 fn radiance(world: &World, resources: &mut Resources) -> Option<Vec<f64>> {

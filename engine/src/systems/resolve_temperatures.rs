@@ -1,6 +1,6 @@
 use hecs::World;
 
-use super::Resources;
+use super::{Resources, set_component};
 use crate::components::{BlackBody, MaterialId};
 use crate::document::{Band, Diagnostic, Material};
 use crate::spectral::{BandWindow, planck_mean};
@@ -25,11 +25,7 @@ pub(super) fn resolve_temperatures(world: &mut World, resources: &mut Resources)
         } else {
             None
         };
-        match body {
-            Some(body) => world.insert_one(entity, body).expect("materials exist"),
-            // Whatever is absent already need not be removed.
-            None => drop(world.remove_one::<BlackBody>(entity)),
-        }
+        set_component(world, entity, body);
     }
 }
 

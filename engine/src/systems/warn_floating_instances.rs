@@ -4,9 +4,9 @@ use glam::DVec3;
 use hecs::World;
 
 use super::Resources;
-use super::coordinate_advice::{planting_of, terrain_advice};
+use super::coordinate_advice::terrain_advice;
 use super::measure_bounds::placed_meshes;
-use crate::components::{MeshBounds, Placement};
+use crate::components::{Instance, InstanceQuery, MeshBounds, Placement};
 use crate::document::{Diagnostic, Instances};
 use crate::geometry::place_text;
 use crate::terrain::Ground;
@@ -21,16 +21,16 @@ const ROUNDING: f64 = 1e-6;
 struct Case {
     count: usize,
     /// The first of them in document order, and the heights of its lowest and highest point and of the ground, m.
-    first: Placement,
+    first: Instance,
     heights: [f64; 3],
 }
 
 impl Case {
-    fn add(case: &mut Option<Self>, placement: &Placement, heights: [f64; 3]) {
-        let case = case.get_or_insert(Self { count: 0, first: *placement, heights });
+    fn add(case: &mut Option<Self>, instance: Instance, heights: [f64; 3]) {
+        let case = case.get_or_insert(Self { count: 0, first: instance, heights });
         case.count += 1;
-        if placement.id < case.first.id {
-            (case.first, case.heights) = (*placement, heights);
+        if instance.id < case.first.id {
+            (case.first, case.heights) = (instance, heights);
         }
     }
 }
@@ -44,14 +44,17 @@ struct Cases {
 }
 
 /// Warns of instances that float above the ground by more than their height, or are sunken into it by half of their
-/// height: crowns without trunks, and roots, are left alone. Reads [`Placement`], [`MeshBounds`] and [`Ground`].
+/// height: crowns without trunks, and roots, are left alone. Reads the components of
+/// instances, [`MeshBounds`] and [`Ground`].
 pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resources) {
     let Ok(ground) = world.get::<&Ground>(resources.terrain) else { return };
     let meshes = placed_meshes(world);
     let bounds: BTreeMap<u32, MeshBounds> =
         meshes.iter().filter_map(|(&id, mesh)| Some((id, mesh.bounds?))).collect();
     let mut cases: BTreeMap<u32, Cases> = BTreeMap::new();
-    for placement in &mut world.query::<&Placement>() {
+    for components in &mut world.query::<InstanceQuery<'_>>() {
+        let instance = Instance::from_components(components);
+        let placement = &instance.placement;
         let Some(bounds) = bounds.get(&placement.prototype.0) else { continue };
         let (low, high) = vertical_extent(placement, bounds);
         let Some(below) = ground.height(placement.position.truncate()) else { continue };
@@ -69,7 +72,7 @@ pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resourc
         } else {
             &mut of_mesh.sunken
         };
-        Case::add(case, placement, [low, high, below]);
+        Case::add(case, instance, [low, high, below]);
     }
     for (prototype, Cases { flat, .. }) in &cases {
         let Some(Case { count, first, .. }) = flat else { continue };
@@ -77,7 +80,7 @@ pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resourc
         resources.messages.note(format!(
             "{count} of `{name}` are flat and lie exactly in the ground: at ({}, {}) rays meet the ground or \
              `{name}`, whichever comes first (lift it by a millimetre to see it)",
-            first.position.x, first.position.y
+            first.placement.position.x, first.placement.position.y
         ));
     }
     for (prototype, Cases { sunken, floating, .. }) in &cases {
@@ -89,7 +92,7 @@ pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resourc
             let help = format!(
                 "at {} the ground is {below:.2} m high, and it reaches from {low:.2} to {high:.2} m{advice}; \
                  heights of instances are those of the local frame",
-                place_text(first.position.truncate()),
+                place_text(first.placement.position.truncate()),
             );
             resources.messages.report(Diagnostic::warning("instances", message).help(help));
         }
@@ -97,14 +100,13 @@ pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resourc
 }
 
 fn advice(
-    placement: &Placement,
+    instance: &Instance,
     vertical: [f64; 2],
     world: &World,
     resources: &Resources,
 ) -> &'static str {
-    let planting = planting_of(placement.id, world, resources);
-    let instances =
-        planting.and_then(|(index, _)| world.get::<&Instances>(resources.plantings[index]).ok());
+    let planting = resources.plantings[instance.planting.0 as usize];
+    let instances = world.get::<&Instances>(planting);
     instances.map_or("", |instances| terrain_advice(&instances, vertical, resources))
 }
 

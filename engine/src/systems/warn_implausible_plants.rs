@@ -4,7 +4,7 @@ use hecs::World;
 
 use super::Resources;
 use super::measure_bounds::placed_meshes;
-use crate::components::{LeafArea, Placement, TerrainPatch};
+use crate::components::{Instance, InstanceQuery, LeafArea, TerrainPatch};
 use crate::document::{Diagnostic, Mesh};
 
 /// Leaf area over the area of a plant's outline from above; crowns of trees have 2 to 15.
@@ -34,7 +34,7 @@ struct Plants {
 }
 
 /// Warns of leaf areas and numbers of stems that no plant or stand has: units or decimal points that went wrong. Reads
-/// [`Placement`], [`LeafArea`], `MeshBounds`, `document::Mesh` and [`TerrainPatch`].
+/// the components of instances, [`LeafArea`], `MeshBounds`, `document::Mesh` and [`TerrainPatch`].
 pub(super) fn warn_implausible_plants(world: &mut World, resources: &mut Resources) {
     let Ok(patch) = world.get::<&TerrainPatch>(resources.terrain) else { return };
     let area = patch.size.element_product();
@@ -112,11 +112,12 @@ fn plants(world: &World, resources: &Resources) -> Vec<Plants> {
             (id, plants)
         })
         .collect();
-    for placement in &mut world.query::<&Placement>() {
+    for components in &mut world.query::<InstanceQuery<'_>>() {
+        let Instance { placement, .. } = Instance::from_components(components);
         let Some(plant) = plants.get_mut(&placement.prototype.0) else { continue };
         plant.count += 1;
         plant.all += plant.leaf_area * placement.area_factor();
-        plant.tallest = plant.tallest.max(plant.size.z * f64::from(placement.scale_vertical));
+        plant.tallest = plant.tallest.max(plant.size.z * f64::from(placement.scale.vertical));
     }
     plants.into_values().collect()
 }

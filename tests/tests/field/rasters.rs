@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use sunfleck::components::Placement;
+use sunfleck::components::{Instance, Placement};
 use sunfleck::document::{Options, read_text};
 use sunfleck::run::SceneWorld;
 use sunfleck_tests::field::{Case, Right, folder, hold};
@@ -21,8 +21,7 @@ pub(super) fn stand(scene: &str) -> Stood {
     let parent = path.parent().ok_or("a scene lies in a folder")?;
     let built = SceneWorld::from_scene(&reading.scene, parent)
         .map_err(|found| reading.source.render(&found))?;
-    let mut all: Vec<Placement> = built.world.query::<&Placement>().iter().copied().collect();
-    all.sort_by_key(|placement| placement.id);
+    let all = Instance::in_order(&built.world).into_iter().map(|one| one.placement).collect();
     Ok((all, reading.source.render(&built.diagnostics())))
 }
 
@@ -105,7 +104,7 @@ fn heights_in_feet_become_metres_and_that_is_told() {
     assert!(warnings.contains("in the unit foot"), "{warnings}");
     let (scaled, _) = stand("17-chm-plateau/near_scaled.ron").expect("a stand");
     // The mesh is some 10 m high, and both files hold the same tree.
-    let scale = |trees: &[Placement]| f64::from(trees[0].scale_vertical);
+    let scale = |trees: &[Placement]| f64::from(trees[0].scale.vertical);
     assert_eq!((trees.len(), scaled.len()), (1, 1));
     assert!((scale(&trees) - 1.0).abs() < 0.1, "{}", scale(&trees));
     assert!((scale(&trees) - scale(&scaled)).abs() < 1e-3, "{}", scale(&scaled));

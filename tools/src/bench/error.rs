@@ -23,11 +23,11 @@ const TRUTH: f64 = 4.0;
 pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
     let measured = &arguments.measured;
     let results = measured.results("bench")?;
-    let mut runs = run::Runs::read(&measured.scene.file, &measured.options())?;
-    let plan = Plan::of(runs.scene(), &measured.sensors, &measured.systems())?;
+    let mut session = run::Session::read(&measured.scene.file, &measured.options())?;
+    let plan = Plan::of(session.scene(), &measured.sensors, &measured.systems())?;
     warn(&plan.warnings);
     // The first run is the longest, and the machine warm after it.
-    let truth = traced(&mut runs, &plan, (0, TRUTH), "what the others are compared with")?;
+    let truth = traced(&mut session, &plan, (0, TRUTH), "what the others are compared with")?;
     warn(&truth.warnings);
     let truths = Truth::all(&plan, &truth);
     let (mut curves, mut samples) = (Vec::new(), Vec::new());
@@ -42,7 +42,7 @@ pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
             );
             let quality = quality(level, arguments.doublings);
             let number = repeat as usize * 100 + level as usize;
-            let report = traced(&mut runs, &plan, (number, quality), &heading)?;
+            let report = traced(&mut session, &plan, (number, quality), &heading)?;
             samples.push(report.sensors.iter().map(|sensor| sensor.samples).collect::<Vec<_>>());
             let findings = Finding::all(&plan, &report, plan.members[0].system);
             for (truth, curves) in truths.iter().zip(curves.chunk_by_mut(alike)) {
@@ -86,14 +86,14 @@ fn quality(level: u32, doublings: u32) -> f64 {
 }
 
 fn traced(
-    runs: &mut run::Runs,
+    session: &mut run::Session,
     plan: &Plan,
     (number, quality): (usize, f64),
     heading: &str,
 ) -> anyhow::Result<Report> {
     let bars = Bars::new();
     bars.heading(heading);
-    let report = runs.run(&plan.again(number), quality, &bars);
+    let report = session.run(&plan.again(number), quality, &bars);
     bars.clear();
     Ok(report?)
 }

@@ -27,11 +27,11 @@ pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
     if !systems.contains(&reference) {
         bail!("the reference `{}` is not among the systems: add it to --systems", reference.name());
     }
-    let mut runs = run::Runs::read(&measured.scene.file, &measured.options())?;
-    let plan = Plan::of(runs.scene(), &measured.sensors, &systems)?;
+    let mut session = run::Session::read(&measured.scene.file, &measured.options())?;
+    let plan = Plan::of(session.scene(), &measured.sensors, &systems)?;
     warn(&plan.warnings);
     let bars = Bars::new();
-    let report = runs.run(&plan.scene, 1.0, &bars);
+    let report = session.run(&plan.scene, 1.0, &bars);
     bars.clear();
     let report = report?;
     warn(&report.warnings);

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 
 use super::Crown;
-use crate::components::{Placement, PrototypeId, SceneId};
+use crate::components::{Lean, Placement, PrototypeId, Scale};
 use crate::sampling::Key;
 
 /// A mesh that may stand for a tree.
@@ -23,7 +23,7 @@ pub struct Model {
 /// least; scaled to its height and diameter, turned at random. Of equal models the first is taken.
 ///
 /// `ground` is the height of the terrain at each tree, m; `sink` how deep the meshes' origins lie
-/// below it, m. Their tops are as high above the terrain as the trees. Ids are the trees' numbers.
+/// below it, m. Their tops are as high above the terrain as the trees.
 ///
 /// # Panics
 /// If there is no model, or not one height of the ground a tree.
@@ -45,14 +45,14 @@ pub fn fit(
             if distortion(model) < distortion(&best) { *model } else { best }
         });
         Placement {
+            prototype: model.prototype,
             position: crown.place.extend(ground - sink),
             yaw: (TAU * stream.uniform(number as u64)) as f32,
-            tilt: 0.0,
-            tilt_azimuth: 0.0,
-            scale_horizontal: (crown.diameter / model.diameter) as f32,
-            scale_vertical: (height / model.height) as f32,
-            prototype: model.prototype,
-            id: SceneId(number as u32),
+            scale: Scale {
+                horizontal: (crown.diameter / model.diameter) as f32,
+                vertical: (height / model.height) as f32,
+            },
+            lean: Lean::UPRIGHT,
         }
     };
     crowns.par_iter().zip(ground).enumerate().map(place).collect()

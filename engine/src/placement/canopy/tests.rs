@@ -120,10 +120,10 @@ fn the_model_of_the_nearest_ratio_is_scaled_to_the_tree() {
     for (tree, crown) in trees.iter().zip(&found) {
         let model = models[tree.prototype.0 as usize];
         used[tree.prototype.0 as usize] += 1;
-        let top = tree.position.z + f64::from(tree.scale_vertical) * model.height;
+        let top = tree.position.z + f64::from(tree.scale.vertical) * model.height;
         let ground = 0.1 * crown.place.x;
         assert!((top - ground - crown.height).abs() < 1e-5, "{top}");
-        assert!((f64::from(tree.scale_horizontal) * model.diameter - crown.diameter).abs() < 1e-5);
+        assert!((f64::from(tree.scale.horizontal) * model.diameter - crown.diameter).abs() < 1e-5);
         // Half-way between the ratios 1.25 and 5 is 2.5.
         let ratio = (crown.height + 0.5) / crown.diameter;
         assert_eq!(tree.prototype.0 == 1, ratio > 2.5, "{ratio}");

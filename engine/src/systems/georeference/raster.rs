@@ -12,7 +12,7 @@ use crate::document::{Coordinates, Diagnostic};
 use crate::geometry::Rectangle;
 use crate::systems::Resources;
 
-/// What the values of a raster are.
+/// Quantity that the values of a raster are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::systems) enum Quantity {
     /// Heights, m.
@@ -23,25 +23,25 @@ pub(in crate::systems) enum Quantity {
     Classes,
 }
 
-/// A raster that the scene names.
+/// Raster that the scene names.
 #[derive(Clone, Debug)]
 pub(in crate::systems) struct RasterSource<'a> {
     pub(in crate::systems) file: &'a str,
     /// Path of the key in the document that names the file.
     pub(in crate::systems) path: &'a str,
     pub(in crate::systems) quantity: Quantity,
-    /// What the scene says that the coordinates are.
+    /// Unit of the coordinates, if the scene says it.
     pub(in crate::systems) coordinates: Option<Coordinates>,
     /// True if the scene says how large the raster is, whatever the file says.
     pub(in crate::systems) has_size: bool,
     /// Length of the unit of heights, m, if the scene says so.
     pub(in crate::systems) height_unit_m: Option<f64>,
-    /// Part that is needed, in the file's coordinates.
+    /// Needed part, in the coordinates of the file.
     pub(in crate::systems) extent: Option<Extent>,
 }
 
 impl<'a> RasterSource<'a> {
-    /// All of a raster, as its file says.
+    /// Whole raster, with the units that its file names.
     pub(in crate::systems) fn new(file: &'a str, path: &'a str, quantity: Quantity) -> Self {
         let (coordinates, has_size, height_unit_m, extent) = (None, false, None, None);
         Self { file, path, quantity, coordinates, has_size, height_unit_m, extent }
@@ -214,7 +214,7 @@ fn in_unit(unit: &Length, system: &str) -> String {
     format!("its coordinates are in {kind}: {name}{length}{system}")
 }
 
-/// How much longer a metre of the map is than one on the ground, where that is known.
+/// Message about a map of the world, with the ratio of its metres to those on the ground if it is known.
 fn world_message(place: &Place, raster: &Raster) -> String {
     /// Radius of the sphere of Web Mercator, m.
     const RADIUS: f64 = 6_378_137.0;

@@ -4,6 +4,7 @@ mod scatter;
 mod table;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::DVec3;
 use hecs::{Entity, World};
@@ -13,7 +14,8 @@ use super::coordinate_advice::{AdvicePlace, other_coordinates};
 use super::georeference::{Georeference, MapFrame};
 use crate::assets::Row;
 use crate::components::{
-    InstanceRange, Mesh, MeshBounds, Placement, PrototypeId, SceneId, ShownMeshes,
+    Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingId, PrototypeId, Scale,
+    SceneId, ShownMeshes,
 };
 use crate::document::{Diagnostic, Instances, Terrain};
 use crate::geometry::{Rectangle, place_text};
@@ -69,24 +71,17 @@ impl Site<'_> {
 }
 
 /// Places the instances of all plantings on the ground. Reads `document::Instances`, [`ShownMeshes`], [`Mesh`],
-/// [`MeshBounds`], [`Ground`] and [`MapFrame`]; writes [`Placement`] of instances and [`InstanceRange`] of plantings.
+/// [`MeshBounds`], [`Ground`] and [`MapFrame`]; writes all components of instances, and [`InstanceRange`] of plantings.
 pub(super) fn plant(world: &mut World, resources: &mut Resources) {
-    let old: Vec<Entity> = world.query_mut::<Entity>().with::<&Placement>().into_iter().collect();
-    for instance in old {
-        world.despawn(instance).expect("the query found it");
-    }
-    for &planting in &resources.plantings {
-        // Whatever is absent already need not be removed.
-        drop(world.remove_one::<InstanceRange>(planting));
-    }
+    despawn_instances(world, resources);
     let shapes = shapes(world);
     let mut placements: Vec<Placement> = Vec::new();
+    let mut ranges: Vec<Range<usize>> = Vec::new();
     let mut map = {
         let map = world.get::<&MapFrame>(resources.terrain);
         (*map.expect("`triangulate_terrain` writes it")).clone()
     };
     for (index, planting) in resources.plantings.clone().into_iter().enumerate() {
-        let start = placements.len();
         let mut placed = {
             let mut source = world.query_one::<(&Instances, &ShownMeshes)>(planting);
             let (instances, shown) = source.get().expect("`hide_and_select` has run");
@@ -108,20 +103,44 @@ pub(super) fn plant(world: &mut World, resources: &mut Resources) {
             placed.retain(|one| shown.0.contains(&one.prototype) && !is_empty(one.prototype));
             placed
         };
+        let start = placements.len();
         if start + placed.len() > MOST_INSTANCES {
             let message = format!("more than {MOST_INSTANCES} instances");
             let problem = Diagnostic::error(format!("instances[{index}]"), message);
             resources.report(problem.help("group trees into larger meshes"));
             break;
         }
-        for (instance, id) in placed.iter_mut().zip(start as u32..) {
-            instance.id = SceneId(id);
-        }
         placements.append(&mut placed);
-        let range = InstanceRange(start as u32..placements.len() as u32);
+        let end = placements.len();
+        let range = InstanceRange(start as u32..end as u32);
         world.insert_one(planting, range).expect("plantings exist");
+        ranges.push(start..end);
     }
-    world.spawn_batch(placements.into_iter().map(|placement| (placement,)));
+    let placements = &placements;
+    let instance = |planting: u32| {
+        move |id: usize| Instance {
+            id: SceneId(id as u32),
+            planting: PlantingId(planting),
+            placement: placements[id],
+        }
+    };
+    let instances =
+        || (0..).zip(&ranges).flat_map(|(planting, range)| range.clone().map(instance(planting)));
+    Instance::spawn(instances, world);
+}
+
+/// Removes all instances.
+fn despawn_instances(world: &mut World, resources: &Resources) {
+    let query = world.query_mut::<Entity>().with::<&PlantingId>();
+    let instances: Vec<Entity> = query.into_iter().collect();
+    // The last ones first: removing a row moves the last one into its place.
+    for instance in instances.into_iter().rev() {
+        world.despawn(instance).expect("the query found it");
+    }
+    for &planting in &resources.plantings {
+        // Whatever is absent already need not be removed.
+        drop(world.remove_one::<InstanceRange>(planting));
+    }
 }
 
 /// Shapes of loaded meshes by their id.
@@ -133,7 +152,7 @@ fn shapes(world: &World) -> BTreeMap<u32, Shape> {
     query.iter().map(shape).collect()
 }
 
-/// Instances of a planting, hidden ones included, with scene ids that mean nothing yet.
+/// Placements of a planting, those of hidden meshes included.
 fn placements_of(instances: &Instances, site: &mut Site<'_>) -> Vec<Placement> {
     match instances {
         Instances::Table { .. } => plant_table(instances, site),
@@ -202,14 +221,14 @@ fn plant_rows(
 
 fn placement(row: &Row, base: f64, prototype: PrototypeId) -> Placement {
     Placement {
+        prototype,
         position: row.position + DVec3::Z * base,
         yaw: row.yaw as f32,
-        tilt: row.tilt as f32,
-        tilt_azimuth: row.tilt_azimuth as f32,
-        scale_horizontal: row.scale_horizontal as f32,
-        scale_vertical: row.scale_vertical as f32,
-        prototype,
-        id: SceneId(0),
+        scale: Scale {
+            horizontal: row.scale_horizontal as f32,
+            vertical: row.scale_vertical as f32,
+        },
+        lean: Lean { tilt: row.tilt as f32, azimuth: row.tilt_azimuth as f32 },
     }
 }
 

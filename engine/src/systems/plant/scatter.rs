@@ -3,7 +3,7 @@ use super::{Site, rectangle_of};
 use crate::components::Placement;
 use crate::document::{Diagnostic, Instances, Map, Stems};
 use crate::geometry::{Rectangle, place_text};
-use crate::placement::{Amount, Habit, Species, places, stand};
+use crate::placement::{Amount, Habit, Species, instantiate_trees, places};
 use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
 use crate::terrain::{Cells, Ground};
 
@@ -69,7 +69,7 @@ pub(super) fn scatter(
         scale_vertical: scale_vertical.as_ref(),
         sink_m: *sink_m,
     };
-    let trees = stand(&places, &species, &habit, |place| ground.height(place), stream);
+    let trees = instantiate_trees(&places, &species, &habit, |place| ground.height(place), stream);
     if trees.len() < places.len() && !species.is_empty() {
         let count = places.len() - trees.len();
         let message = format!("{count} of {} stems fell on holes of the terrain", places.len());

@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3, UVec2};
 
-use super::{SensorPlace, image_measures, resolve_plane, stops, system_of, view};
+use super::{SensorPlace, image_measures, resolve_plane, stop_criteria, system_of, view};
 use crate::components::{
     Channels, Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
     Perspective, Picture, Stand,
@@ -8,7 +8,7 @@ use crate::components::{
 use crate::document::{self, Cover, FisheyeProjection, Sensor};
 use crate::systems::Resources;
 
-/// Samples of a pixel where a scene does not say.
+/// Samples per pixel if the scene does not say.
 const SAMPLES: u32 = 64;
 
 /// Image sensor of a source that the author wrote; `None` if it takes no image.
@@ -42,7 +42,7 @@ pub(super) fn image(
         size: UVec2::from(size),
         optics: camera(sensor, place)?,
         samples,
-        until: stops(sensor),
+        until: stop_criteria(sensor),
         measure: image_measures(measure),
         picture: resolve_picture(picture, resources)?,
         system: system_of(*system),
@@ -128,7 +128,7 @@ fn camera(sensor: &Sensor, place: &SensorPlace) -> Option<Optics> {
     })
 }
 
-/// Where a camera looks, and what is up in its image if nothing else is written.
+/// Direction or target of a camera, and the default of the direction that is up in its image.
 fn look_of(look: &document::Look) -> (Look, DVec3) {
     match look {
         document::Look::Up => (Look::Direction(DVec3::Z), DVec3::Y),

@@ -5,10 +5,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec2;
 use hecs::World;
 
-use super::Resources;
+use super::{Resources, set_component};
 use crate::components::{
-    Cone, Directions, ImageMeasure, Layers, Per, PhotonMeasure, Photons, Sensor, Stop, System,
-    TerrainPatch, View, VirtualPlane,
+    Cone, Directions, ImageMeasure, Layers, Per, PhotonMeasure, Photons, Sensor, StopCriterion,
+    System, TerrainPatch, View, VirtualPlane,
 };
 use crate::document::{self, Diagnostic, Sun, Until, Views};
 
@@ -42,11 +42,7 @@ pub(super) fn resolve_sensors(world: &mut World, resources: &mut Resources) {
             let source = source.expect("`spawn` gives sensors their source");
             sensor(&source, &format!("sensors.{name}"), &place, resources)
         };
-        match resolved {
-            Some(sensor) => world.insert_one(entity, sensor).expect("sensors exist"),
-            // Whatever is absent already need not be removed.
-            None => drop(world.remove_one::<Sensor>(entity)),
-        }
+        set_component(world, entity, resolved);
     }
 }
 
@@ -64,7 +60,7 @@ fn sensor(
         document::Sensor::Directions { views, until: _, measure, virtual_plane, system } => {
             Sensor::Directions(Directions {
                 views: resolve_views(views, &format!("{path}.views"), place, resources)?,
-                until: stops(sensor),
+                until: stop_criteria(sensor),
                 measure: image_measures(measure),
                 plane: resolve_plane(virtual_plane.as_ref(), place.corner, place.size),
                 system: system.map(system_of),
@@ -114,7 +110,7 @@ fn sensor(
                 });
             }
             let plane = resolve_plane(virtual_plane.as_ref(), place.corner, place.size);
-            let until = stops(sensor);
+            let until = stop_criteria(sensor);
             let system = system_of(*system);
             let (per_area, measure) = (*per_m2, measures);
             Sensor::Photons(Photons { per_area, until, measure, plane, system })
@@ -171,16 +167,16 @@ fn resolve_views(
 }
 
 /// Conditions that end a measurement.
-pub(super) fn stops(sensor: &document::Sensor) -> Vec<Stop> {
-    let stop = |end: &Until| match end {
-        Until::RelError(limit) => Stop::RelError(*limit),
-        Until::RelErrors(limits) => {
-            Stop::RelErrors(limits.iter().map(|(name, limit)| (name.clone(), *limit)).collect())
-        }
-        Until::Seconds(limit) => Stop::Seconds(*limit),
-        Until::Samples(limit) => Stop::Samples(*limit),
+pub(super) fn stop_criteria(sensor: &document::Sensor) -> Vec<StopCriterion> {
+    let criterion = |end: &Until| match end {
+        Until::RelError(limit) => StopCriterion::RelError(*limit),
+        Until::RelErrors(limits) => StopCriterion::RelErrors(
+            limits.iter().map(|(name, limit)| (name.clone(), *limit)).collect(),
+        ),
+        Until::Seconds(limit) => StopCriterion::Seconds(*limit),
+        Until::Samples(limit) => StopCriterion::Samples(*limit),
     };
-    sensor.until().iter().map(stop).collect()
+    sensor.until().iter().map(criterion).collect()
 }
 
 pub(super) fn view(zenith_deg: f64, azimuth_deg: f64) -> View {

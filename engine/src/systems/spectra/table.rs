@@ -1,4 +1,4 @@
-//! Means over bands of spectra from tables, and what in such a table cannot be meant.
+//! Means over bands of spectra from tables, and checks of such tables.
 
 use std::path::Path;
 
@@ -100,7 +100,7 @@ impl Values<'_> {
         !written.is_finite() || written.abs() >= HUGE || self.scaled[index] < MARK
     }
 
-    /// Where a value stands in its file.
+    /// Place of a value in its file, and the value.
     fn place(&self, index: usize) -> String {
         let SpectrumPoint { line, .. } = self.table.points[index];
         let file = Path::new(self.file).display();

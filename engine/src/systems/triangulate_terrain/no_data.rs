@@ -80,7 +80,7 @@ mod tests {
         let mut raster = raster_of(4, 1, values);
         fill_from_neighbours(&mut raster);
         assert_eq!(raster.values, [1.0, 1.0, 4.0, 4.0]);
-        // Of one known cell among 2^20, a thousand rings: in no time.
+        // One known cell among 2^20 takes a thousand rings.
         let mut values = vec![nan; 1 << 20];
         values[0] = 7.0;
         let mut raster = raster_of(1 << 10, 1 << 10, values);

@@ -16,7 +16,7 @@ const WALL: f64 = 10.0;
 #[derive(Clone, Copy, Debug, Default)]
 struct Steps {
     count: usize,
-    /// How many are steeper than [`STEEP`].
+    /// Number of steps that are steeper than [`STEEP`].
     steep: usize,
     /// The highest step that is steeper than [`WALL`], m, and the cell where it is.
     highest: f64,

@@ -9,7 +9,7 @@ use super::Resources;
 use super::measure_bounds::placed_meshes;
 use super::resolve_sensors::resolve_plane;
 use super::warn_floating_instances::vertical_extent;
-use crate::components::{MeshBounds, Placement, TerrainPatch};
+use crate::components::{Instance, InstanceQuery, MeshBounds, TerrainPatch};
 use crate::document::{Diagnostic, Layers, Look, PhotonMeasure, Sensor, VirtualPlane};
 use crate::terrain::Ground;
 
@@ -126,7 +126,7 @@ impl<'a> Relief<'a> {
 }
 
 /// Warns of cameras, virtual planes, flux levels and layers below the ground: their heights may be meant above it, as
-/// most tables give them. Reads `document::Sensor`, [`TerrainPatch`], [`Ground`], [`Placement`] and [`MeshBounds`].
+/// most tables give them. Reads `document::Sensor`, [`TerrainPatch`], [`Ground`], [`MeshBounds`] and the components of instances.
 pub(super) fn warn_sensor_heights(world: &mut World, resources: &mut Resources) {
     let mut terrain = world.query_one::<(&TerrainPatch, &Ground)>(resources.terrain);
     let Ok((patch, ground)) = terrain.get() else { return };
@@ -339,9 +339,10 @@ fn top(world: &World) -> f64 {
     let bounds: BTreeMap<u32, MeshBounds> =
         meshes.filter_map(|(id, mesh)| Some((id, mesh.bounds?))).collect();
     let mut top = f64::NEG_INFINITY;
-    for placement in &mut world.query::<&Placement>() {
+    for components in &mut world.query::<InstanceQuery<'_>>() {
+        let Instance { placement, .. } = Instance::from_components(components);
         if let Some(bounds) = bounds.get(&placement.prototype.0) {
-            top = top.max(vertical_extent(placement, bounds).1);
+            top = top.max(vertical_extent(&placement, bounds).1);
         }
     }
     top

@@ -1,27 +1,27 @@
-//! What stands at each place, and how.
+//! Species, size and orientation of the tree at each place.
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::distribution::draw;
-use crate::components::{Placement, PrototypeId, SceneId};
+use crate::components::{Lean, Placement, PrototypeId, Scale};
 use crate::document::Distribution;
 use crate::sampling::Key;
 
-/// What may stand somewhere.
+/// Species that may take a place.
 #[derive(Clone, Copy, Debug)]
 pub struct Species<'a> {
-    /// Its name, which its random numbers are keyed by.
+    /// Name, which is the key of its random numbers.
     pub name: &'a str,
     /// Share of the stems, at least 0; only ratios count.
     pub share: f64,
-    /// Its mesh.
+    /// Mesh of its trees.
     pub prototype: PrototypeId,
     /// Height of the mesh above its origin, m.
     pub height: f64,
 }
 
-/// How trees vary.
+/// Distributions of the size and orientation of trees.
 #[derive(Clone, Copy, Debug)]
 pub struct Habit<'a> {
     /// Turn about the vertical, degrees.
@@ -40,13 +40,11 @@ pub struct Habit<'a> {
     pub sink_m: f64,
 }
 
-/// Trees at places on the ground whose height is `ground`; none where there is no ground. Their ids
-/// are their numbers among the places.
+/// Trees at places on the ground, whose height is `ground`; a place without ground has none.
 ///
-/// Species race for each stem: each draws an exponential waiting time of rate `share` from a stream
-/// of its own, and the first to come has the place. So shares hold, and another species leaves all
-/// stems as they are but those that it wins.
-pub fn stand(
+/// Each species draws an exponential waiting time of rate `share` for each stem from a stream of its own, and the
+/// shortest time takes the place. So shares hold, and a further species changes only the stems that it takes.
+pub fn instantiate_trees(
     places: &[DVec2],
     species: &[Species<'_>],
     habit: &Habit<'_>,
@@ -70,14 +68,17 @@ pub fn stand(
         let scale = draw(habit.scale, scale);
         let vertical = habit.scale_vertical.map_or(scale, |of| draw(of, vertical));
         Some(Placement {
+            prototype: species.prototype,
             position: place.extend(ground(place)? - habit.sink_m),
             yaw: draw(habit.yaw_deg, yaw).to_radians() as f32,
-            tilt: draw(habit.tilt_deg, tilt).to_radians() as f32,
-            tilt_azimuth: draw(habit.tilt_azimuth_deg, tilt_azimuth).to_radians() as f32,
-            scale_horizontal: (whole * scale) as f32,
-            scale_vertical: (whole * vertical) as f32,
-            prototype: species.prototype,
-            id: SceneId(number as u32),
+            scale: Scale {
+                horizontal: (whole * scale) as f32,
+                vertical: (whole * vertical) as f32,
+            },
+            lean: Lean {
+                tilt: draw(habit.tilt_deg, tilt).to_radians() as f32,
+                azimuth: draw(habit.tilt_azimuth_deg, tilt_azimuth).to_radians() as f32,
+            },
         })
     };
     places.par_iter().enumerate().filter_map(|(number, &place)| tree(number, place)).collect()

@@ -1,27 +1,27 @@
-//! A scene file run again and again, with changes to what measures it.
-
 use std::path::{Path, PathBuf};
 
+use super::pool::in_pool;
+use super::reading::{folder_of, read};
 use super::scene_world::SceneWorld;
-use super::{Failure, Options, Progress, folder_of, in_pool, origin, read, run_in};
+use super::{Failure, Options, Progress, origin, run_in};
 use crate::document::{Reading, Scene};
 use crate::products::Report;
 
-/// A scene file that was read once. Its runs may differ in light, spectra and sensors: meshes,
-/// instances and terrain are built by the first and kept for the others.
+/// Runs of a scene file that is read once, with changes to the scene: each run derives anew only what depends on its
+/// changes.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
-pub struct Runs {
+pub struct Session {
     reading: Reading,
     file: PathBuf,
     options: Options,
     world: SceneWorld,
 }
 
-impl Runs {
+impl Session {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// All that is wrong with it, rendered for a person.
+    /// All errors of the scene, rendered for a person.
     pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
         let reading = read(file, options)?;
         let world = SceneWorld::new(folder_of(file));
@@ -34,10 +34,10 @@ impl Runs {
         &self.reading.scene
     }
 
-    /// Runs a scene that was made from it; `quality` counts on top of that of the options.
+    /// Runs a scene that was made from it; `quality` multiplies that of the options.
     ///
     /// # Errors
-    /// All that is wrong with the scene.
+    /// All errors of the scene.
     pub fn run(
         &mut self,
         scene: &Scene,

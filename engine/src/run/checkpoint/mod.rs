@@ -1,0 +1,243 @@
+//! State of a run in a file that is complete at any moment: a run can be resumed from it, and the parts of a run can be
+//! united. The file is written under a name of its own and renamed, so that a run that is killed leaves the last one.
+
+mod format;
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::Failure;
+use crate::output;
+use crate::transport::Partition;
+
+use format::Contents;
+
+/// File that a run saves its state to and resumes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// The file.
+    pub file: PathBuf,
+    /// Time between two saves, s.
+    pub every: f64,
+    /// Part of the run that is traced.
+    pub share: Partition,
+}
+
+/// State of the measurement of one sensor.
+#[derive(Clone)]
+pub(super) struct Section {
+    pub(super) name: String,
+    /// Samples of each randomisation.
+    pub(super) samples: u64,
+    pub(super) seconds: f64,
+    pub(super) state: Arc<Vec<u8>>,
+}
+
+/// State of the measurements of a run, and the file that it is saved to.
+pub(super) struct CheckpointStore {
+    hash: [u8; 32],
+    /// Parts of the run that were read, each with its sections.
+    read: Vec<(Partition, Vec<Section>)>,
+    to: Option<Checkpoint>,
+    /// Sections that the file will hold.
+    sections: Vec<Section>,
+    written: Instant,
+    /// Error of the last save.
+    failed: Option<String>,
+}
+
+impl Checkpoint {
+    /// Checks that the file can be written, before anything is traced; changes nothing.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn try_file(&self) -> Result<(), Failure> {
+        let unwritable = |source: io::Error| {
+            let what = format!("cannot be written: {source}");
+            wrong(&self.file, &what, "name a file in a folder that exists and may be written to")
+        };
+        match std::fs::metadata(&self.file) {
+            Ok(metadata) if !metadata.is_file() => Err(not_regular(&self.file)),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unwritable(error)),
+            _ => output::try_file(&self.file).map_err(unwritable),
+        }
+    }
+}
+
+impl CheckpointStore {
+    /// Store of a run that saves nothing.
+    pub(super) fn disabled() -> Self {
+        Self {
+            hash: [0; 32],
+            read: Vec::new(),
+            to: None,
+            sections: Vec::new(),
+            written: Instant::now(),
+            failed: None,
+        }
+    }
+
+    /// Store of a run that is resumed from a file, if the file exists.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged, or is of another scene or share.
+    pub(super) fn open(to: &Checkpoint, hash: [u8; 32]) -> Result<Self, Failure> {
+        let mut store = Self { hash, to: Some(to.clone()), ..Self::disabled() };
+        if to.file.try_exists().map_err(|source| unreadable(&to.file, source))? {
+            let (share, sections) = format::read_of_scene(&to.file, hash)?;
+            if share != to.share {
+                let found =
+                    format!("holds {}, and {} is to be traced", part(share), part(to.share));
+                return Err(wrong(&to.file, &found, "give each part a file of its own"));
+            }
+            store.sections.clone_from(&sections);
+            store.read.push((share, sections));
+        }
+        Ok(store)
+    }
+
+    /// Store of a run that unites all parts of another one.
+    ///
+    /// # Errors
+    /// If one cannot be read, is damaged or of another scene, or if they are not all shares of one run.
+    pub(super) fn unite(files: &[PathBuf], hash: [u8; 32]) -> Result<Self, Failure> {
+        let mut read: Vec<(Partition, Vec<Section>)> = Vec::new();
+        for (index, file) in files.iter().enumerate() {
+            let (share, sections) = format::read_of_scene(file, hash)?;
+            if let Some((first, others)) = read.first() {
+                if share.count != first.count {
+                    let found = format!(
+                        "holds {}, and {} holds {}",
+                        part(share),
+                        files[0].display(),
+                        part(*first)
+                    );
+                    return Err(wrong(file, &found, "unite parts of one division"));
+                }
+                let places = |sections: &[Section]| -> Vec<(String, u64)> {
+                    sections.iter().map(|one| (one.name.clone(), one.samples)).collect()
+                };
+                if places(&sections) != places(others) {
+                    let found = format!("has not traced as much as {}", files[0].display());
+                    return Err(wrong(file, &found, "go on with both to the same end first"));
+                }
+            }
+            if let Some(twin) = read.iter().position(|(other, _)| *other == share) {
+                let found = format!("holds {}, as {} does", part(share), files[twin].display());
+                return Err(wrong(&files[index], &found, "give each part once"));
+            }
+            read.push((share, sections));
+        }
+        let of = read.first().map_or(1, |(share, _)| share.count);
+        let missing: Vec<String> = (0..of)
+            .map(|index| Partition { index, count: of })
+            .filter(|share| !read.iter().any(|(other, _)| other == share))
+            .map(part)
+            .collect();
+        if let (false, Some(file)) = (missing.is_empty(), files.first()) {
+            let found = format!("is one of {of}, and {} is missing", missing.join(", "));
+            return Err(wrong(file, &found, "give the files of all parts"));
+        }
+        Ok(Self { hash, read, ..Self::disabled() })
+    }
+
+    /// Names of the sensors in a checkpoint, if it is of another scene than that with this hash.
+    ///
+    /// # Errors
+    /// If it cannot be read or is damaged.
+    pub(super) fn other_sensors(file: &Path, hash: [u8; 32]) -> Result<Vec<String>, Failure> {
+        let Contents { scene, sections, .. } = format::read(file)?;
+        if scene == hash {
+            return Ok(Vec::new());
+        }
+        Ok(sections.into_iter().map(|section| section.name).collect())
+    }
+
+    /// Part of the run that is traced.
+    pub(super) fn share(&self) -> Partition {
+        self.to.as_ref().map_or(Partition::ALL, |to| to.share)
+    }
+
+    /// Returns whether the run saves its state.
+    pub(super) const fn is_enabled(&self) -> bool {
+        self.to.is_some()
+    }
+
+    /// Sections of a sensor that were read, by part of the run.
+    pub(super) fn restored(&self, name: &str) -> Vec<(Partition, Section)> {
+        let of = |(share, sections): &(Partition, Vec<Section>)| {
+            Some((*share, sections.iter().find(|section| section.name == name)?.clone()))
+        };
+        self.read.iter().filter_map(of).collect()
+    }
+
+    /// Returns whether it is time to save.
+    pub(super) fn is_due(&self) -> bool {
+        self.to.as_ref().is_some_and(|to| self.written.elapsed().as_secs_f64() >= to.every)
+    }
+
+    /// Sets the section of a sensor.
+    pub(super) fn set_section(&mut self, section: Section) {
+        match self.sections.iter_mut().find(|other| other.name == section.name) {
+            Some(other) => *other = section,
+            None => self.sections.push(section),
+        }
+    }
+
+    /// Saves the state in the middle of a run. If that fails, the run goes on, because nothing is lost and the next
+    /// save may succeed; returns a warning.
+    pub(super) fn save(&mut self) -> Option<String> {
+        let to = self.to.as_ref()?;
+        let saved = format::write(to, self.hash, &self.sections);
+        self.written = Instant::now();
+        self.failed = saved.err().map(|source| {
+            let file = to.file.display();
+            let old = if to.file.exists() { ", which holds what it held before" } else { "" };
+            format!("cannot write the checkpoint {file}{old}: {source}; the run goes on")
+        });
+        self.failed.clone()
+    }
+
+    /// Saves the state at the end of a run; returns a warning if that fails.
+    ///
+    /// # Errors
+    /// If the file cannot be written and is the only result of this run.
+    pub(super) fn finish(&mut self) -> Result<Option<String>, Failure> {
+        let Some(warning) = self.save() else { return Ok(None) };
+        match &self.to {
+            Some(to) if to.share != Partition::ALL => Err(Failure::Checkpoint {
+                file: to.file.clone(),
+                what: "could not be written, and what was traced of this part is lost".to_owned(),
+                help: warning,
+            }),
+            _ => Ok(Some(warning)),
+        }
+    }
+
+    /// Longest time of a round, s.
+    pub(super) fn longest_round(&self) -> f64 {
+        self.to.as_ref().map_or(f64::INFINITY, |to| 0.5 * to.every)
+    }
+}
+
+/// `part 2/4`.
+fn part(share: Partition) -> String {
+    match share {
+        Partition::ALL => "a whole run".to_owned(),
+        Partition { index, count } => format!("part {}/{count}", index + 1),
+    }
+}
+
+fn wrong(file: &Path, what: &str, help: &str) -> Failure {
+    Failure::Checkpoint { file: file.to_owned(), what: what.to_owned(), help: help.to_owned() }
+}
+
+fn unreadable(file: &Path, source: io::Error) -> Failure {
+    Failure::Read { path: file.to_owned(), source }
+}
+
+fn not_regular(file: &Path) -> Failure {
+    wrong(file, "is no regular file but a folder, a pipe or a device", "name a file")
+}

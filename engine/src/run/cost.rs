@@ -1,0 +1,184 @@
+//! Estimate of the cost of a run, before it is traced and from its first samples.
+
+use std::cmp::Reverse;
+use std::iter::successors;
+use std::sync::OnceLock;
+
+use super::advice::{Smaller, smaller};
+use super::checkpoint::CheckpointStore;
+use super::convergence::{Measurement, Start};
+use super::sensors::SensorEntity;
+use crate::components::Sensor;
+use crate::document::Diagnostic;
+use crate::output;
+use crate::products::{Extent, Forecast, data_size};
+use crate::transport::Partition;
+
+/// Memory and files of one sensor, bytes; saturates at `u64::MAX`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct CostEstimate {
+    /// Memory of its films.
+    films: u64,
+    /// Further memory while it is traced and products are made.
+    beside: u64,
+    /// Memory of its products, which are kept until all sensors are measured.
+    products: u64,
+    /// Memory of its section of the checkpoint.
+    checkpoint: u64,
+    /// Memory to write the files of the largest of its products.
+    writing: u64,
+    /// Size of its files.
+    files: u64,
+    /// Index of the measure that takes most of it.
+    largest: usize,
+}
+
+impl CostEstimate {
+    /// Estimate for a measurement, of which a part of the run may be traced.
+    pub(super) fn new(measurement: &mut dyn Measurement, store: &CheckpointStore) -> Self {
+        let (mut films, mut beside) = (0, 0);
+        for paced in measurement.films() {
+            paced.film.restrict(store.share());
+            films = sum([films, paced.film.bytes()]);
+            beside = sum([beside, paced.film.bytes_beside()]);
+        }
+        // The last checkpoint stays in memory until the next one is written.
+        let checkpoint = if store.is_enabled() { films } else { 0 };
+        let beside = sum([beside, checkpoint]);
+        let is_whole = store.share() == Partition::ALL;
+        let extents = if is_whole { measurement.extents() } else { Vec::new() };
+        let of_all = |of: fn(Extent) -> u64| sum(extents.iter().map(|&extent| of(extent)));
+        Self {
+            films,
+            beside,
+            products: of_all(Extent::memory),
+            checkpoint,
+            writing: extents.iter().map(|extent| extent.memory_of_files()).max().unwrap_or(0),
+            files: of_all(output::file_size),
+            largest: measurement.largest(),
+        }
+    }
+
+    /// Forecast for a measurement of this duration, s.
+    pub(super) fn forecast(self, seconds: f64) -> Forecast {
+        Forecast { seconds, memory: self.memory(), files: self.files }
+    }
+
+    /// Peak memory of the sensor alone.
+    pub(super) fn memory(self) -> u64 {
+        peak(&[self])
+    }
+}
+
+/// First samples of a measurement, from which the time of all of them is estimated.
+pub(super) struct PilotRun {
+    cost: CostEstimate,
+    start: Start,
+    forecast: OnceLock<Forecast>,
+}
+
+/// Duration of a pilot run, s.
+const PILOT_SECONDS: f64 = 1.0;
+
+impl PilotRun {
+    /// Pilot run of a measurement that starts, or is resumed, at `start`.
+    pub(super) const fn new(cost: CostEstimate, start: Start) -> Self {
+        Self { cost, start, forecast: OnceLock::new() }
+    }
+
+    /// Samples of each randomisation per second since the start.
+    pub(super) fn pace(&self, samples: f64, seconds: f64) -> f64 {
+        (samples - self.start.samples as f64) / (seconds - self.start.seconds).max(1e-6)
+    }
+
+    /// Longest time of a round, s.
+    pub(super) fn longest_round(&self) -> f64 {
+        if self.forecast.get().is_none() { PILOT_SECONDS } else { f64::INFINITY }
+    }
+
+    /// Returns whether the pilot run has taken its time and has no forecast yet.
+    pub(super) fn is_over(&self, seconds: f64) -> bool {
+        seconds - self.start.seconds >= PILOT_SECONDS && self.forecast.get().is_none()
+    }
+
+    /// Estimates the cost of the measurement up to `end` samples at the pace so far; `None` if the end is not finite. The
+    /// first estimate stays.
+    pub(super) fn estimate(&self, samples: f64, seconds: f64, end: f64) -> Option<Forecast> {
+        let remaining = (end - self.start.samples as f64) / self.pace(samples, seconds);
+        let all = self.start.seconds + remaining;
+        all.is_finite().then(|| *self.forecast.get_or_init(|| self.cost.forecast(all)))
+    }
+
+    /// Estimate, if there is one.
+    pub(super) fn forecast(&self) -> Option<Forecast> {
+        self.forecast.get().copied()
+    }
+}
+
+fn sum(bytes: impl IntoIterator<Item = u64>) -> u64 {
+    bytes.into_iter().fold(0, u64::saturating_add)
+}
+
+/// Peak memory of sensors that are measured one after the other.
+fn peak(costs: &[CostEstimate]) -> u64 {
+    let (mut most, mut permanent) = (0, 0);
+    for &CostEstimate { films, beside, products, checkpoint, .. } in costs {
+        permanent = sum([permanent, products, checkpoint]);
+        most = sum([permanent, films, beside]).max(most);
+    }
+    let writing = costs.iter().map(|cost| cost.writing).max().unwrap_or(0);
+    most.max(sum([permanent, writing]))
+}
+
+/// Returns an error if sensors take more memory than is free: at the sensor that takes most, with a smaller one that
+/// would fit. `cost` estimates that of a sensor.
+pub(super) fn check_memory(
+    sensors: &[SensorEntity],
+    free: u64,
+    cost: impl Fn(&str, &Sensor) -> CostEstimate,
+) -> Option<Diagnostic> {
+    let mut costs: Vec<CostEstimate> =
+        sensors.iter().map(|one| cost(&one.name, &one.sensor)).collect();
+    let needed = peak(&costs);
+    let mut order: Vec<usize> = (0..costs.len()).collect();
+    order.sort_by_key(|&index| Reverse(costs[index].memory()));
+    let largest = *order.first().filter(|_| needed > free)?;
+    let each =
+        |&index: &usize| format!("`{}` {}", sensors[index].name, data_size(costs[index].memory()));
+    let mut shown: Vec<String> = order.iter().take(SHOWN).map(each).collect();
+    if let others @ 1.. = costs.len().saturating_sub(SHOWN) {
+        shown.push(format!("{others} more"));
+    }
+    let message = format!(
+        "films and results take {} of memory, and {} are free: {}",
+        data_size(needed),
+        data_size(free),
+        shown.join(", ")
+    );
+    let SensorEntity { name, sensor, .. } = &sensors[largest];
+    let path = format!("sensors.{name}");
+    let alone = if costs.len() > 1 { ", or each sensor in a scene of its own" } else { "" };
+    // Fraction of its memory that is free beside the others. Small films are stored in another way, so that memory is
+    // not proportional to the number of cells.
+    let CostEstimate { largest: measure, .. } = costs[largest];
+    let memory = costs[largest].memory();
+    let fraction = free.saturating_sub(needed.saturating_sub(memory)) as f64 / memory as f64;
+    let fractions = successors(Some(0.99 * fraction), |fraction| Some(0.8 * fraction));
+    let candidates =
+        fractions.map_while(|fraction| smaller(sensor, measure, fraction)).take(MOST_TRIES);
+    for Smaller { sensor, key, text } in candidates {
+        costs[largest] = cost(name, &sensor);
+        if peak(&costs) <= free {
+            let help = format!("write {text}, or measure in fewer bands{alone}");
+            return Some(Diagnostic::error(path + &key, message).help(help));
+        }
+    }
+    let help = format!("measure less there, or in fewer bands{alone}");
+    Some(Diagnostic::error(path, message).help(help))
+}
+
+/// Number of sensors whose memory a message lists.
+const SHOWN: usize = 5;
+
+/// Number of smaller sensors that are tried.
+const MOST_TRIES: usize = 40;

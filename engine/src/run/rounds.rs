@@ -1,0 +1,260 @@
+//! Time control of a measurement: samples are added in rounds until a stop criterion holds.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::checkpoint::{CheckpointStore, Section};
+use super::convergence::{Convergence, ErrorCheck, Measurement, Start, relative_errors};
+use super::cost::{CostEstimate, PilotRun};
+use super::{Failure, Progress};
+use crate::components::StopCriterion;
+use crate::document::Diagnostic;
+use crate::products::{Forecast, Product};
+use crate::transport::{Partition, ProgressFn};
+
+/// End of a measurement.
+pub(super) struct MeasurementEnd {
+    pub(super) products: Vec<Product>,
+    pub(super) criterion: StopCriterion,
+    /// Relative errors of products by name, if they were checked.
+    pub(super) errors: Vec<(String, f64)>,
+    /// Time of the measurement, including the time before it was resumed, s.
+    pub(super) seconds: f64,
+    /// Estimate of its cost after its first samples.
+    pub(super) forecast: Forecast,
+}
+
+/// A measurement on its way.
+struct Rounds<'a> {
+    name: &'a str,
+    convergence: &'a Convergence,
+    progress: &'a dyn Progress,
+    is_pilot_only: bool,
+    pilot: PilotRun,
+    start: Start,
+    clock: Instant,
+    /// Samples of each randomisation so far.
+    done: u64,
+    check: Option<ErrorCheck>,
+}
+
+/// Adds samples until one of the criteria holds. Resumes the measurement if `store` holds it, and saves it there.
+///
+/// # Errors
+/// Errors of the checkpoint.
+///
+/// # Panics
+/// If there is no criterion.
+pub(super) fn measure_until(
+    name: &str,
+    measurement: &mut dyn Measurement,
+    convergence: &Convergence,
+    store: &mut CheckpointStore,
+    progress: &dyn Progress,
+    is_pilot_only: bool,
+) -> Result<MeasurementEnd, Failure> {
+    assert!(!convergence.until.is_empty(), "a measurement has a stop criterion");
+    let cost = CostEstimate::new(measurement, store);
+    let start = restore(name, measurement, store)?;
+    let pilot = PilotRun::new(cost, start);
+    let (clock, done, check) = (Instant::now(), start.samples, None);
+    let mut rounds =
+        Rounds { name, convergence, progress, is_pilot_only, pilot, start, clock, done, check };
+    let needs_errors = convergence.needs_errors();
+    let mut checks = convergence.schedule.evaluations().take_while(|_| needs_errors).peekable();
+    loop {
+        let done = rounds.done;
+        while checks.next_if(|&check| check < done).is_some() {}
+        if checks.peek() == Some(&done) {
+            let errors = relative_errors(measurement);
+            rounds.check = Some(ErrorCheck { samples: done, errors });
+        }
+        let seconds = rounds.seconds();
+        let criterion = rounds.criterion_that_holds(seconds);
+        rounds.save(measurement, store, seconds, criterion.is_some());
+        if let Some(criterion) = criterion {
+            progress.sensor(name, 1.0);
+            let is_whole = store.share() == Partition::ALL;
+            let products = if is_whole { measurement.products() } else { Vec::new() };
+            let errors = rounds.errors().map_or_else(Vec::new, <[_]>::to_vec);
+            let forecast = rounds.pilot.forecast().unwrap_or_else(|| cost.forecast(seconds));
+            return Ok(MeasurementEnd { products, criterion, errors, seconds, forecast });
+        }
+        let can_grow = measurement.films().iter().all(|paced| paced.film.can_grow().is_ok());
+        if let Some(forecast) = rounds.forecast(seconds, can_grow) {
+            let (products, errors) = (Vec::new(), Vec::new());
+            let criterion = convergence.until[0].clone();
+            return Ok(MeasurementEnd { products, criterion, errors, seconds, forecast });
+        }
+        checks.next_if_eq(&done);
+        let limit = convergence.limit();
+        let goal = checks.peek().map_or(limit, |&check| check.min(limit));
+        let goal = rounds.next_goal(goal, seconds, can_grow, store.longest_round());
+        rounds.trace(measurement, goal, can_grow);
+    }
+}
+
+impl Rounds<'_> {
+    /// Time of the measurement so far, s.
+    fn seconds(&self) -> f64 {
+        self.start.seconds + self.clock.elapsed().as_secs_f64()
+    }
+
+    /// Errors of the samples so far, if they were checked.
+    fn errors(&self) -> Option<&[(String, f64)]> {
+        let check = self.check.as_ref().filter(|check| check.samples == self.done);
+        check.map(|check| &*check.errors)
+    }
+
+    fn criterion_that_holds(&self, seconds: f64) -> Option<StopCriterion> {
+        let holds = |criterion: &&StopCriterion| {
+            self.convergence.fraction(criterion, self.done, seconds, self.errors()) >= 1.0
+        };
+        self.convergence.until.iter().find(holds).filter(|_| self.done > 0).cloned()
+    }
+
+    /// Samples at which the measurement will end, at the pace from its start to `samples` after `seconds`.
+    fn expected_end(&self, samples: f64, seconds: f64) -> f64 {
+        let pace = self.pilot.pace(samples, seconds);
+        self.convergence.expected_end(&self.start, pace, self.check.as_ref())
+    }
+
+    /// Saves the measurement at the end of a block of samples, if that is due.
+    fn save(
+        &self,
+        measurement: &mut dyn Measurement,
+        store: &mut CheckpointStore,
+        seconds: f64,
+        is_end: bool,
+    ) {
+        let schedule = &self.convergence.schedule;
+        let is_end_of_block = schedule.last(self.done) == self.done;
+        if !store.is_enabled() || !is_end_of_block || self.done == 0 {
+            return;
+        }
+        // A run cannot be resumed behind the last end of a block.
+        let is_last = is_end || schedule.last(self.convergence.limit()) == self.done;
+        if is_last || store.is_due() {
+            store.set_section(section(self.name, measurement, self.done, seconds));
+            if let Some(warning) = store.save() {
+                self.progress.warn(&warning);
+            }
+        }
+    }
+
+    /// Ends the pilot run if it is over; returns its forecast if the run is to end with it.
+    fn forecast(&self, seconds: f64, can_grow: bool) -> Option<Forecast> {
+        // In the middle of a round, past samples are not like those to come.
+        let knows_errors = self.check.is_some() || !self.convergence.needs_errors();
+        let is_over = self.pilot.is_over(seconds) || self.is_pilot_only && !can_grow;
+        if self.done > self.start.samples && knows_errors && is_over {
+            let done = self.done as f64;
+            self.report_forecast(done, seconds, self.expected_end(done, seconds));
+        }
+        self.pilot.forecast().filter(|_| self.is_pilot_only)
+    }
+
+    /// Estimates the cost of the measurement, and reports it if it is long.
+    fn report_forecast(&self, samples: f64, seconds: f64, end: f64) {
+        if let Some(forecast) = self.pilot.estimate(samples, seconds, end)
+            && forecast.is_long()
+            && !self.is_pilot_only
+        {
+            self.progress.forecast(self.name, &forecast);
+        }
+    }
+
+    /// Samples at which the next round ends on the way to a goal; `longest` is the time of the longest round, s.
+    fn next_goal(&self, goal: u64, seconds: f64, can_grow: bool, longest: f64) -> u64 {
+        let schedule = &self.convergence.schedule;
+        if self.done == 0 && (can_grow || self.is_pilot_only) {
+            // The time of a short round gives that of longer ones.
+            return schedule.next(0).max(2).min(goal);
+        }
+        if !can_grow {
+            return goal;
+        }
+        // A round that ends within a block cannot be saved: it comes last, and alone.
+        let whole = schedule.last(goal);
+        let goal = if whole > self.done { whole } else { goal };
+        let time = self.convergence.until.iter().filter_map(|criterion| match criterion {
+            StopCriterion::Seconds(limit) => Some(*limit - seconds),
+            _ => None,
+        });
+        let time = time.fold(longest.min(self.pilot.longest_round()), f64::min);
+        if time.is_infinite() {
+            return goal;
+        }
+        let pace = self.pilot.pace(self.done as f64, seconds);
+        // Without a pace yet, the round has one block.
+        let aim = (self.done as f64 + pace * time).min(4.0 * self.done as f64) as u64;
+        let end = schedule.last(aim);
+        let end = if end > self.done { end } else { schedule.next(self.done) };
+        end.min(goal)
+    }
+
+    /// Traces a round.
+    fn trace(&mut self, measurement: &mut dyn Measurement, goal: u64, can_grow: bool) {
+        let (done, added) = (self.done as f64, (goal - self.done) as f64);
+        trace(measurement, goal, &|fraction| {
+            let (samples, seconds) = (done + fraction * added, self.seconds());
+            let end = self.expected_end(samples, seconds);
+            // The next check may decide: nothing is complete before it.
+            self.progress.sensor(self.name, (samples / end).min(0.999));
+            if !can_grow && self.pilot.is_over(seconds) {
+                self.report_forecast(samples, seconds, end);
+            }
+        });
+        self.done = goal;
+    }
+}
+
+/// Restores the films from a checkpoint.
+fn restore(
+    name: &str,
+    measurement: &mut dyn Measurement,
+    store: &CheckpointStore,
+) -> Result<Start, Failure> {
+    let mut start = Start { samples: 0, seconds: 0.0 };
+    for (share, section) in store.restored(name) {
+        let mut state = section.state.as_slice();
+        for paced in measurement.films() {
+            let samples = paced.samples(section.samples);
+            let restored = paced.film.restore(share, samples, &mut state);
+            restored.map_err(|_short| misfit(name))?;
+        }
+        if !state.is_empty() {
+            return Err(misfit(name));
+        }
+        start = Start { samples: section.samples, seconds: start.seconds + section.seconds };
+    }
+    measurement.films().into_iter().for_each(|paced| paced.film.restrict(store.share()));
+    Ok(start)
+}
+
+/// Error of a checkpoint with the right hashes and the wrong contents.
+fn misfit(name: &str) -> Failure {
+    Failure::Problems(vec![Diagnostic::error(
+        format!("sensors.{name}"),
+        "the checkpoint holds something else than this sensor: this is a bug of sunfleck",
+    )])
+}
+
+fn section(name: &str, measurement: &mut dyn Measurement, samples: u64, seconds: f64) -> Section {
+    let bytes: u64 = measurement.films().iter().map(|paced| paced.film.bytes()).sum();
+    let mut state = Vec::with_capacity(bytes as usize);
+    for paced in measurement.films() {
+        paced.film.save(&mut state).expect("writing to memory does not fail");
+    }
+    Section { name: name.to_owned(), samples, seconds, state: Arc::new(state) }
+}
+
+/// Traces all films to a number of samples of the measurement.
+pub(super) fn trace(measurement: &mut dyn Measurement, to: u64, watch: ProgressFn<'_>) {
+    let films = measurement.films();
+    let all = films.len() as f64;
+    for (index, paced) in films.into_iter().enumerate() {
+        let samples = paced.samples(to);
+        paced.film.trace(samples, &|fraction| watch((index as f64 + fraction) / all));
+    }
+}
