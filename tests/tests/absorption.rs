@@ -295,7 +295,7 @@ fn more_than_memory_holds_is_refused_with_numbers() {
         let reading = sunfleck::document::read_text(
             "test.ron",
             &text,
-            &sunfleck::document::Options::default(),
+            &sunfleck::document::ReadOptions::default(),
         )
         .map_err(|error| error.to_string())?;
         match run(&reading.scene, Path::new("."), &Options::default(), &Unwatched) {

@@ -5,7 +5,7 @@ use std::path::Path;
 use sunfleck::components::{
     BlackBody, Emission, Instance, LeafArea, SceneId, Sensor, Sky, Sun, SurfaceOptics, TerrainPatch,
 };
-use sunfleck::document::{Options, Scene, read_text};
+use sunfleck::document::{ReadOptions, Scene, read_text};
 use sunfleck::run::SceneWorld;
 
 /// Two crowns and a scatter on soil, in two bands.
@@ -44,7 +44,7 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
         assert!(text.contains(old), "{old}");
         text = text.replace(old, new);
     }
-    let reading = read_text("changes.ron", &text, &Options::default()).expect("a scene");
+    let reading = read_text("changes.ron", &text, &ReadOptions::default()).expect("a scene");
     assert!(reading.is_sound(), "{}", reading.render());
     reading.scene
 }

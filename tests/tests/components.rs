@@ -156,7 +156,7 @@ fn gaps_are_measured_in_the_dark() {
     assert!((product(&report, "gaps", "gap_fraction").values[0] - 1.0).abs() < 1e-12);
     let parts = text.replace("MEASURES", "FourComponents");
     let reading =
-        document::read_text("a.ron", &parts, &document::Options::default()).expect("text");
+        document::read_text("a.ron", &parts, &document::ReadOptions::default()).expect("text");
     assert!(reading.render().contains("there is no sun"), "{}", reading.render());
 }
 

@@ -67,7 +67,7 @@ impl Progress for Meter {
 /// Runs a scene; returns its report and the most memory that it took while it was traced.
 fn traced(bands: usize, sensor: &str, options: &Options) -> Result<(Report, u64), Failure> {
     let text = scene(bands, sensor);
-    let reading = document::read_text("test.ron", &text, &document::Options::default());
+    let reading = document::read_text("test.ron", &text, &document::ReadOptions::default());
     let reading = reading.expect("a scene");
     if !reading.is_sound() {
         return Err(Failure::Scene(reading.render()));

@@ -26,7 +26,7 @@ fn scene(boundary: &str, sensor: &str) -> String {
 
 fn traced(boundary: &str, sensor: &str, options: &Options) -> Result<Report, String> {
     let text = scene(boundary, sensor);
-    let reading = document::read_text("scene.ron", &text, &document::Options::default());
+    let reading = document::read_text("scene.ron", &text, &document::ReadOptions::default());
     let reading = reading.map_err(|error| error.to_string())?;
     if !reading.is_sound() {
         return Err(reading.render());

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec2;
 use sunfleck::components::{Instance, Placement};
-use sunfleck::document::{Options, read_text};
+use sunfleck::document::{ReadOptions, read_text};
 use sunfleck::run::SceneWorld;
 
 /// A periodic scene of 200 m x 100 m at a UTM position, with meshes of four sizes.
@@ -41,7 +41,8 @@ fn scene(instances: &str) -> String {
 
 /// The instances of a scene in document order, with the names of their meshes, or all that is wrong.
 fn instances(text: &str, folder: &Path) -> Result<Vec<(String, Placement)>, String> {
-    let reading = read_text("stand.ron", text, &Options::default()).map_err(|e| e.to_string())?;
+    let reading =
+        read_text("stand.ron", text, &ReadOptions::default()).map_err(|e| e.to_string())?;
     assert!(reading.diagnostics.is_empty(), "{}", reading.render());
     let built =
         SceneWorld::from_scene(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec2;
 use sunfleck::components::{Instance, Placement};
-use sunfleck::document::{Options, read_text};
+use sunfleck::document::{ReadOptions, read_text};
 use sunfleck::run::SceneWorld;
 use sunfleck::sampling::Key;
 use tempfile::TempDir;
@@ -78,7 +78,8 @@ fn scene(terrain: &str, instances: &str) -> String {
 
 /// Instances with the heights and widths of their meshes, and the warnings; or what is wrong.
 fn stand(folder: &Path, text: &str) -> Result<(Vec<(Placement, DVec2)>, String), String> {
-    let reading = read_text("stand.ron", text, &Options::default()).map_err(|e| e.to_string())?;
+    let reading =
+        read_text("stand.ron", text, &ReadOptions::default()).map_err(|e| e.to_string())?;
     assert!(reading.diagnostics.is_empty(), "{}", reading.render());
     let built =
         SceneWorld::from_scene(&reading.scene, folder).map_err(|p| reading.source.render(&p))?;

@@ -299,7 +299,8 @@ fn a_material_that_is_seen_to_emit_needs_a_temperature() {
     terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
     sensors: { "views": Directions(system: Backward, views: List([(0.0, 0.0)]), measure: [BrightnessTemperature]) },
 )"#;
-    let reading = document::read_text("a.ron", text, &document::Options::default()).expect("text");
+    let reading =
+        document::read_text("a.ron", text, &document::ReadOptions::default()).expect("text");
     assert!(reading.is_sound(), "{}", reading.render());
     let failure = sunfleck::run::run(
         &reading.scene,

@@ -178,7 +178,7 @@ fn a_brightness_temperature_of_photons_needs_a_radiance() {
     sensors: { "photons": Photons(measure: [Exitance, BrightnessTemperature]) },
 )"#;
     let rendered = |text: &str| {
-        let reading = document::read_text("a.ron", text, &document::Options::default());
+        let reading = document::read_text("a.ron", text, &document::ReadOptions::default());
         reading.expect("text").render()
     };
     assert!(rendered(text).contains("RadianceViews(List([(0.0, 0.0)]))"), "{}", rendered(text));

@@ -362,11 +362,11 @@ pub(crate) struct Scene {
 
 impl Scene {
     /// How it is read.
-    pub(crate) fn options(&self) -> document::Options {
-        document::Options {
+    pub(crate) fn options(&self) -> document::ReadOptions {
+        document::ReadOptions {
             set: self.settings.clone(),
             variant: self.variant.clone(),
-            ..document::Options::default()
+            ..document::ReadOptions::default()
         }
     }
 

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
-use sunfleck::document::{Spectrum, Sun, SunPosition};
+use sunfleck::document::{Spa, Spectrum, Sun, SunPosition};
 use tempfile::{TempDir, tempdir};
 
 /// Bare soil of 100 m² under the sun of a summer's or a winter's day.
@@ -86,7 +86,7 @@ fn cosine(month: u32, latitude_deg: f64, hour: f64) -> f64 {
     let sun = Sun {
         zenith_deg: None,
         azimuth_deg: 0.0,
-        position: Some(SunPosition::Spa {
+        position: Some(SunPosition::Spa(Spa {
             date: (2026, month, 21),
             time: (hour, 0.0, 0.0),
             utc_offset_h: 0.0,
@@ -96,7 +96,7 @@ fn cosine(month: u32, latitude_deg: f64, hour: f64) -> f64 {
             pressure_hpa: 1013.25,
             temperature_c: 15.0,
             delta_t_s: None,
-        }),
+        })),
         disc_deg: 0.0,
         irradiance: Spectrum::Constant(1.0),
     };

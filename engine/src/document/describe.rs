@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::decode::Decode;
+use super::encode::Encode;
 use super::scene::Scene;
 
 /// Descriptions of the language's types, each once.
@@ -95,6 +96,24 @@ pub(super) struct Key {
     pub(super) example: Option<String>,
 }
 
+impl Key {
+    pub(super) fn new<T: Decode + Encode>(
+        name: &'static str,
+        doc: String,
+        default: Option<T>,
+        example: Option<&'static str>,
+        book: &mut Book,
+    ) -> Self {
+        let example = match (example, &default) {
+            (Some(example), _) => Some(example.to_owned()),
+            (None, Some(_)) => None,
+            (None, None) => Some(T::example()),
+        };
+        let default = default.map(|default| default.encode().into_line());
+        Self { name, doc, schema: T::schema(book), default, example }
+    }
+}
+
 /// A record, or the keys of a variant.
 pub(super) fn record(doc: &str, keys: Vec<Key>) -> Value {
     let required: Vec<_> =
@@ -169,79 +188,6 @@ mod tests {
     use std::collections::BTreeSet;
 
     use serde_json::Value;
-
-    use super::super::include;
-
-    /// Keys whose strings are what they say: no names of definitions, no paths. Those of parameters are
-    /// qualified where formulas use them.
-    const PLAIN: [&str; 14] = [
-        "Grid",
-        "Zip",
-        "blue",
-        "columns",
-        "crs",
-        "green",
-        "name",
-        "params",
-        "red",
-        "title",
-        "value",
-        "variant",
-        "variants",
-        "wavelength",
-    ];
-
-    fn holds_text(schema: &Value) -> bool {
-        match schema {
-            Value::Object(keys) => {
-                let is_text = keys.get("type").is_some_and(|kind| kind == "string");
-                // With a pattern it is a formula.
-                is_text && !keys.contains_key("pattern")
-                    || ["items", "additionalProperties", "prefixItems", "anyOf"]
-                        .iter()
-                        .any(|key| keys.get(*key).is_some_and(holds_text))
-            }
-            Value::Array(items) => items.iter().any(holds_text),
-            _ => false,
-        }
-    }
-
-    fn keys_with_text<'a>(schema: &'a Value, found: &mut BTreeSet<&'a str>) {
-        match schema {
-            Value::Object(keys) => {
-                if let Some(Value::Object(properties)) = keys.get("properties") {
-                    for (name, schema) in properties {
-                        if holds_text(schema) {
-                            found.insert(name);
-                        }
-                    }
-                }
-                for schema in keys.values() {
-                    keys_with_text(schema, found);
-                }
-            }
-            Value::Array(items) => {
-                for schema in items {
-                    keys_with_text(schema, found);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// A file that is included has its names and paths qualified: a new key with a string has to say
-    /// whether it is one.
-    #[test]
-    fn every_string_of_the_language_is_known_as_a_name_a_path_or_plain() {
-        let schema: Value = serde_json::from_str(&super::json_schema()).expect("JSON");
-        let mut found = BTreeSet::new();
-        keys_with_text(&schema, &mut found);
-        for key in &found {
-            let known = include::is_reference(key) || PLAIN.contains(key);
-            assert!(known, "`{key}`: is it a name or a path? say so in `include/names.rs`");
-        }
-        assert!(found.contains("file") && found.contains("parts"), "{found:?}");
-    }
 
     #[test]
     fn every_reference_of_the_schema_leads_somewhere() {

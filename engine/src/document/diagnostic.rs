@@ -1,6 +1,6 @@
 //! What is wrong with a scene, where, and what to write instead.
 
-use super::syntax::Span;
+use super::ron_text::Span;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::read::Reading;
+use super::ron_text::{Node, Value};
 use super::scene::Param;
-use super::syntax::{Node, Value};
 
 impl Reading {
     /// The resolved scene as a file: what is read back from it is equal to

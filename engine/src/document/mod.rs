@@ -12,14 +12,15 @@ mod format;
 mod formula;
 mod include;
 mod keys;
+mod leaves;
 mod legible;
-mod numbers;
 mod params;
+mod path;
 mod read;
+mod ron_text;
 mod scene;
 mod source;
 mod sun;
-mod syntax;
 
 pub use check::check;
 pub(crate) use check::{
@@ -31,7 +32,7 @@ pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
 pub use format::{format, format_file};
 pub use keys::{keys_about, keys_page};
 pub(crate) use legible::legible;
-pub use read::{Options, ReadError, Reading, read_file, read_text};
+pub use read::{ReadError, ReadOptions, Reading, read_file, read_text};
+pub use ron_text::Span;
 pub use scene::*;
 pub use source::Source;
-pub use syntax::Span;

@@ -8,10 +8,10 @@ use indexmap::IndexMap;
 use super::decode::Reader;
 use super::diagnostic::{Diagnostic, unknown_name};
 use super::formula::{Scope, evaluate};
-use super::include::Role;
-use super::read::Options;
+use super::path::Step;
+use super::read::ReadOptions;
+use super::ron_text::{BadNumber, Field, Node, Span, Value};
 use super::scene::Param;
-use super::syntax::{BadNumber, Field, Node, Span, Step, Value};
 
 /// The parameters of a scene, and what its formulas have made of them.
 pub(super) struct Params {
@@ -35,7 +35,7 @@ impl Params {
 /// the later before the earlier.
 pub(super) fn settle_params<'a>(
     tree: &'a Node,
-    options: &Options,
+    options: &ReadOptions,
     lost: Vec<String>,
     reader: &mut Reader<'a>,
 ) -> Params {
@@ -86,7 +86,7 @@ fn of_kind(name: &str, given: &Param, own: &Param, reader: &mut Reader<'_>) -> P
 /// One walk over the tree: evaluates formulas, and reports repeated keys and numbers that no scene
 /// can hold.
 pub(super) fn survey<'a>(tree: &'a Node, params: &Params, reader: &mut Reader<'a>) {
-    walk(tree, params, Role::Plain, true, reader);
+    walk(tree, params, true, reader);
 }
 
 fn chosen_variant<'a>(
@@ -178,16 +178,6 @@ fn compute<'a>(
     value
 }
 
-/// Evaluates a formula that stands where the scene needs a value; a text there is qualified as if it
-/// had been written in its file.
-fn settle<'a>(formula: &str, node: &'a Node, params: &Params, role: Role, reader: &mut Reader<'a>) {
-    if let Some(Param::Text(mut text)) = compute(formula, node, params, &HashSet::new(), reader) {
-        let (namespace, folder) = reader.file_of(node);
-        role.qualify(&mut text, namespace, folder);
-        reader.set_computed(node, Some(Param::Text(text)));
-    }
-}
-
 /// Bytes of the text that are these bytes of the formula; all of the string where it has escapes.
 fn within_text(text: &str, span: Span, formula: &str, at: &std::ops::Range<usize>) -> Span {
     let own = text.get(span.range()).unwrap_or("");
@@ -200,15 +190,16 @@ fn within_text(text: &str, span: Span, formula: &str, at: &std::ops::Range<usize
     }
 }
 
-fn walk<'a>(node: &'a Node, params: &Params, own: Role, is_scene: bool, reader: &mut Reader<'a>) {
-    let own = own.within(node);
+fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader<'a>) {
     let node = node.inner();
     match &node.value {
         Value::BadNumber(bad) => report_bad_number(node, *bad, reader),
-        Value::Formula(formula) => settle(formula, node, params, own, reader),
+        Value::Formula(formula) => {
+            compute(formula, node, params, &HashSet::new(), reader);
+        }
         Value::List(items) | Value::Tuple(items) => {
             for (index, item) in items.iter().enumerate() {
-                reader.within(Step::Index(index), |reader| walk(item, params, own, false, reader));
+                reader.within(Step::Index(index), |reader| walk(item, params, false, reader));
             }
         }
         Value::Record(fields) => {
@@ -217,15 +208,10 @@ fn walk<'a>(node: &'a Node, params: &Params, own: Role, is_scene: bool, reader: 
                 // `params` are settled, variants hold plain values, and a title is what it says.
                 let is_plain =
                     is_scene && matches!(name.as_str(), "params" | "variants" | "sweep" | "title");
-                let role = match (is_scene, &value.inner().value) {
-                    // Definitions by their names.
-                    (true, Value::Map(_)) => Role::Plain,
-                    _ => Role::of_key(name),
-                };
                 reader.within(Step::Key(name), |reader| match &value.inner().value {
                     Value::Formula(_) if is_plain => {}
                     Value::Map(_) if is_plain => walk_plain(value, reader),
-                    _ => walk(value, params, role, false, reader),
+                    _ => walk(value, params, false, reader),
                 });
             }
         }
@@ -233,7 +219,7 @@ fn walk<'a>(node: &'a Node, params: &Params, own: Role, is_scene: bool, reader: 
             report_repeated(names(entries), reader);
             for (key, value) in entries {
                 if let Value::Text(key) = &key.value {
-                    reader.within(Step::Key(key), |reader| walk(value, params, own, false, reader));
+                    reader.within(Step::Key(key), |reader| walk(value, params, false, reader));
                 }
             }
         }

@@ -8,19 +8,19 @@ use std::path::Path;
 use super::check::check_readable;
 use super::decode::{Decode, Findings, Reader};
 use super::diagnostic::{Diagnostic, Place};
-use super::encode::{Encode as _, Group, Text};
+use super::encode::Encode as _;
 use super::include::{Included, include};
 use super::params::{settle_params, survey};
+use super::ron_text::{Group, Node, Text, parse};
 use super::scene::{Param, Scene};
 use super::source::Source;
-use super::syntax::{Node, parse};
 
 /// A scene may hold so many bytes, included files among them; large stands belong into tables.
 pub(super) const FILE_SIZE: u64 = 256 << 20;
 
 /// How a scene is to be read.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Options {
+pub struct ReadOptions {
     /// Parameters to set, by name; they go before those of the file, of the variant and of the point.
     pub set: Vec<(String, Param)>,
     /// Parameters at a point of a sweep; they go before those of the file and of the variant.
@@ -38,7 +38,7 @@ pub struct Reading {
     pub source: Source,
     /// All that is wrong, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
-    pub(super) options: Options,
+    pub(super) options: ReadOptions,
 }
 
 impl Reading {
@@ -83,7 +83,7 @@ pub enum ReadError {
 /// # Errors
 /// Where the file cannot be read, or is not RON. Whatever else is wrong with the scene is among
 /// [`Reading::diagnostics`].
-pub fn read_file(path: &Path, options: &Options) -> Result<Reading, ReadError> {
+pub fn read_file(path: &Path, options: &ReadOptions) -> Result<Reading, ReadError> {
     let text = text_of_file(path, false)?;
     read_text(&path.display().to_string(), &text, options)
 }
@@ -154,7 +154,7 @@ fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
 /// # Errors
 /// Where the text is not RON. Whatever else is wrong with the scene is among
 /// [`Reading::diagnostics`].
-pub fn read_text(name: &str, text: &str, options: &Options) -> Result<Reading, ReadError> {
+pub fn read_text(name: &str, text: &str, options: &ReadOptions) -> Result<Reading, ReadError> {
     refuse_odd(name, text)?;
     let mut source = Source::new(name, text);
     let mut tree = parse_text(&source)?;

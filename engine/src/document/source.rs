@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::diagnostic::{Diagnostic, Place, Severity};
 use super::legible::{NAME, legible, shortened};
-use super::syntax::{Node, Span, Value};
+use super::ron_text::{Node, Span, Value};
 
 /// A scene's text and that of the files that it includes, one behind the other; its tree, and where
 /// lines start.
@@ -96,7 +96,7 @@ impl Source {
     pub(super) fn node(&self, path: &str) -> Option<&Node> {
         let mut node = self.tree.as_ref()?;
         let mut rest = path;
-        while let Some((child, after)) = step(node.inner(), rest) {
+        while let Some((child, after)) = self.step(node.inner(), rest) {
             (node, rest) = (child, after);
         }
         Some(node)
@@ -109,7 +109,7 @@ impl Source {
         let mut rest = path;
         while !rest.is_empty() {
             // `Fraction([..])` is passed through on the way to `[0]`, yet all of it is `sky`.
-            match step(node.inner(), rest) {
+            match self.step(node.inner(), rest) {
                 Some((child, after)) => (node, rest) = (child, after),
                 None => return Some(node.opening()),
             }
@@ -126,14 +126,14 @@ impl Source {
             let key = match &inner.value {
                 Value::Map(entries) => entries
                     .iter()
-                    .find(|(key, _)| matches!(&key.value, Value::Text(key) if key == rest))
+                    .find(|(key, _)| self.after_name(key, rest).is_some_and(str::is_empty))
                     .map(|(key, _)| key.span),
                 _ => None,
             };
             if key.is_some() {
                 return key;
             }
-            (node, rest) = step(inner, rest)?;
+            (node, rest) = self.step(inner, rest)?;
         }
     }
 
@@ -234,6 +234,36 @@ impl Source {
         let width = own.chars().count().min(room).max(1);
         (format!("{lead}{shown}{tail}"), format!("{}{}", " ".repeat(offset), "^".repeat(width)))
     }
+
+    /// The child that a path starts with, and the rest of the path. Keys may hold dots: of the keys
+    /// that fit, the longest is meant.
+    fn step<'a, 'p>(&self, node: &'a Node, path: &'p str) -> Option<(&'a Node, &'p str)> {
+        if let Some((index, after)) = path.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+            let (Value::List(items) | Value::Tuple(items)) = &node.value else { return None };
+            let child = items.get(index.parse::<usize>().ok()?)?;
+            return Some((child, after.strip_prefix('.').unwrap_or(after)));
+        }
+        match &node.value {
+            Value::Record(fields) => fields
+                .iter()
+                .filter_map(|field| Some((&field.value, after_key(path, &field.name)?)))
+                .min_by_key(|(_, after)| after.len()),
+            Value::Map(entries) => entries
+                .iter()
+                .filter_map(|(key, value)| Some((value, self.after_name(key, path)?)))
+                .min_by_key(|(_, after)| after.len()),
+            _ => None,
+        }
+    }
+
+    /// The rest of a path behind the key of a map: as it is written, or with the namespace of its file.
+    fn after_name<'p>(&self, key: &Node, path: &'p str) -> Option<&'p str> {
+        let Value::Text(name) = &key.value else { return None };
+        after_key(path, name).or_else(|| {
+            let rest = path.strip_prefix(self.namespace(key.span))?;
+            after_key(rest, name)
+        })
+    }
 }
 
 fn write_line(out: &mut String, line: std::fmt::Arguments<'_>) {
@@ -242,34 +272,12 @@ fn write_line(out: &mut String, line: std::fmt::Arguments<'_>) {
     out.push('\n');
 }
 
-/// The child that a path starts with, and the rest of the path. Keys may hold dots: of the keys
-/// that fit, the longest is meant.
-fn step<'a, 'p>(node: &'a Node, path: &'p str) -> Option<(&'a Node, &'p str)> {
-    if let Some((index, after)) = path.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
-        let (Value::List(items) | Value::Tuple(items)) = &node.value else { return None };
-        let child = items.get(index.parse::<usize>().ok()?)?;
-        return Some((child, after.strip_prefix('.').unwrap_or(after)));
-    }
-    let after_key = |key: &str| {
-        let after = path.strip_prefix(key)?;
-        match after.as_bytes().first() {
-            None | Some(b'[') => Some(after),
-            Some(b'.') => Some(&after[1..]),
-            Some(_) => None,
-        }
-    };
-    match &node.value {
-        Value::Record(fields) => fields
-            .iter()
-            .filter_map(|field| Some((&field.value, after_key(&field.name)?)))
-            .min_by_key(|(_, after)| after.len()),
-        Value::Map(entries) => entries
-            .iter()
-            .filter_map(|(key, value)| match &key.value {
-                Value::Text(key) => Some((value, after_key(key)?)),
-                _ => None,
-            })
-            .min_by_key(|(_, after)| after.len()),
-        _ => None,
+/// The rest of a path behind a key that it starts with.
+fn after_key<'p>(path: &'p str, key: &str) -> Option<&'p str> {
+    let after = path.strip_prefix(key)?;
+    match after.as_bytes().first() {
+        None | Some(b'[') => Some(after),
+        Some(b'.') => Some(&after[1..]),
+        Some(_) => None,
     }
 }

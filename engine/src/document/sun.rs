@@ -3,7 +3,7 @@ use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t}
 
 use super::Diagnostic;
 use super::read::Reading;
-use super::scene::{Scene, Sky, Sun, SunPosition};
+use super::scene::{Scene, Sky, Spa, Sun, SunPosition};
 
 const AT: &str = "sun.position";
 
@@ -47,7 +47,7 @@ impl Sun {
     /// Time of day of its position, hours of its clock.
     #[must_use]
     pub fn hour(&self) -> Option<f64> {
-        let SunPosition::Spa { time: (hour, minute, second), .. } = self.position.as_ref()?;
+        let SunPosition::Spa(Spa { time: (hour, minute, second), .. }) = self.position.as_ref()?;
         Some(hour + minute / 60.0 + second / 3600.0)
     }
 
@@ -55,7 +55,7 @@ impl Sun {
     #[must_use]
     pub fn at_hour(&self, new_hour: f64) -> Self {
         let mut sun = self.clone();
-        if let Some(SunPosition::Spa { time, .. }) = &mut sun.position {
+        if let Some(SunPosition::Spa(Spa { time, .. })) = &mut sun.position {
             // A clock may show 24 hours and some minutes.
             *time = (new_hour.min(24.0), 60.0 * (new_hour - 24.0).max(0.0), 0.0);
         }
@@ -83,7 +83,7 @@ impl Sun {
 
     /// Zenith angle and azimuth from place and time, degrees, also below the horizon.
     pub(super) fn placed(&self) -> Result<(f64, f64), Box<Diagnostic>> {
-        let Some(position) = &self.position else {
+        let Some(SunPosition::Spa(position)) = &self.position else {
             return Err(Box::new(Diagnostic::error(AT, "there is no position")));
         };
         spa(position)
@@ -141,8 +141,8 @@ impl Reading {
 /// Topocentric zenith angle, refraction included, and azimuth clockwise from north, degrees.
 ///
 /// Source: Reda and Andreas (2004), Solar Energy 76, 577-589.
-fn spa(position: &SunPosition) -> Result<(f64, f64), Box<Diagnostic>> {
-    let &SunPosition::Spa {
+fn spa(position: &Spa) -> Result<(f64, f64), Box<Diagnostic>> {
+    let &Spa {
         date: (year, month, day),
         time: (hour, minute, second),
         utc_offset_h,
@@ -202,8 +202,8 @@ fn spa(position: &SunPosition) -> Result<(f64, f64), Box<Diagnostic>> {
 mod tests {
     use super::*;
 
-    fn denver() -> SunPosition {
-        SunPosition::Spa {
+    fn denver() -> Spa {
+        Spa {
             date: (2003, 10, 17),
             time: (12.0, 30.0, 30.0),
             utc_offset_h: -7.0,
@@ -234,8 +234,7 @@ mod tests {
             ((2003, 10, 18), (1.0, 0.0, 30.0), 5.5),
         ] {
             let mut other = denver();
-            let SunPosition::Spa { date, time, utc_offset_h, .. } = &mut other;
-            (*date, *time, *utc_offset_h) = (new_date, new_time, new_offset);
+            (other.date, other.time, other.utc_offset_h) = (new_date, new_time, new_offset);
             let (zenith, azimuth) = spa(&other).unwrap();
             assert!((zenith - same.0).abs() < 1e-6 && (azimuth - same.1).abs() < 1e-6);
         }
@@ -244,8 +243,7 @@ mod tests {
     #[test]
     fn an_estimated_delta_t_moves_the_sun_by_less_than_the_algorithm_errs() {
         let mut estimated = denver();
-        let SunPosition::Spa { delta_t_s, .. } = &mut estimated;
-        *delta_t_s = None;
+        estimated.delta_t_s = None;
         let (given, estimated) = (spa(&denver()).unwrap(), spa(&estimated).unwrap());
         assert!((given.0 - estimated.0).abs() < 3e-4 && (given.1 - estimated.1).abs() < 3e-4);
     }
@@ -253,8 +251,7 @@ mod tests {
     #[test]
     fn a_day_that_no_month_has_is_an_error_at_its_place() {
         let mut wrong = denver();
-        let SunPosition::Spa { date, .. } = &mut wrong;
-        *date = (2003, 2, 30);
+        wrong.date = (2003, 2, 30);
         assert_eq!(spa(&wrong).unwrap_err().path, "sun.position.date");
     }
 }

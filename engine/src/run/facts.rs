@@ -358,18 +358,18 @@ fn sensor_facts(
 /// Kind and measures of a sensor as the scene names them.
 fn describe(sensor: &document::Sensor) -> (&'static str, Vec<String>) {
     let kind = match sensor {
-        document::Sensor::Orthographic { .. } => "Orthographic",
-        document::Sensor::Perspective { .. } => "Perspective",
-        document::Sensor::Fisheye { .. } => "Fisheye",
-        document::Sensor::Directions { .. } => "Directions",
-        document::Sensor::Photons { .. } => "Photons",
+        document::Sensor::Orthographic(_) => "Orthographic",
+        document::Sensor::Perspective(_) => "Perspective",
+        document::Sensor::Fisheye(_) => "Fisheye",
+        document::Sensor::Directions(_) => "Directions",
+        document::Sensor::Photons(_) => "Photons",
     };
     let name_of = |measure: &PhotonMeasure| {
         let text = format!("{measure:?}");
         text.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or_default().to_owned()
     };
     let measures = match sensor {
-        document::Sensor::Photons { measure, .. } => measure.iter().map(name_of).collect(),
+        document::Sensor::Photons(photons) => photons.measure.iter().map(name_of).collect(),
         other => {
             let measures = other.image_measures().into_iter().flatten();
             measures.map(|measure| format!("{measure:?}")).collect()

@@ -8,7 +8,7 @@ use crate::{document, memory};
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Parameters and variant.
-    pub document: document::Options,
+    pub document: document::ReadOptions,
     /// Threads; all that the machine has if absent.
     pub threads: Option<usize>,
     /// Factor on all numbers of samples, and its inverse root on relative errors: 1 is the scene as
@@ -37,7 +37,7 @@ impl Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            document: document::Options::default(),
+            document: document::ReadOptions::default(),
             threads: None,
             quality: 1.0,
             checkpoint: None,

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use super::Failure;
-use crate::document::{Ends, Scene, Sensor};
+use crate::document::{Ends, Fisheye, Perspective, Scene, Sensor};
 use crate::files;
 
 /// Hash of a scene as it was resolved and of the content of each file that it reads, hexadecimal.
@@ -24,15 +24,16 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
     let mut scene = scene.clone();
     for sensor in scene.sensors.values_mut() {
         match sensor {
-            Sensor::Orthographic { samples_per_px, samples_per_m2, until, .. } => {
-                (*samples_per_px, *samples_per_m2, *until) = (None, None, None);
+            Sensor::Orthographic(sensor) => {
+                (sensor.samples_per_px, sensor.samples_per_m2) = (None, None);
+                sensor.image.until = None;
             }
-            Sensor::Perspective { samples_per_px, until, .. }
-            | Sensor::Fisheye { samples_per_px, until, .. } => {
-                (*samples_per_px, *until) = (2, None);
+            Sensor::Perspective(Perspective { samples_per_px, image, .. })
+            | Sensor::Fisheye(Fisheye { samples_per_px, image, .. }) => {
+                (*samples_per_px, image.until) = (2, None);
             }
-            Sensor::Directions { until, .. } => *until = Ends(Vec::new()),
-            Sensor::Photons { per_m2, until, .. } => (*per_m2, *until) = (1.0, None),
+            Sensor::Directions(sensor) => sensor.until = Ends(Vec::new()),
+            Sensor::Photons(sensor) => (sensor.per_m2, sensor.until) = (1.0, None),
         }
     }
     Ok(*of(&scene, files)?.as_bytes())

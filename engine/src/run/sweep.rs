@@ -9,10 +9,9 @@ use super::reading::{choose_sensors, folder_of, read, sound};
 use super::scene_world::SceneWorld;
 use super::{Failure, Options, Progress, day, origin, params, run_in};
 use crate::document::{
-    self, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
+    self, Lambertian, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
 };
 use crate::products::{Day, Night, Point, Report};
-use crate::spawn::named_files;
 
 /// A scene file that has been read at every point of its sweep, and what its runs share.
 ///
@@ -207,7 +206,7 @@ fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Gl
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
     hasher.update(&options.quality.to_bits().to_le_bytes());
     hasher.update(reading.scene.resolved().to_ron().as_bytes());
-    for (_, named) in named_files(&reading.scene) {
+    for (_, named) in reading.scene.files() {
         let path = folder_of(file).join(named);
         let hash = match contents.get(&path) {
             Some(hash) => *hash,
@@ -227,11 +226,7 @@ fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Gl
 /// Scene without light, spectra and sensors: points that are equal in it follow each other, so that their geometry is
 /// built once.
 fn geometry_of(scene: &Scene) -> Scene {
-    let material = |_: &Material| Material::Lambertian {
-        reflectance: Spectrum::Constant(0.0),
-        back_reflectance: None,
-        temperature: None,
-    };
+    let material = |_: &Material| Material::Lambertian(Lambertian::new(Spectrum::Constant(0.0)));
     Scene {
         title: String::new(),
         bands: Vec::new(),

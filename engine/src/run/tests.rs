@@ -39,7 +39,7 @@ fn for_each_sensor(sensors: &str, test: impl Fn(&SensorEntity, MeasureContext<'_
         )"#
     );
     let reading =
-        document::read_text("test.ron", &text, &document::Options::default()).expect("a scene");
+        document::read_text("test.ron", &text, &document::ReadOptions::default()).expect("a scene");
     assert!(reading.is_sound(), "{}", reading.render());
     let built = SceneWorld::from_scene(&reading.scene, Path::new("")).expect("a world");
     let stage = extract(&built.world, &setting(&reading.scene), None).expect("a stage");

@@ -10,7 +10,6 @@ use crate::document::{self, Map, Material, Scene, Terrain};
 use crate::systems::{Changes, Resources};
 
 pub use files::missing_files;
-pub(crate) use files::named_files;
 
 /// Sets the raw components and the settings of a world to those of a scene; returns which kinds have changed.
 ///
@@ -73,7 +72,7 @@ pub fn spawn(scene: &Scene, world: &mut World, resources: &mut Resources) -> Cha
     note(mesh_changes.any(), Changes::MESHES);
     let is_of_ground = |entity: &Entity| match terrain {
         Terrain::Mesh { mesh, .. } => resources.meshes.get(mesh.as_str()) == Some(entity),
-        Terrain::Plane { .. } | Terrain::Raster { .. } => false,
+        Terrain::Plane(_) | Terrain::Raster(_) => false,
     };
     note(mesh_changes.entities.iter().any(is_of_ground), Changes::TERRAIN);
     note(set_component(world, resources.terrain, Some(terrain)), Changes::TERRAIN);
@@ -173,7 +172,7 @@ fn spawn_plantings(
 /// Whether each material is a leaf.
 fn leaves(world: &World, materials: &Map<Entity>) -> Vec<bool> {
     let is_leaf = |entity: &Entity| {
-        world.get::<&Material>(*entity).is_ok_and(|one| matches!(*one, Material::Leaf { .. }))
+        world.get::<&Material>(*entity).is_ok_and(|one| matches!(*one, Material::Leaf(_)))
     };
     materials.values().map(is_leaf).collect()
 }

@@ -16,8 +16,8 @@ const MOST_GIB: f64 = 2.0;
 pub(super) fn check_absorption_memory(world: &mut World, resources: &mut Resources) {
     for (name, &entity) in &resources.sensors {
         let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
-        let Sensor::Photons { measure, .. } = &*sensor else { continue };
-        for (index, measure) in measure.iter().enumerate() {
+        let Sensor::Photons(photons) = &*sensor else { continue };
+        for (index, measure) in photons.measure.iter().enumerate() {
             let PhotonMeasure::Absorbed { per } = measure else { continue };
             let path = format!("sensors.{name}.measure[{index}]");
             if let Some(problem) = problem(&path, per, world, resources) {

@@ -46,16 +46,16 @@ fn slopes(world: &World, resources: &Resources) -> Vec<Slope> {
         let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
         let path = format!("sensors.{name}");
         match &*sensor {
-            Sensor::Orthographic { zenith_deg, .. } => slopes.push(Slope {
+            Sensor::Orthographic(sensor) => slopes.push(Slope {
                 path: format!("{path}.zenith_deg"),
                 what: "the sensor",
-                zenith_deg: *zenith_deg,
+                zenith_deg: sensor.zenith_deg,
             }),
-            Sensor::Directions { views, .. } => {
-                slopes.extend(lowest(views, &format!("{path}.views")));
+            Sensor::Directions(sensor) => {
+                slopes.extend(lowest(&sensor.views, &format!("{path}.views")));
             }
-            Sensor::Photons { measure, .. } => {
-                for (index, measure) in measure.iter().enumerate() {
+            Sensor::Photons(sensor) => {
+                for (index, measure) in sensor.measure.iter().enumerate() {
                     if let PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) =
                         measure
                     {
@@ -63,7 +63,7 @@ fn slopes(world: &World, resources: &Resources) -> Vec<Slope> {
                     }
                 }
             }
-            Sensor::Perspective { .. } | Sensor::Fisheye { .. } => {}
+            Sensor::Perspective(_) | Sensor::Fisheye(_) => {}
         }
     }
     slopes

@@ -8,7 +8,9 @@ use hecs::World;
 use super::Resources;
 use super::georeference::{Georeference, MapFrame};
 use crate::components::{InstanceRange, SceneId};
-use crate::document::{Area, Instances, TableCoordinates, Terrain};
+use crate::document::{
+    Area, InstanceList, InstanceTable, Instances, TableCoordinates, Terrain, TerrainRaster,
+};
 use crate::geometry::{Polygon, Rectangle, millimetres};
 use crate::terrain::Ground;
 
@@ -66,8 +68,8 @@ pub(crate) fn place_of_instance(
     let path = format!("instances[{index}]");
     let row = row as usize;
     match world.get::<&Instances>(resources.plantings[index]).as_deref() {
-        Ok(Instances::List { .. }) => (format!("{path}.at_m[{row}]"), "this instance".to_owned()),
-        Ok(Instances::Table { file, .. }) => {
+        Ok(Instances::List(_)) => (format!("{path}.at_m[{row}]"), "this instance".to_owned()),
+        Ok(Instances::Table(InstanceTable { file, .. })) => {
             (format!("{path}.file"), format!("row {} of `{file}`", row + 1))
         }
         _ => (path, format!("instance {}", row + 1)),
@@ -83,9 +85,9 @@ pub(super) fn other_coordinates(
     resources: &Resources,
 ) -> Option<String> {
     let is_local = match instances {
-        Instances::List { .. } => true,
-        Instances::Table { coordinates, .. } => *coordinates != Some(TableCoordinates::Map),
-        Instances::Scatter { .. } | Instances::CanopyHeights { .. } => false,
+        Instances::List(_) => true,
+        Instances::Table(table) => table.coordinates != Some(TableCoordinates::Map),
+        Instances::Scatter(_) | Instances::CanopyHeights(_) => false,
     };
     if !is_local {
         return None;
@@ -109,7 +111,7 @@ fn less_origin(
     }
     let first = strays.first()?;
     Some(match instances {
-        Instances::List { on_terrain, .. } => {
+        Instances::List(InstanceList { on_terrain, .. }) => {
             let height = if *on_terrain { 0.0 } else { resources.frame.origin_m.2 };
             let mut local = map.apply(first.truncate()).extend(first.z - height);
             let above = local.z - ground.height(local.truncate()).unwrap_or(local.z);
@@ -135,7 +137,7 @@ fn raster_corner(
     place: &AdvicePlace<'_>,
     resources: &Resources,
 ) -> Option<String> {
-    let Terrain::Raster { corner_m: None, lowest_m, .. } = place.terrain else {
+    let Terrain::Raster(TerrainRaster { corner_m: None, lowest_m, .. }) = place.terrain else {
         return None;
     };
     let ground = place.ground;
@@ -148,7 +150,7 @@ fn raster_corner(
     let lowest = if lowest_m.is_none() { lowest_height(ground).floor() } else { 0.0 };
     let origin = DVec3::from(resources.frame.origin_m) + corner.extend(lowest);
     let kind = match instances {
-        Instances::List { .. } => "places of a `List` are local",
+        Instances::List(_) => "places of a `List` are local",
         _ => "its coordinates are local",
     };
     Some(format!(
@@ -209,8 +211,10 @@ pub(super) fn terrain_advice(
 ) -> &'static str {
     // Heights of the map have lost that of the origin.
     let shifts = match instances {
-        Instances::List { on_terrain: false, .. } => [0.0, 0.0],
-        Instances::Table { on_terrain: false, .. } => [0.0, resources.frame.origin_m.2],
+        Instances::List(InstanceList { on_terrain: false, .. }) => [0.0, 0.0],
+        Instances::Table(InstanceTable { on_terrain: false, .. }) => {
+            [0.0, resources.frame.origin_m.2]
+        }
         _ => return "",
     };
     let stands = |shift: f64| {
@@ -244,11 +248,11 @@ fn frame_advice(instances: &Instances, strays: &[DVec3], ground: &Ground) -> Opt
     let height = if above > ABOVE_SEA { above.floor() } else { 0.0 };
     let frame = format!("`frame: (origin_m: {})`", triple(origin.extend(height)));
     Some(match instances {
-        Instances::List { .. } => format!(
+        Instances::List(_) => format!(
             "if these are coordinates of a map, write {frame}, and the places of a `List` less it: {}",
             triple(local.extend(first.z - height))
         ),
-        Instances::Table { coordinates: Some(_), .. } => {
+        Instances::Table(InstanceTable { coordinates: Some(_), .. }) => {
             format!("if these are coordinates of a map, write {frame} and `coordinates: Map`")
         }
         _ => format!("if these are coordinates of a map, write {frame}"),

@@ -19,7 +19,7 @@ pub(super) fn count_instances(world: &mut World, resources: &mut Resources) {
     let ground =
         world.get::<&Terrain>(resources.terrain).ok().and_then(|terrain| match &*terrain {
             Terrain::Mesh { mesh, .. } => resources.meshes.get_index_of(mesh.as_str()),
-            Terrain::Plane { .. } | Terrain::Raster { .. } => None,
+            Terrain::Plane(_) | Terrain::Raster(_) => None,
         });
     let is_needed = |index: usize| needed.contains(&(index as u32));
     let is_loaded = |index: usize| world.get::<&Mesh>(resources.meshes[index]).is_ok();

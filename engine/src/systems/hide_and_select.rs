@@ -4,7 +4,7 @@ use hecs::World;
 
 use super::{Changes, Resources};
 use crate::components::{PrototypeId, ShownMeshes};
-use crate::document::{Diagnostic, Instances, suggestion};
+use crate::document::{Diagnostic, Instances, NamePattern, suggestion};
 use crate::placement::Pattern;
 
 /// Finds the mesh prototypes of each planting that the patterns of `hide` and `select` leave. Reads
@@ -61,7 +61,7 @@ pub(super) fn needed_meshes(world: &World, resources: &Resources) -> BTreeSet<u3
         let mut planting = world.query_one::<(&Instances, &ShownMeshes)>(planting);
         let Ok((instances, shown)) = planting.get() else { continue };
         match instances {
-            Instances::CanopyHeights { .. } => {
+            Instances::CanopyHeights(_) => {
                 let meshes = instances.meshes().into_iter();
                 needed.extend(
                     meshes.filter_map(|mesh| resources.meshes.get_index_of(mesh)).map(|i| i as u32),
@@ -77,7 +77,7 @@ pub(super) fn needed_meshes(world: &World, resources: &Resources) -> BTreeSet<u3
 fn shown(index: usize, instances: &Instances, resources: &Resources) -> ShownMeshes {
     let Resources { hide, select, meshes, .. } = resources;
     let name = name_of(index, instances);
-    let any = |patterns: &[String], mesh: &str| {
+    let any = |patterns: &[NamePattern], mesh: &str| {
         patterns.iter().any(|pattern| Pattern::new(pattern).matches(&name, mesh))
     };
     let is_shown = |mesh: &&str| (select.is_empty() || any(select, mesh)) && !any(hide, mesh);

@@ -20,7 +20,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
             let material = world.get::<&Material>(entity);
             let material = material.expect("`spawn` gives materials their source");
             let reads_file =
-                spectra_of(&material).into_iter().any(|spectrum| reads_file(spectrum, resources));
+                material.spectra().any(|(_, spectrum)| reads_file(spectrum, resources));
             if is_used || !reads_file { optics(&material, &path, resources) } else { None }
         };
         set_component(world, entity, optics.filter(|_| is_used));
@@ -29,22 +29,17 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
 
 /// Optics of a material; `None` after an error.
 fn optics(material: &Material, path: &str, resources: &mut Resources) -> Option<SurfaceOptics> {
-    let (reflectance, back, transmittance) = match material {
-        Material::Lambertian { reflectance, back_reflectance, .. } => {
-            (reflectance, back_reflectance, &Spectrum::Constant(0.0))
-        }
-        Material::Leaf { reflectance, transmittance, back_reflectance, .. } => {
-            (reflectance, back_reflectance, transmittance)
-        }
-    };
     let at = |key: &str| format!("{path}.{key}");
+    let reflectance = material.reflectance();
     let front = resolve_spectrum(reflectance, Quantity::Reflectance, &at("reflectance"), resources);
-    let back = match back {
+    let back = match material.back_reflectance() {
         Some(back) => {
             resolve_spectrum(back, Quantity::Reflectance, &at("back_reflectance"), resources)
         }
         None => front.clone(),
     };
+    let opaque = Spectrum::Constant(0.0);
+    let transmittance = material.transmittance().unwrap_or(&opaque);
     let through =
         resolve_spectrum(transmittance, Quantity::Transmittance, &at("transmittance"), resources);
     match LambertianOptics::new(&front?, &back?, &through?) {
@@ -66,18 +61,6 @@ fn optics(material: &Material, path: &str, resources: &mut Resources) -> Option<
                 .help("lower one of them so that they sum to at most 1"),
             );
             None
-        }
-    }
-}
-
-/// All spectra of a material.
-fn spectra_of(material: &Material) -> Vec<&Spectrum> {
-    match material {
-        Material::Lambertian { reflectance, back_reflectance, .. } => {
-            std::iter::once(reflectance).chain(back_reflectance).collect()
-        }
-        Material::Leaf { reflectance, transmittance, back_reflectance, .. } => {
-            [reflectance, transmittance].into_iter().chain(back_reflectance).collect()
         }
     }
 }

@@ -6,7 +6,9 @@ use hecs::Entity;
 use super::georeference::CoordinateSystem;
 use super::{Changes, Messages};
 use crate::components::{MaterialId, PrototypeId, SceneExtents};
-use crate::document::{Band, Boundary, Diagnostic, Frame, Map, Spectrum, unknown_name};
+use crate::document::{
+    Band, Boundary, Diagnostic, Frame, Map, NamePattern, Spectrum, unknown_name,
+};
 
 /// Data of a scene that belongs to no entity: settings, entities by name, and messages.
 #[derive(Clone, Debug)]
@@ -24,9 +26,9 @@ pub struct Resources {
     /// Named spectra.
     pub spectra: Map<Spectrum>,
     /// Patterns of instances that are left out.
-    pub hide: Vec<String>,
+    pub hide: Vec<NamePattern>,
     /// Patterns of instances that are kept; all if empty.
-    pub select: Vec<String>,
+    pub select: Vec<NamePattern>,
     /// True if a sensor measures emitted light.
     pub measures_emission: bool,
 

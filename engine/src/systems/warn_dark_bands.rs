@@ -42,7 +42,7 @@ fn asks_for_reflectance(sensor: &Sensor) -> bool {
             && !matches!(one, PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature)
     };
     match sensor {
-        Sensor::Photons { measure, .. } => measure.iter().any(of_photons),
+        Sensor::Photons(photons) => photons.measure.iter().any(of_photons),
         other => other.image_measures().into_iter().flatten().any(of_image),
     }
 }

@@ -3,7 +3,7 @@ use hecs::World;
 
 use super::Resources;
 use crate::components::TerrainPatch;
-use crate::document::{Cover, Diagnostic, Sensor};
+use crate::document::{Cover, Diagnostic, Orthographic, Sensor};
 use crate::geometry::{PixelGrid, place_text};
 
 /// Warns of images whose middle lies beside the ground of an isolated scene, and of nadir images that reach beyond it.
@@ -17,7 +17,7 @@ pub(super) fn warn_image_footprints(world: &mut World, resources: &mut Resources
     let (low, high) = (corner, corner + size);
     for (name, &entity) in &resources.sensors {
         let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
-        let Sensor::Orthographic {
+        let Sensor::Orthographic(Orthographic {
             pixel_m,
             extent_m: Some(extent),
             cover: None::<Cover>,
@@ -25,7 +25,7 @@ pub(super) fn warn_image_footprints(world: &mut World, resources: &mut Resources
             zenith_deg,
             azimuth_deg,
             ..
-        } = &*sensor
+        }) = &*sensor
         else {
             continue;
         };

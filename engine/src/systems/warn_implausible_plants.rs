@@ -52,7 +52,7 @@ pub(super) fn warn_implausible_plants(world: &mut World, resources: &mut Resourc
             let help = format!(
                 "crowns have 2 to 15{}",
                 match world.get::<&Mesh>(resources.meshes[plant.name.as_str()]).as_deref() {
-                    Ok(Mesh::Crown { .. }) =>
+                    Ok(Mesh::Crown(_)) =>
                         "; `leaf_area_m2` is the one-sided area of all leaves of one crown",
                     _ => "; is its unit right, and is it one plant?",
                 }

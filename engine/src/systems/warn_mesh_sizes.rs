@@ -14,13 +14,13 @@ const SMALLEST: f32 = 0.3;
 pub(super) fn warn_mesh_sizes(world: &mut World, resources: &mut Resources) {
     for mesh in placed_meshes(world).values() {
         let name = &mesh.name;
-        let unit = match *world
+        let unit = match &*world
             .get::<&Mesh>(resources.meshes[name.as_str()])
             .expect("`spawn` gives each mesh prototype its source")
         {
-            Mesh::Obj { unit_m, .. } => unit_m,
-            Mesh::Gltf { .. } | Mesh::Discs { .. } => 1.0,
-            Mesh::Faces { .. } | Mesh::Crown { .. } => continue,
+            Mesh::Obj(obj) => obj.unit_m,
+            Mesh::Gltf(_) | Mesh::Discs { .. } => 1.0,
+            Mesh::Faces { .. } | Mesh::Crown(_) => continue,
         };
         let Some(MeshBounds { low, high }) = mesh.bounds else { continue };
         let size = (high - low).max_element();

@@ -16,8 +16,8 @@ pub(super) fn warn_seams(world: &mut World, resources: &mut Resources) {
     let Ok(ground) = world.get::<&Ground>(resources.terrain) else { return };
     let terrain = world.get::<&Terrain>(resources.terrain);
     let path = match &*terrain.expect("`spawn` gives the terrain its source") {
-        Terrain::Plane { .. } => return,
-        Terrain::Raster { .. } => "terrain.file",
+        Terrain::Plane(_) => return,
+        Terrain::Raster(_) => "terrain.file",
         Terrain::Mesh { .. } => "terrain.mesh",
     };
     if !resources.is_periodic() {

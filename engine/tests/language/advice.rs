@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sunfleck::document::{Diagnostic, Options, Reading, read_text};
+use sunfleck::document::{Diagnostic, ReadOptions, Reading, read_text};
 
 /// Every variant of the language, empty.
 const EMPTY: &str = "Scene(
@@ -38,7 +38,7 @@ const EMPTY: &str = "Scene(
 )";
 
 fn read(text: &str) -> Reading {
-    read_text("scene.ron", text, &Options::default())
+    read_text("scene.ron", text, &ReadOptions::default())
         .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 

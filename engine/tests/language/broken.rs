@@ -1,10 +1,10 @@
 //! Broken scenes, and what a person reads about each.
 
-use sunfleck::document::{Options, read_text};
+use sunfleck::document::{ReadOptions, read_text};
 
 /// What `sunfleck check` writes.
 fn shown(name: &str, text: &str) -> String {
-    match read_text(&format!("{name}.ron"), text, &Options::default()) {
+    match read_text(&format!("{name}.ron"), text, &ReadOptions::default()) {
         Ok(reading) => reading.render(),
         Err(error) => format!("error: {error}\n"),
     }

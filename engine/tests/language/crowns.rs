@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sunfleck::document::{
-    Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Mesh, Trunk,
+    Branches, Clumps, CrownShape, GeneratedCrown, LeafAngle, LeafProfile, LeafShape, Mesh, Trunk,
 };
 
 use crate::writing::{list, number, option, text};
@@ -100,7 +100,7 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
             let (base_m, leaf_area_m2, leaf_profile, clumps, leaf_angle, leaf, leaf_material) =
                 leaves;
             let (leaf, overlap, min_distance_m) = leaf;
-            Mesh::Crown {
+            Mesh::Crown(GeneratedCrown {
                 shape,
                 base_m,
                 leaf_area_m2,
@@ -115,7 +115,7 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
                 branches,
                 wood_material,
                 seed,
-            }
+            })
         })
         .boxed()
 }

@@ -1,7 +1,7 @@
 //! `sunfleck fmt`: the layout changes, and nothing else; `sunfleck expand`: nothing but the text.
 
 use proptest::prelude::*;
-use sunfleck::document::{Options, format, read_text};
+use sunfleck::document::{ReadOptions, format, read_text};
 
 const DESIGN: &str = include_str!("design.ron");
 
@@ -68,18 +68,19 @@ fn the_example_scenes_keep_their_values_and_comments() {
 
 #[test]
 fn what_is_written_is_in_normal_form() {
-    let scene = read_text("scene.ron", DESIGN, &Options::default()).expect("a scene").scene;
+    let scene = read_text("scene.ron", DESIGN, &ReadOptions::default()).expect("a scene").scene;
     // But for groups that have no room, and whose last comma then keeps them apart.
     assert_eq!(formatted(&scene.to_ron()), scene.to_ron());
 }
 
 #[test]
 fn an_expanded_scene_says_where_its_values_come_from() {
-    let options = Options { set: vec![("sza".to_owned(), 60.0.into())], ..Options::default() };
+    let options =
+        ReadOptions { set: vec![("sza".to_owned(), 60.0.into())], ..ReadOptions::default() };
     let reading = read_text("scene.ron", DESIGN, &options).expect("a scene");
     let text = reading.expanded();
     insta::assert_snapshot!("expanded", text);
-    let again = read_text("again.ron", &text, &Options::default()).expect("a scene");
+    let again = read_text("again.ron", &text, &ReadOptions::default()).expect("a scene");
     assert!(again.diagnostics.is_empty(), "{}", again.render());
     assert_eq!(again.scene, reading.scene.resolved());
 }

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use proptest::prelude::*;
-use sunfleck::document::{Options, ReadError, Reading, read_text};
+use sunfleck::document::{ReadError, ReadOptions, Reading, read_text};
 
 const DESIGN: &str = include_str!("design.ron");
 
 fn read(text: &str) -> Result<Reading, ReadError> {
-    read_text("scene.ron", text, &Options::default())
+    read_text("scene.ron", text, &ReadOptions::default())
 }
 
 fn error(text: &str) -> String {

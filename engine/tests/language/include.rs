@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use sunfleck::document::{
-    Include, Instances, Map, Material, Mesh, Options, Param, Reading, Scene, Sensor, Spectrum,
-    Terrain, read_file,
+    Include, Instances, Lambertian, Leaf, Map, Material, MeshFile, Param, ReadOptions, Reading,
+    Ref, Scene, Sensor, Spectrum, TabulatedSpectrum, Terrain, TerrainPlane, read_file,
 };
 
 /// A species as one keeps it in a library.
@@ -64,11 +64,11 @@ impl Folder {
         folder
     }
 
-    fn read(&self, options: &Options) -> Reading {
+    fn read(&self, options: &ReadOptions) -> Reading {
         read_file(&self.0.path().join("stand.ron"), options).expect("a text")
     }
 
-    fn sound(&self, options: &Options) -> Scene {
+    fn sound(&self, options: &ReadOptions) -> Scene {
         let reading = self.read(options);
         assert!(reading.is_sound(), "{}", reading.render());
         reading.scene
@@ -77,7 +77,7 @@ impl Folder {
     /// What a person reads, without the folder's name.
     fn shown(&self) -> String {
         let root = format!("{}/", self.0.path().display());
-        let text = match read_file(&self.0.path().join("stand.ron"), &Options::default()) {
+        let text = match read_file(&self.0.path().join("stand.ron"), &ReadOptions::default()) {
             Ok(reading) => reading.render(),
             Err(error) => format!("error: {error}\n"),
         };
@@ -96,40 +96,47 @@ fn set(name: &str, value: f64) -> (String, Param) {
 /// What the leaves of an included birch reflect.
 fn leaf(scene: &Scene, name: &str) -> f64 {
     match &scene.materials[name] {
-        Material::Leaf { reflectance: Spectrum::Constant(value), .. } => *value,
+        Material::Leaf(Leaf { reflectance: Spectrum::Constant(value), .. }) => *value,
         other => panic!("{other:?}"),
     }
 }
 
 #[test]
 fn what_is_included_has_names_of_its_own_and_paths_of_the_scene() {
-    let scene = library().sound(&Options::default());
+    let scene = library().sound(&ReadOptions::default());
     assert!(scene.include.is_empty());
     let materials: Vec<_> = scene.materials.keys().map(String::as_str).collect();
     assert_eq!(materials, ["site.soil", "birch.leaf", "birch.bark", "bare.leaf", "bare.bark"]);
-    let Mesh::Obj { file, parts, material, .. } = &scene.meshes["birch.tree"] else { panic!() };
+    let Some(MeshFile { file, parts, material, .. }) = scene.meshes["birch.tree"].mesh_file()
+    else {
+        panic!()
+    };
     assert_eq!(file, "species/birch.obj");
     assert_eq!(parts["trunk"], "birch.bark");
-    assert_eq!(material.as_deref(), Some("birch.leaf"));
-    assert!(matches!(&scene.spectra["bare.bark"], Spectrum::Table { file, .. }
+    assert_eq!(material.map(Ref::as_str), Some("birch.leaf"));
+    assert!(matches!(&scene.spectra["bare.bark"], Spectrum::Table(TabulatedSpectrum { file, .. })
         if file == "species/../spectra/bark.csv"));
-    assert!(matches!(&scene.materials["birch.bark"], Material::Lambertian { reflectance, .. }
-        if *reflectance == Spectrum::Named("birch.bark".to_owned())));
-    assert!(matches!(&scene.terrain, Terrain::Plane { material, .. } if material == "site.soil"));
+    assert!(
+        matches!(&scene.materials["birch.bark"], Material::Lambertian(Lambertian { reflectance, .. })
+        if *reflectance == Spectrum::Named("birch.bark".into()))
+    );
+    assert!(
+        matches!(&scene.terrain, Terrain::Plane(TerrainPlane { material, .. }) if material == "site.soil")
+    );
     let of: Vec<&str> = scene.instances.iter().flat_map(Instances::meshes).collect();
     assert_eq!(of, ["birch.crown", "birch.tree", "bare.tree"], "the scene's own first");
-    assert!(matches!(scene.sensors["birch.up"], Sensor::Directions { .. }));
+    assert!(matches!(scene.sensors["birch.up"], Sensor::Directions(_)));
 }
 
 /// File, variant of the include, parameters of the include, variant of the scene, point, `--set`.
 #[test]
 fn parameters_are_taken_from_the_nearest() {
     let folder = library();
-    let leaves = |options: &Options| {
+    let leaves = |options: &ReadOptions| {
         let scene = folder.sound(options);
         [leaf(&scene, "birch.leaf"), leaf(&scene, "bare.leaf")]
     };
-    let mut options = Options::default();
+    let mut options = ReadOptions::default();
     assert_eq!(leaves(&options), [0.4, 0.05], "passed as a formula; the variant of the file");
     options.variant = Some("bare.winter".to_owned());
     assert_eq!(leaves(&options), [0.4, 0.05]);
@@ -139,7 +146,7 @@ fn parameters_are_taken_from_the_nearest() {
     assert_eq!(leaves(&options), [0.2, 0.05]);
     options.set = vec![set("birch.lai", 1.0), set("bare.lai", 6.0)];
     assert_eq!(leaves(&options), [0.1, 0.6]);
-    let scene = folder.sound(&Options { set: vec![set("lai", 3.0)], ..Options::default() });
+    let scene = folder.sound(&ReadOptions { set: vec![set("lai", 3.0)], ..ReadOptions::default() });
     assert_eq!(leaf(&scene, "birch.leaf"), 0.2, "what is passed follows the scene's own parameter");
     assert_eq!(
         scene.params["birch.radius"],
@@ -164,8 +171,9 @@ fn what_stands_closer_to_the_scene_goes_first() {
         sensors: { "albedo": Photons },
     )"#;
     let folder = Folder::with(&[("stand.ron", stand), ("site.ron", &site), ("inner.ron", inner)]);
-    let scene = folder.sound(&Options::default());
-    let Material::Lambertian { reflectance, .. } = &scene.materials["site.deep.soil"] else {
+    let scene = folder.sound(&ReadOptions::default());
+    let Material::Lambertian(Lambertian { reflectance, .. }) = &scene.materials["site.deep.soil"]
+    else {
         panic!()
     };
     assert_eq!(*reflectance, Spectrum::Constant(0.9));
@@ -177,7 +185,7 @@ fn what_stands_closer_to_the_scene_goes_first() {
 fn a_scene_built_in_rust_includes_files_as_well() {
     let folder = library();
     let path = folder.0.path().join("stand.ron");
-    let mut built = read_file(&path, &Options::default()).expect("a scene").scene;
+    let mut built = read_file(&path, &ReadOptions::default()).expect("a scene").scene;
     let include = |params: Map<Param>| Include {
         file: "species/birch.ron".to_owned(),
         params,
@@ -185,7 +193,7 @@ fn a_scene_built_in_rust_includes_files_as_well() {
     };
     built.include.insert("oak".to_owned(), include(Map::from([set("lai", 7.0)])));
     std::fs::write(&path, built.to_ron()).expect("a file");
-    let scene = folder.sound(&Options::default());
+    let scene = folder.sound(&ReadOptions::default());
     assert_eq!(leaf(&scene, "oak.leaf"), 0.7);
     assert_eq!(leaf(&scene, "birch.leaf"), 0.4);
 }
@@ -285,7 +293,7 @@ fn a_device_that_never_ends_is_no_file() {
     }
     let shown = Folder::with(&[("stand.ron", r#"(include: { "a": "/dev/zero" })"#)]).shown();
     assert!(shown.starts_with("error: /dev/zero is neither a file nor a folder"), "{shown}");
-    let error = read_file(Path::new("/dev/zero"), &Options::default()).expect_err("no scene");
+    let error = read_file(Path::new("/dev/zero"), &ReadOptions::default()).expect_err("no scene");
     assert!(error.to_string().contains("more than the"), "{error}");
 }
 
@@ -303,7 +311,7 @@ fn patterns_of_an_included_file_are_of_its_own_names() {
         bands: [(name: "red", center_nm: 660.0)], sun: (zenith_deg: 30.0), sensors: { "albedo": Photons },
     )"#;
     let folder = Folder::with(&[("plot.ron", plot), ("stand.ron", stand)]);
-    let scene = folder.sound(&Options::default());
+    let scene = folder.sound(&ReadOptions::default());
     assert_eq!(scene.hide, ["plot.oak", "plot.row*/plot.o*"]);
     assert!(matches!(&scene.terrain, Terrain::Mesh { mesh, .. } if mesh == "plot.oak"));
 }
@@ -317,13 +325,16 @@ fn files_are_included_by_one_key() {
         "include: { \"a\": \"lib.ron\" }, include: { \"\": (params: {}) }, params: {",
     );
     std::fs::write(folder.0.path().join("stand.ron"), twice).expect("a file");
-    let reading = folder.read(&Options::default());
+    let reading = folder.read(&ReadOptions::default());
     let shown = reading.render();
     assert!(shown.contains("the key `include` is given twice"), "{shown}");
     assert!(shown.contains("stand.ron:4:"), "{shown}");
     assert!(reading.scene.include.is_empty() && reading.scene.materials.contains_key("a.leaf"));
-    let again =
-        sunfleck::document::read_text("again.ron", &reading.scene.to_ron(), &Options::default());
+    let again = sunfleck::document::read_text(
+        "again.ron",
+        &reading.scene.to_ron(),
+        &ReadOptions::default(),
+    );
     assert_eq!(again.expect("RON").scene, reading.scene);
 }
 
@@ -354,13 +365,15 @@ fn texts_are_qualified_by_the_file_that_uses_them() {
     std::fs::write(folder.path().join("species/a.ron"), library).expect("a file");
     std::fs::write(folder.path().join("scene.ron"), scene).expect("a file");
     let reading =
-        read_file(&folder.path().join("scene.ron"), &Options::default()).expect("a scene");
+        read_file(&folder.path().join("scene.ron"), &ReadOptions::default()).expect("a scene");
     assert!(reading.is_sound(), "{}", reading.render());
     let reflectance = |name: &str| match &reading.scene.materials[name] {
-        Material::Lambertian { reflectance, .. } => reflectance.clone(),
-        other @ Material::Leaf { .. } => panic!("{other:?}"),
+        Material::Lambertian(Lambertian { reflectance, .. }) => reflectance.clone(),
+        other @ Material::Leaf(_) => panic!("{other:?}"),
     };
-    let Spectrum::Table { file, .. } = reflectance("a.leaf") else { panic!("a table") };
+    let Spectrum::Table(TabulatedSpectrum { file, .. }) = reflectance("a.leaf") else {
+        panic!("a table")
+    };
     assert_eq!(file, "species/../wet.csv");
-    assert_eq!(reflectance("a.bark"), Spectrum::Named("a.birch".to_owned()));
+    assert_eq!(reflectance("a.bark"), Spectrum::Named("a.birch".into()));
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use sunfleck::document::{Options, read_file, read_text};
+use sunfleck::document::{ReadOptions, read_file, read_text};
 
 const SCENE: &str = r#"Scene(
     format: 1,
@@ -18,7 +18,7 @@ const SCENE: &str = r#"Scene(
 )"#;
 
 fn shown(text: &str) -> String {
-    match read_text("scene.ron", text, &Options::default()) {
+    match read_text("scene.ron", text, &ReadOptions::default()) {
         Ok(reading) => reading.render(),
         Err(error) => format!("error: {error}\n"),
     }
@@ -91,7 +91,7 @@ fn a_parameter_that_cannot_stand_there_is_told() {
     for include in ["{ \"a\": \"=soil\" }", "{ \"a\": (file: \"=soil\") }"] {
         let text = SCENE.replace("format: 1,", &format!("format: 1, include: {include},"));
         fs::write(&file, text).expect("a scene");
-        let found = read_file(&file, &Options::default()).expect("RON").render();
+        let found = read_file(&file, &ReadOptions::default()).expect("RON").render();
         assert!(found.contains("`=soil` cannot name an included file"), "{found}");
         assert!(found.contains("before parameters have values"), "{found}");
     }

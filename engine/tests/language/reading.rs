@@ -3,8 +3,9 @@
 use std::io::Write as _;
 
 use sunfleck::document::{
-    Boundary, Diagnostic, Material, Mesh, Options, ReadError, Reading, Scene, Sensor, Sky,
-    Spectrum, Sun, check, nearest, read_file, read_text, unknown_name,
+    Boundary, Diagnostic, Lambertian, Material, Mesh, Photons, ReadError, ReadOptions, Reading,
+    Scene, Sensor, Sky, Spectrum, Sun, TabulatedSpectrum, check, nearest, read_file, read_text,
+    unknown_name,
 };
 
 const DESIGN: &str = include_str!("design.ron");
@@ -20,12 +21,12 @@ const SMALL: &str = r#"Scene(
     MORE
 )"#;
 
-fn read_with(text: &str, options: &Options) -> Reading {
+fn read_with(text: &str, options: &ReadOptions) -> Reading {
     read_text("scene.ron", text, options).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn read(text: &str) -> Reading {
-    read_with(text, &Options::default())
+    read_with(text, &ReadOptions::default())
 }
 
 fn sound(text: &str) -> Scene {
@@ -41,14 +42,14 @@ fn small(red: &str, more: &str) -> String {
 /// What the scene says the soil reflects.
 fn red(scene: &Scene) -> f64 {
     match &scene.materials["soil"] {
-        Material::Lambertian { reflectance: Spectrum::Constant(value), .. } => *value,
+        Material::Lambertian(Lambertian { reflectance: Spectrum::Constant(value), .. }) => *value,
         other => panic!("{other:?}"),
     }
 }
 
-fn options(set: &[(&str, f64)], variant: Option<&str>) -> Options {
+fn options(set: &[(&str, f64)], variant: Option<&str>) -> ReadOptions {
     let set = set.iter().map(|&(name, value)| (name.to_owned(), value.into())).collect();
-    Options { set, variant: variant.map(str::to_owned), ..Options::default() }
+    ReadOptions { set, variant: variant.map(str::to_owned), ..ReadOptions::default() }
 }
 
 fn messages(found: &[Diagnostic]) -> Vec<String> {
@@ -60,10 +61,10 @@ fn the_example_of_the_design_reads_as_written() {
     let scene = sound(DESIGN);
     assert_eq!(scene.title, "Birch stand");
     assert_eq!(scene.bands[1].name, "nir");
-    let reflectance = Spectrum::Named("soil".to_owned());
+    let reflectance = Spectrum::Named("soil".into());
     assert_eq!(
         scene.materials["soil"],
-        Material::Lambertian { reflectance, back_reflectance: None, temperature: None }
+        Material::Lambertian(Lambertian { reflectance, back_reflectance: None, temperature: None })
     );
     let irradiance = Spectrum::Bands(vec![1.0, 1.0]);
     let sun = Sun {
@@ -78,7 +79,7 @@ fn the_example_of_the_design_reads_as_written() {
     assert_eq!(scene.boundary, Boundary::Periodic);
     let names: Vec<_> = scene.sensors.keys().collect();
     assert_eq!(names, ["nadir", "brf", "flux"]);
-    assert!(matches!(scene.sensors["flux"], Sensor::Photons { per_m2: 2500.0, .. }));
+    assert!(matches!(scene.sensors["flux"], Sensor::Photons(Photons { per_m2: 2500.0, .. })));
     assert_eq!(scene.variants["winter"]["lai_scale"], 0.2.into());
 }
 
@@ -90,7 +91,7 @@ fn keys_that_are_left_out_have_their_defaults() {
         Sun { zenith_deg: Some(30.0), azimuth_deg: 0.0, position: None, disc_deg: 0.0, irradiance };
     assert_eq!(scene.sun, Some(sun));
     assert_eq!(scene.transport.roulette.after_order, 5);
-    assert!(matches!(scene.sensors["albedo"], Sensor::Photons { per_m2: 1000.0, .. }));
+    assert!(matches!(scene.sensors["albedo"], Sensor::Photons(Photons { per_m2: 1000.0, .. })));
 }
 
 #[test]
@@ -237,7 +238,7 @@ fn a_scene_built_in_rust_is_checked_without_a_file() {
     scene.bands[0].center_nm = f64::NAN;
     scene.frame.origin_m.2 = f64::INFINITY;
     if let Some(Mesh::Discs { material, .. }) = scene.meshes.get_mut("crown") {
-        "laef".clone_into(material);
+        *material = "laef".into();
     }
     assert_eq!(
         messages(&check(&scene)),
@@ -268,7 +269,7 @@ fn files_that_hold_no_scene_are_errors_that_say_why() {
         if let Some(bytes) = bytes {
             std::fs::write(&path, bytes).expect("written");
         }
-        let error = read_file(&path, &Options::default()).expect_err("no scene");
+        let error = read_file(&path, &ReadOptions::default()).expect_err("no scene");
         error.to_string().replace(&folder.path().display().to_string(), "..")
     };
     assert!(error(None).starts_with("cannot read ../scene.ron: "));
@@ -288,17 +289,17 @@ fn files_that_hold_no_scene_are_errors_that_say_why() {
         error(Some(b"Scene(\n title: \"Bl\xe4tter\")")),
         "../scene.ron is something else from line 2 on, not UTF-8 text: save it as UTF-8"
     );
-    let error = read_file(folder.path(), &Options::default()).expect_err("no scene");
+    let error = read_file(folder.path(), &ReadOptions::default()).expect_err("no scene");
     assert!(matches!(error, ReadError::Folder { .. }), "{error}");
     let large = folder.path().join("large.ron");
     let file = std::fs::File::create(&large).expect("created");
     file.set_len(300 << 20).expect("a sparse file");
-    let error = read_file(&large, &Options::default()).expect_err("no scene");
+    let error = read_file(&large, &ReadOptions::default()).expect_err("no scene");
     assert!(matches!(error, ReadError::TooLarge { .. }), "{error}");
     let mut file = std::fs::File::create(&large).expect("created");
     file.write_all(small("0.2", "").as_bytes()).expect("written");
     drop(file);
-    assert!(read_file(&large, &Options::default()).expect("a scene").is_sound());
+    assert!(read_file(&large, &ReadOptions::default()).expect("a scene").is_sound());
 }
 
 #[test]
@@ -323,36 +324,38 @@ fn parameters_may_be_texts() {
         variants: { "wet": { "soil": "wet.csv" } },
         sweep: Grid({ "soil": ["a.csv", "b.csv"], "n": [1.0, 2.0] }),
     )"#;
-    let read = |options: &Options| read_text("scene.ron", text, options).expect("RON");
-    let files = |options: &Options| {
+    let read = |options: &ReadOptions| read_text("scene.ron", text, options).expect("RON");
+    let files = |options: &ReadOptions| {
         let reading = read(options);
         assert!(reading.is_sound(), "{}", reading.render());
-        let Material::Lambertian { reflectance: Spectrum::Table { file, value, .. }, .. } =
-            &reading.scene.materials["soil"]
+        let Material::Lambertian(Lambertian {
+            reflectance: Spectrum::Table(TabulatedSpectrum { file, value, .. }),
+            ..
+        }) = &reading.scene.materials["soil"]
         else {
             panic!("a table")
         };
         assert_eq!(reading.scene.instances[0].meshes(), ["tree"]);
         (file.clone(), value.clone())
     };
-    let both = |name: &str| (name.to_owned(), Some(name.to_owned()));
-    assert_eq!(files(&Options::default()), both("dry.csv"));
-    let wet = Options { variant: Some("wet".to_owned()), ..Options::default() };
+    let both = |name: &str| (name.into(), Some(name.to_owned()));
+    assert_eq!(files(&ReadOptions::default()), both("dry.csv"));
+    let wet = ReadOptions { variant: Some("wet".to_owned()), ..ReadOptions::default() };
     assert_eq!(files(&wet), both("wet.csv"));
-    let set = |name: &str, value: &str| Options {
+    let set = |name: &str, value: &str| ReadOptions {
         set: vec![(name.to_owned(), value.into())],
-        ..Options::default()
+        ..ReadOptions::default()
     };
     assert_eq!(files(&set("soil", "clay.csv")), both("clay.csv"));
     assert_eq!(files(&set("n", "3")), both("dry.csv"));
-    let sweep = read(&Options::default()).scene.sweep.expect("a sweep");
+    let sweep = read(&ReadOptions::default()).scene.sweep.expect("a sweep");
     assert_eq!(sweep.point(2)[0], ("soil".to_owned(), "b.csv".into()));
 
-    let wrong = |options: &Options| messages(&read(options).diagnostics);
+    let wrong = |options: &ReadOptions| messages(&read(options).diagnostics);
     assert_eq!(wrong(&set("n", "many")), ["params: `n` cannot be \"many\": it is a number"]);
     let replaced = |from: &str, to: &str| {
         let text = text.replace(from, to);
-        messages(&read_text("scene.ron", &text, &Options::default()).expect("RON").diagnostics)
+        messages(&read_text("scene.ron", &text, &ReadOptions::default()).expect("RON").diagnostics)
     };
     assert_eq!(
         replaced("\"=kind\"", "\"=n\""),

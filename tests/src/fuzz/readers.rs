@@ -7,7 +7,7 @@ use sunfleck::assets::{
     read_geojson, read_gltf, read_instances, read_obj, read_polygons, read_raster, read_spectrum,
 };
 use sunfleck::components::Mesh;
-use sunfleck::document::{self, Axis, Options, Origin, PartsBy, Reading};
+use sunfleck::document::{self, Axis, Origin, PartsBy, ReadOptions, Reading};
 
 use super::pipeline::pipeline;
 
@@ -95,7 +95,7 @@ const HOST: &str = r#"Scene(
 /// Reads a scene, shows all that is wrong, writes it and reads that, formats it twice, and includes
 /// it in another scene.
 fn scene(path: &Path) -> Said {
-    let reading = match document::read_file(path, &Options::default()) {
+    let reading = match document::read_file(path, &ReadOptions::default()) {
         Ok(reading) => reading,
         Err(error) => return said(&error.to_string()),
     };
@@ -106,12 +106,13 @@ fn scene(path: &Path) -> Said {
     let twice = document::format("scene.ron", &once).expect("it was written as RON");
     assert_eq!(once, twice, "a file in normal form stays as it is");
     let name = path.display().to_string();
-    let formatted = document::read_text(&name, &once, &Options::default()).expect("a scene");
+    let formatted = document::read_text(&name, &once, &ReadOptions::default()).expect("a scene");
     assert!(same(&formatted.scene, &reading.scene), "formatting keeps all values:\n{once}");
     let file =
         path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let host = path.with_file_name("host.ron").display().to_string();
-    let included = document::read_text(&host, &HOST.replace("FILE", &file), &Options::default());
+    let included =
+        document::read_text(&host, &HOST.replace("FILE", &file), &ReadOptions::default());
     let included = included.expect("the host is a scene");
     diagnosed(&included);
     let shown = reading.render();
@@ -133,12 +134,12 @@ fn diagnosed(reading: &Reading) {
 /// Asserts that what is written is what was read.
 fn written(reading: &Reading) {
     let text = reading.scene.to_ron();
-    let again = document::read_text("written.ron", &text, &Options::default());
+    let again = document::read_text("written.ron", &text, &ReadOptions::default());
     let again = again.unwrap_or_else(|error| panic!("written as RON: {error}\n{text}"));
     assert!(same(&again.scene, &reading.scene), "written and read:\n{text}\n{}", again.render());
     if reading.is_sound() {
         let text = reading.expanded();
-        let again = document::read_text("expanded.ron", &text, &Options::default());
+        let again = document::read_text("expanded.ron", &text, &ReadOptions::default());
         let again = again.unwrap_or_else(|error| panic!("expanded to RON: {error}\n{text}"));
         assert!(again.is_sound(), "expanded and sound:\n{}", again.render());
         assert!(same(&again.scene, &reading.scene.resolved()), "expanded and read:\n{text}");

@@ -3,7 +3,7 @@
 use std::fs;
 
 use sunfleck::components::{Instance, Placement};
-use sunfleck::document::{Options, read_text};
+use sunfleck::document::{ReadOptions, read_text};
 use sunfleck::run::SceneWorld;
 use sunfleck_tests::field::{Case, Right, folder, hold};
 
@@ -14,7 +14,7 @@ pub(super) fn stand(scene: &str) -> Stood {
     let path = folder().join(scene);
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let reading =
-        read_text(scene, &text, &Options::default()).map_err(|error| error.to_string())?;
+        read_text(scene, &text, &ReadOptions::default()).map_err(|error| error.to_string())?;
     if !reading.diagnostics.is_empty() {
         return Err(reading.render());
     }

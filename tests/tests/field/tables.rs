@@ -92,7 +92,7 @@ fn the_sun_stands_where_pvlib_has_it() {
         ("t7", 78.0250, 11.8204),
     ] {
         let path = folder().join(format!("34-sun-position/{name}.ron"));
-        let reading = read_file(&path, &document::Options::default()).expect("a scene");
+        let reading = read_file(&path, &document::ReadOptions::default()).expect("a scene");
         let sun = reading.scene.sun.as_ref().and_then(document::Sun::angles_deg).expect("a sun");
         assert!((sun.0 - zenith).abs() < 2e-4 && (sun.1 - azimuth).abs() < 2e-4, "{name}: {sun:?}");
     }

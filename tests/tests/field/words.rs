@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use sunfleck::document::{Options, read_file};
+use sunfleck::document::{ReadOptions, read_file};
 use sunfleck::run::SceneWorld;
 
 /// Heights of 10 x 8 cells of 10 m, whose corner lies at (432100, 5412300), 410 m high.
@@ -38,7 +38,8 @@ const FRAME: &str = "frame: (origin_m: (432100.0, 5412300.0, 410.0)),";
 fn told(folder: &Path, text: &str) -> String {
     let file = folder.join("scene.ron");
     fs::write(&file, text).expect("a scene");
-    let reading = read_file(&file, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let reading =
+        read_file(&file, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
     if !reading.is_sound() {
         return reading.render();
     }

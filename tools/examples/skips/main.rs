@@ -92,12 +92,12 @@ impl Run {
 
 /// What a scene measures, with this factor on its samples.
 fn measure(text: &str, folder: &Path, quality: f64) -> anyhow::Result<Report> {
-    let reading = document::read_text("skips.ron", text, &document::Options::default())?;
+    let reading = document::read_text("skips.ron", text, &document::ReadOptions::default())?;
     if !reading.is_sound() {
         bail!(reading.render());
     }
     let options = run::Options { quality, ..run::Options::default() };
-    run::run(&reading.scene, folder, &options, &run::Unwatched)
+    run(&reading.scene, folder, &options, &run::Unwatched)
         .map_err(|failure| failure.with_source(&reading.source).into())
 }
 

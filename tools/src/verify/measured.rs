@@ -19,11 +19,11 @@ pub(super) const THERMAL_NM: [f64; 3] = [10_000.0, 10_500.0, 11_000.0];
 /// What a scene of these keys measures; it may name no file.
 pub(super) fn measure(keys: &str) -> anyhow::Result<Report> {
     let text = format!("Scene(\nformat: 1,\n{keys}\n)");
-    let reading = document::read_text("verify.ron", &text, &document::Options::default())?;
+    let reading = document::read_text("verify.ron", &text, &document::ReadOptions::default())?;
     if !reading.is_sound() {
         bail!(reading.render());
     }
-    run::run(&reading.scene, Path::new(""), &run::Options::default(), &run::Unwatched)
+    run(&reading.scene, Path::new(""), &run::Options::default(), &run::Unwatched)
         .map_err(|failure| failure.with_source(&reading.source).into())
 }
 

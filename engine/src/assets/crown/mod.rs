@@ -70,10 +70,10 @@ pub struct CrownSpec {
 }
 
 impl CrownSpec {
-    /// The crown that a scene's mesh describes, if it is one.
+    /// Shape of the crown that a scene describes.
     #[must_use]
-    pub fn from_document(mesh: &document::Mesh) -> Option<Self> {
-        let document::Mesh::Crown {
+    pub fn from_document(crown: &document::GeneratedCrown) -> Self {
+        let document::GeneratedCrown {
             shape,
             base_m,
             leaf_area_m2,
@@ -87,11 +87,8 @@ impl CrownSpec {
             branches,
             seed,
             ..
-        } = mesh
-        else {
-            return None;
-        };
-        Some(Self {
+        } = crown;
+        Self {
             shape: shape.clone(),
             base_m: *base_m,
             leaf_area_m2: *leaf_area_m2,
@@ -104,7 +101,7 @@ impl CrownSpec {
             trunk: trunk.clone(),
             branches: branches.clone(),
             seed: *seed,
-        })
+        }
     }
 
     /// Returns whether the place of each leaf is independent of all others.

@@ -1,21 +1,22 @@
 //! Sensors that take images.
 
 use super::super::diagnostic::unknown_name;
-use super::super::scene::{Cover, FisheyeProjection, Look, Picture, Scene, Sensor, Terrain};
+use super::super::scene::{
+    Cover, Fisheye, FisheyeProjection, ImageOptions, Look, Orthographic, Perspective, Picture,
+    Scene, Terrain, TerrainPlane,
+};
 use super::Report;
 use super::pixels::{check_pixels, check_size};
-use super::plane::check_plane;
 
 type Point = (f64, f64, f64);
 
 pub(super) fn check_orthographic(
     path: &str,
-    sensor: &Sensor,
+    sensor: &Orthographic,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let Sensor::Orthographic {
-        until: _,
+    let Orthographic {
         size_px,
         pixel_m,
         extent_m,
@@ -25,15 +26,9 @@ pub(super) fn check_orthographic(
         azimuth_deg,
         samples_per_px,
         samples_per_m2,
-        measure: _,
-        picture,
-        virtual_plane,
-        system: _,
-    } = sensor
-    else {
-        return;
-    };
-    check_plane(path, virtual_plane.as_ref(), scene, report);
+        image: ImageOptions { picture, .. },
+        virtual_plane: _,
+    } = sensor;
     let at = |key: &str| format!("{path}.{key}");
     check_pixels(path, *size_px, *pixel_m, *extent_m, scene, report);
     check_picture(path, picture, scene, report);
@@ -92,12 +87,11 @@ pub(super) fn check_orthographic(
 
 pub(super) fn check_perspective(
     path: &str,
-    sensor: &Sensor,
+    sensor: &Perspective,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let Sensor::Perspective {
-        until: _,
+    let Perspective {
         size_px,
         position_m,
         target_m,
@@ -106,13 +100,8 @@ pub(super) fn check_perspective(
         above_ground,
         sees_sky: _,
         samples_per_px,
-        measure: _,
-        picture,
-        system: _,
-    } = sensor
-    else {
-        return;
-    };
+        image: ImageOptions { picture, .. },
+    } = sensor;
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
@@ -141,9 +130,8 @@ pub(super) fn check_perspective(
     }
 }
 
-pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
-    let Sensor::Fisheye {
-        until: _,
+pub(super) fn check_fisheye(path: &str, sensor: &Fisheye, scene: &Scene, report: &mut Report<'_>) {
+    let Fisheye {
         size_px,
         position_m,
         look,
@@ -153,13 +141,8 @@ pub(super) fn check_fisheye(path: &str, sensor: &Sensor, scene: &Scene, report: 
         above_ground,
         sees_sky: _,
         samples_per_px,
-        measure: _,
-        picture,
-        system: _,
-    } = sensor
-    else {
-        return;
-    };
+        image: ImageOptions { picture, .. },
+    } = sensor;
     check_size(path, *size_px, scene, report);
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
@@ -260,9 +243,9 @@ fn check_position(
     report.finite(&path, &[x, y, z]);
     let ground = match &scene.terrain {
         _ if above_ground => 0.0,
-        Terrain::Plane { height_m, .. } => *height_m,
+        Terrain::Plane(TerrainPlane { height_m, .. }) => *height_m,
         // Known only when its file is read.
-        Terrain::Raster { .. } | Terrain::Mesh { .. } => return,
+        Terrain::Raster(_) | Terrain::Mesh { .. } => return,
     };
     if z <= ground && report.is_readable("terrain") {
         let message =

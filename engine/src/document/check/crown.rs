@@ -3,20 +3,19 @@
 use std::ops::RangeInclusive;
 
 use super::super::scene::{
-    Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Mesh, Scene, Trunk,
+    Branches, Clumps, CrownShape, GeneratedCrown, LeafAngle, LeafProfile, LeafShape, Trunk,
 };
 use super::Report;
-use super::mesh::check_material;
 
-pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut Report<'_>) {
-    let Mesh::Crown {
+pub(super) fn check_crown(path: &str, crown: &GeneratedCrown, report: &mut Report<'_>) {
+    let GeneratedCrown {
         shape,
         base_m,
         leaf_area_m2,
         leaf_profile,
         clumps,
         leaf,
-        leaf_material,
+        leaf_material: _,
         trunk,
         branches,
         wood_material,
@@ -24,10 +23,7 @@ pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut 
         overlap: _,
         min_distance_m,
         seed: _,
-    } = crown
-    else {
-        return;
-    };
+    } = crown;
     check_shape(&format!("{path}.shape"), shape, report);
     check_leaf(&format!("{path}.leaf"), leaf, report);
     check_angle(&format!("{path}.leaf_angle"), leaf_angle, report);
@@ -38,8 +34,7 @@ pub(super) fn check_crown(path: &str, crown: &Mesh, scene: &Scene, report: &mut 
     report.finite(&format!("{path}.base_m"), &[*base_m]);
     report.at_least(&format!("{path}.min_distance_m"), *min_distance_m, 0.0);
     report.at_least(&format!("{path}.leaf_area_m2"), *leaf_area_m2, 0.0);
-    check_material(path, "leaf_material", leaf_material, scene, report);
-    check_wood(path, trunk.as_ref(), branches.as_ref(), wood_material.as_deref(), scene, report);
+    check_wood(path, trunk.as_ref(), branches.as_ref(), wood_material.is_some(), report);
 }
 
 fn check_shape(path: &str, shape: &CrownShape, report: &mut Report<'_>) {
@@ -187,8 +182,7 @@ fn check_wood(
     path: &str,
     trunk: Option<&Trunk>,
     branches: Option<&Branches>,
-    wood_material: Option<&str>,
-    scene: &Scene,
+    has_material: bool,
     report: &mut Report<'_>,
 ) {
     if let Some(trunk) = trunk {
@@ -224,13 +218,10 @@ fn check_wood(
             report.error(&at, "branches grow from a trunk, and there is none", help);
         }
     }
-    match wood_material {
-        Some(material) => check_material(path, "wood_material", material, scene, report),
-        None if (trunk.is_some() || branches.is_some()) && report.is_whole(path) => {
-            let message = "this crown has wood, but no `wood_material`";
-            report.error(path, message, "write, for example, `wood_material: \"bark\"`");
-        }
-        None => {}
+    let has_wood = trunk.is_some() || branches.is_some();
+    if has_wood && !has_material && report.is_whole(path) {
+        let message = "this crown has wood, but no `wood_material`";
+        report.error(path, message, "write, for example, `wood_material: \"bark\"`");
     }
 }
 

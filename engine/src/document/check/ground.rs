@@ -1,8 +1,7 @@
 //! The frame and the terrain.
 
-use super::super::scene::{LandCover, NoData, RasterWindow, Scene, Terrain};
+use super::super::scene::{NoData, RasterWindow, Scene, Terrain, TerrainPlane, TerrainRaster};
 use super::Report;
-use super::mesh::check_material;
 
 pub(super) fn check_frame(scene: &Scene, report: &mut Report<'_>) {
     let (x, y, z) = scene.frame.origin_m;
@@ -11,12 +10,11 @@ pub(super) fn check_frame(scene: &Scene, report: &mut Report<'_>) {
 
 pub(super) fn check_terrain(scene: &Scene, report: &mut Report<'_>) {
     match &scene.terrain {
-        Terrain::Plane { size_m, material, corner_m, height_m } => {
+        Terrain::Plane(TerrainPlane { size_m, material: _, corner_m, height_m }) => {
             check_rectangle(Some(*size_m), Some(*corner_m), report);
             report.finite("terrain.height_m", &[*height_m]);
-            check_material("terrain", "material", material, scene, report);
         }
-        Terrain::Raster {
+        Terrain::Raster(TerrainRaster {
             material,
             land_cover,
             tolerance_m,
@@ -27,7 +25,7 @@ pub(super) fn check_terrain(scene: &Scene, report: &mut Report<'_>) {
             window,
             height_unit_m,
             ..
-        } => {
+        }) => {
             if let Some(RasterWindow { corner_m: (x, y), size_m: (width, height) }) = window {
                 report.finite("terrain.window.corner_m", &[*x, *y]);
                 report.above_zero("terrain.window.size_m[0]", *width);
@@ -47,10 +45,9 @@ pub(super) fn check_terrain(scene: &Scene, report: &mut Report<'_>) {
             if let NoData::Height(height) = no_data {
                 report.finite("terrain.no_data", &[*height]);
             }
-            check_covering(material.as_deref(), land_cover.as_ref(), scene, report);
+            check_covering(material.is_some(), land_cover.is_some(), report);
         }
-        Terrain::Mesh { mesh, at_m: (x, y, z) } => {
-            report.name("terrain.mesh", "mesh", mesh, &scene.meshes, "meshes");
+        Terrain::Mesh { mesh: _, at_m: (x, y, z) } => {
             report.finite("terrain.at_m", &[*x, *y, *z]);
         }
     }
@@ -67,29 +64,17 @@ fn check_rectangle(size: Option<(f64, f64)>, corner: Option<(f64, f64)>, report:
 }
 
 /// One material or one for each class.
-fn check_covering(
-    material: Option<&str>,
-    cover: Option<&LandCover>,
-    scene: &Scene,
-    report: &mut Report<'_>,
-) {
-    match (material, cover) {
-        (Some(material), None) => check_material("terrain", "material", material, scene, report),
-        (None, Some(cover)) => {
-            for (class, material) in &cover.classes {
-                let key = format!("classes.{class}");
-                check_material("terrain.land_cover", &key, material, scene, report);
-            }
-        }
-        (Some(_), Some(_)) => {
+fn check_covering(has_material: bool, has_land_cover: bool, report: &mut Report<'_>) {
+    match (has_material, has_land_cover) {
+        (true, true) => {
             let message = "the ground has both a `material` and a `land_cover`";
             report.error("terrain.material", message, "take one of the two out");
         }
-        (None, None) if report.is_whole("terrain") => {
+        (false, false) if report.is_whole("terrain") => {
             let help = "write `material: \"soil\"`, or `land_cover: (file: \"classes.asc\", \
                         classes: { \"1\": \"soil\" })`";
             report.error("terrain", "the ground has no material", help);
         }
-        (None, None) => {}
+        _ => {}
     }
 }

@@ -1,9 +1,11 @@
 //! What stands on the ground.
 
+use indexmap::IndexMap;
+
 use super::super::diagnostic::{Diagnostic, suggestion};
 use super::super::scene::{
-    Area, Distribution, INSTANCE_COLUMNS, Instances, Map, Rule, Scene, SpeciesMeshes, Stems,
-    meant_column,
+    Area, CanopyHeights, Distribution, INSTANCE_COLUMNS, InstanceList, InstanceTable, Instances,
+    Mesh, Ref, Rule, Scatter, Scene, SpeciesMeshes, Stems, meant_column,
 };
 use super::{Report, count};
 
@@ -12,14 +14,16 @@ pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
         let path = format!("instances[{index}]");
         check_name(scene, index, instances.name(), &path, report);
         match instances {
-            Instances::Table { of, columns, .. } => {
-                check_meshes(scene, of, &path, report);
+            Instances::Table(InstanceTable { of, columns, .. }) => {
+                if matches!(of, SpeciesMeshes::BySpecies(meshes) if meshes.is_empty()) {
+                    let help = "write, for example, `of: { \"birch\": \"birch.tree\" }`";
+                    report.error(&format!("{path}.of"), "no species has a mesh", help);
+                }
                 if let Some(columns) = columns {
                     check_columns(&format!("{path}.columns"), columns, report);
                 }
             }
-            Instances::List { of, at_m, yaw_deg, scale, .. } => {
-                report.name(&format!("{path}.of"), "mesh", of, &scene.meshes, "meshes");
+            Instances::List(InstanceList { at_m, yaw_deg, scale, .. }) => {
                 for (index, (x, y, z)) in at_m.iter().enumerate() {
                     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
                         let message = format!("expected finite numbers, found ({x}, {y}, {z})");
@@ -35,17 +39,19 @@ pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
                     }
                 }
             }
-            Instances::Scatter { .. } => check_scatter(scene, instances, &path, report),
-            Instances::CanopyHeights {
-                of, min_height_m, window, sink_m, height_unit_m, ..
-            } => {
+            Instances::Scatter(scatter) => check_scatter(scatter, &path, report),
+            Instances::CanopyHeights(CanopyHeights {
+                of,
+                min_height_m,
+                window,
+                sink_m,
+                height_unit_m,
+                ..
+            }) => {
                 if let Some(unit) = height_unit_m {
                     report.above_zero(&format!("{path}.height_unit_m"), *unit);
                 }
                 let at = format!("{path}.of");
-                for (index, name) in of.iter().enumerate() {
-                    report.name(&format!("{at}[{index}]"), "mesh", name, &scene.meshes, "meshes");
-                }
                 if of.is_empty() && report.is_whole(&at) {
                     let help = "write, for example, `of: [\"oak\", \"fir\"]`";
                     report.error(&at, "nothing would stand there", help);
@@ -77,8 +83,8 @@ fn check_name(
     }
 }
 
-fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Report<'_>) {
-    let Instances::Scatter {
+fn check_scatter(scatter: &Scatter, path: &str, report: &mut Report<'_>) {
+    let Scatter {
         of,
         rule,
         stems,
@@ -92,11 +98,8 @@ fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Re
         scale_vertical,
         sink_m,
         ..
-    } = scatter
-    else {
-        return;
-    };
-    check_shares(scene, of, &format!("{path}.of"), report);
+    } = scatter;
+    check_shares(of, &format!("{path}.of"), report);
     check_rule(rule, stems, path, report);
     for (key, areas) in [("inside", inside), ("outside", outside)] {
         for (index, area) in areas.iter().enumerate() {
@@ -131,7 +134,7 @@ fn check_scatter(scene: &Scene, scatter: &Instances, path: &str, report: &mut Re
     report.finite(&format!("{path}.sink_m"), &[*sink_m]);
 }
 
-fn check_shares(scene: &Scene, of: &Map<f64>, path: &str, report: &mut Report<'_>) {
+fn check_shares(of: &IndexMap<Ref<Mesh>, f64>, path: &str, report: &mut Report<'_>) {
     if of.is_empty() {
         let help = "write, for example, `of: { \"oak\": 0.7, \"birch\": 0.3 }`";
         report.error(path, "nothing would stand there", help);
@@ -139,7 +142,6 @@ fn check_shares(scene: &Scene, of: &Map<f64>, path: &str, report: &mut Report<'_
         report.error(path, "all shares are 0", "give at least one mesh a share above 0");
     }
     for (name, &share) in of {
-        report.name(&format!("{path}.{name}"), "mesh", name, &scene.meshes, "meshes");
         report.at_least(&format!("{path}.{name}"), share, 0.0);
     }
 }
@@ -295,23 +297,6 @@ fn check_count(path: &str, key: &str, values: usize, places: usize, report: &mut
         let message = format!("`{key}` has {values}, but `at_m` has {places}");
         let help = "write one for each place, or leave the key out";
         report.error(&format!("{path}.{key}"), message, help);
-    }
-}
-
-fn check_meshes(scene: &Scene, of: &SpeciesMeshes, path: &str, report: &mut Report<'_>) {
-    let path = format!("{path}.of");
-    match of {
-        SpeciesMeshes::One(mesh) => report.name(&path, "mesh", mesh, &scene.meshes, "meshes"),
-        SpeciesMeshes::BySpecies(meshes) if meshes.is_empty() => {
-            let help = "write, for example, `of: { \"birch\": \"birch.tree\" }`";
-            report.error(&path, "no species has a mesh", help);
-        }
-        SpeciesMeshes::BySpecies(meshes) => {
-            for (species, mesh) in meshes {
-                let path = format!("{path}.{species}");
-                report.name(&path, "mesh", mesh, &scene.meshes, "meshes");
-            }
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Mesh prototypes.
 
 use super::super::diagnostic::Diagnostic;
-use super::super::scene::{Map, Mesh, Scene};
+use super::super::scene::{Mesh, MeshFile, Scene};
 use super::Report;
 use super::crown::check_crown;
 
@@ -10,31 +10,15 @@ pub(super) fn check_meshes(scene: &Scene, report: &mut Report<'_>) {
     for (name, mesh) in &scene.meshes {
         let path = format!("meshes.{name}");
         match mesh {
-            Mesh::Obj { unit_m, parts, material, .. }
-            | Mesh::Gltf { unit_m, parts, material, .. } => {
-                report.above_zero(&format!("{path}.unit_m"), *unit_m);
-                check_parts(&path, parts, material.as_deref(), scene, report);
-            }
-            Mesh::Discs { material, .. } => {
-                check_material(&path, "material", material, scene, report);
-            }
-            Mesh::Faces { faces_m, material } => {
+            Mesh::Obj(obj) => check_file(&path, &obj.mesh_file(), report),
+            Mesh::Gltf(gltf) => check_file(&path, &gltf.mesh_file(), report),
+            Mesh::Discs { .. } => {}
+            Mesh::Faces { faces_m, .. } => {
                 check_faces(&format!("{path}.faces_m"), faces_m, report);
-                check_material(&path, "material", material, scene, report);
             }
-            Mesh::Crown { .. } => check_crown(&path, mesh, scene, report),
+            Mesh::Crown(crown) => check_crown(&path, crown, report),
         }
     }
-}
-
-pub(super) fn check_material(
-    path: &str,
-    key: &str,
-    material: &str,
-    scene: &Scene,
-    report: &mut Report<'_>,
-) {
-    report.name(&format!("{path}.{key}"), "material", material, &scene.materials, "materials");
 }
 
 /// Most corners of a polygon: cutting a concave one takes the square of them.
@@ -56,20 +40,9 @@ fn check_faces(path: &str, faces: &[Vec<(f64, f64, f64)>], report: &mut Report<'
     }
 }
 
-fn check_parts(
-    path: &str,
-    parts: &Map<String>,
-    material: Option<&str>,
-    scene: &Scene,
-    report: &mut Report<'_>,
-) {
-    for (part, material) in parts {
-        check_material(path, &format!("parts.{part}"), material, scene, report);
-    }
-    if let Some(material) = material {
-        check_material(path, "material", material, scene, report);
-    }
-    if parts.is_empty() && material.is_none() && report.is_whole(path) {
+fn check_file(path: &str, mesh: &MeshFile<'_>, report: &mut Report<'_>) {
+    report.above_zero(&format!("{path}.unit_m"), mesh.unit_m);
+    if mesh.parts.is_empty() && mesh.material.is_none() && report.is_whole(path) {
         let help = "write `material: \"leaf\"` for all of it, or `parts: { \"crown\": \"leaf\" }`";
         report.error(path, "this mesh has no material", help);
     }

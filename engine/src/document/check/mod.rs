@@ -16,6 +16,8 @@ mod system;
 mod thermal;
 
 use super::diagnostic::{Diagnostic, unknown_name};
+use super::leaves::{Leaf, visit_leaves};
+use super::path::path_of;
 use super::scene::{Map, Scene, Transport};
 
 pub(crate) use pixels::{rounded_up, too_many_pixels};
@@ -46,6 +48,7 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
     spectrum::check_bands(scene, &mut report);
     spectrum::check_spectra(scene, &mut report);
     spectrum::check_materials(scene, &mut report);
+    check_references(scene, &mut report);
     mesh::check_meshes(scene, &mut report);
     ground::check_frame(scene, &mut report);
     ground::check_terrain(scene, &mut report);
@@ -183,19 +186,24 @@ impl Report<'_> {
         }
     }
 
-    /// A name that must be defined, unless its definitions could not be read.
-    fn name<T>(&mut self, path: &str, kind: &str, name: &str, defined: &Map<T>, in_key: &str) {
-        if !defined.contains_key(name) && self.is_readable(in_key) && !self.is_lost(name) {
-            self.push(unknown_name(path, kind, name, defined.keys().map(String::as_str)));
-        }
-    }
-
     /// Names that their own definitions give.
     fn own_names<T>(&mut self, key: &str, kind: &str, defined: &Map<T>) {
         if defined.contains_key("") {
             self.error(key, format!("{kind} has no name"), "write a name between the quotes");
         }
     }
+}
+
+/// Checks that every name is that of a definition, unless definitions could not be read.
+fn check_references(scene: &Scene, report: &mut Report<'_>) {
+    visit_leaves(scene, &mut |steps, leaf| {
+        let Leaf::Reference { target, name } = leaf else { return };
+        let is_known = (target.is_defined)(scene, name);
+        if !is_known && report.is_readable(target.key) && !report.is_lost(name) {
+            let known = (target.names)(scene);
+            report.push(unknown_name(path_of(steps), target.kind, name, known));
+        }
+    });
 }
 
 /// `1 value`, `2 values`.

@@ -1,6 +1,6 @@
 //! Virtual planes.
 
-use super::super::scene::{Scene, Terrain, VirtualPlane};
+use super::super::scene::{Scene, Terrain, TerrainPlane, VirtualPlane};
 use super::Report;
 
 /// Beyond the terrain by less than this share of its extent is rounding.
@@ -24,7 +24,9 @@ pub(super) fn check_plane(
     if !report.is_whole("terrain") {
         return;
     }
-    let Terrain::Plane { size_m: terrain, corner_m, height_m: ground, .. } = &scene.terrain else {
+    let Terrain::Plane(TerrainPlane { size_m: terrain, corner_m, height_m: ground, .. }) =
+        &scene.terrain
+    else {
         // Where other terrain lies is known only when its file is read.
         return report.finite(&format!("{path}.height_m"), height_m.as_slice());
     };

@@ -1,6 +1,7 @@
 //! Lawful ranges of quantities: one table for all keys.
 
-use super::super::numbers::{Step, path_of, visit_numbers};
+use super::super::leaves::{Leaf, visit_leaves};
+use super::super::path::{Step, path_of};
 use super::super::scene::Scene;
 use super::Report;
 
@@ -125,7 +126,8 @@ fn shown(value: f64) -> String {
 /// Reports numbers beyond the range of their quantity where nothing else is wrong with them.
 pub(super) fn check_ranges(scene: &Scene, report: &mut Report<'_>) {
     let known: Vec<String> = report.found.iter().map(|one| one.path.clone()).collect();
-    visit_numbers(scene, &mut |steps, value| {
+    visit_leaves(scene, &mut |steps, leaf| {
+        let Leaf::Number(value) = leaf else { return };
         let problem = range_of(steps).map_or_else(
             || {
                 (!value.is_finite())
@@ -187,7 +189,7 @@ fn is_point(steps: &[Step<'_>]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::numbers::Step::{Index, Key, Name};
+    use super::super::super::path::Step::{Index, Key, Name};
     use super::{HEIGHT, IRRADIANCE, LENGTH, SCALE, TEMPERATURE, WAVELENGTH, range_of};
 
     #[test]

@@ -4,7 +4,7 @@ use std::mem::discriminant;
 
 use super::super::diagnostic::Diagnostic;
 use super::super::scene::{
-    ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, Terrain, Until, Views,
+    ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, Terrain, TerrainPlane, Until, Views,
 };
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
@@ -26,39 +26,38 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("sensors", "a sensor", &scene.sensors);
     for (name, sensor) in &scene.sensors {
         let path = format!("sensors.{name}");
+        let measure = format!("{path}.measure");
         if let Some(measures) = sensor.image_measures() {
-            check_components(&format!("{path}.measure"), measures, scene, report);
+            check_components(&measure, measures, scene, report);
             check_emission(&path, measures, scene, report);
         }
         check_until(&format!("{path}.until"), sensor, report);
         check_system(&path, sensor, scene, report);
+        check_plane(&path, sensor.virtual_plane(), scene, report);
         match sensor {
-            Sensor::Orthographic { measure, .. } => {
+            Sensor::Orthographic(sensor) => {
                 check_orthographic(&path, sensor, scene, report);
-                check_measures(&format!("{path}.measure"), measure, "Brf", report);
+                check_measures(&measure, &sensor.image.measure, "Brf", report);
             }
-            Sensor::Perspective { measure, .. } => {
+            Sensor::Perspective(sensor) => {
                 check_perspective(&path, sensor, scene, report);
-                check_measures(&format!("{path}.measure"), measure, "Radiance", report);
+                check_measures(&measure, &sensor.image.measure, "Radiance", report);
             }
-            Sensor::Fisheye { measure, .. } => {
+            Sensor::Fisheye(sensor) => {
                 check_fisheye(&path, sensor, scene, report);
-                check_measures(&format!("{path}.measure"), measure, "Radiance", report);
+                check_measures(&measure, &sensor.image.measure, "Radiance", report);
             }
-            Sensor::Directions { views, until: _, measure, virtual_plane, system: _ } => {
-                check_plane(&path, virtual_plane.as_ref(), scene, report);
-                check_views(&format!("{path}.views"), views, scene, report);
-                check_measures(&format!("{path}.measure"), measure, "Brf", report);
+            Sensor::Directions(sensor) => {
+                check_views(&format!("{path}.views"), &sensor.views, scene, report);
+                check_measures(&measure, &sensor.measure, "Brf", report);
             }
-            Sensor::Photons { per_m2, until: _, measure, virtual_plane, system: _ } => {
-                check_plane(&path, virtual_plane.as_ref(), scene, report);
-                report.above_zero(&format!("{path}.per_m2"), *per_m2);
-                let path = format!("{path}.measure");
-                check_measures(&path, measure, "Albedo", report);
-                for (index, one) in measure.iter().enumerate() {
-                    check_photon_measure(&format!("{path}[{index}]"), one, scene, report);
+            Sensor::Photons(sensor) => {
+                report.above_zero(&format!("{path}.per_m2"), sensor.per_m2);
+                check_measures(&measure, &sensor.measure, "Albedo", report);
+                for (index, one) in sensor.measure.iter().enumerate() {
+                    check_photon_measure(&format!("{measure}[{index}]"), one, scene, report);
                 }
-                check_photon_emission(&path, measure, scene, report);
+                check_photon_emission(&measure, &sensor.measure, scene, report);
             }
         }
     }
@@ -99,17 +98,10 @@ const MOST_SAMPLES: u64 = 1_000_000_000_000;
 fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
     let ends = sensor.until();
     let least = match sensor {
-        Sensor::Directions { .. } | Sensor::Photons { .. } => 32,
-        Sensor::Orthographic { .. } | Sensor::Perspective { .. } | Sensor::Fisheye { .. } => 2,
+        Sensor::Directions(_) | Sensor::Photons(_) => 32,
+        Sensor::Orthographic(_) | Sensor::Perspective(_) | Sensor::Fisheye(_) => 2,
     };
-    let is_written = match sensor {
-        Sensor::Directions { .. } => true,
-        Sensor::Orthographic { until, .. }
-        | Sensor::Perspective { until, .. }
-        | Sensor::Fisheye { until, .. }
-        | Sensor::Photons { until, .. } => until.is_some(),
-    };
-    if ends.is_empty() && is_written && report.is_readable(path) {
+    if ends.is_empty() && sensor.ends().is_some() && report.is_readable(path) {
         report.error(path, "nothing would end the measurement", "write `until: RelError(0.01)`");
     }
     for (index, end) in ends.iter().enumerate() {
@@ -176,7 +168,7 @@ fn check_photon_measure(
         PhotonMeasure::Fluxes { pixel_m, heights_m } => {
             report.above_zero(&format!("{path}.pixel_m"), *pixel_m);
             report.finite(&format!("{path}.heights_m"), heights_m);
-            if let Terrain::Plane { size_m, .. } = &scene.terrain
+            if let Terrain::Plane(TerrainPlane { size_m, .. }) = &scene.terrain
                 && let Some(problem) = check_maps(path, measure, scene.bands.len(), *size_m)
             {
                 report.push(problem);

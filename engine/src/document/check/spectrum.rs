@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::super::scene::{Band, Material, Scene, Spectrum};
+use super::super::scene::{Band, Leaf, Material, Prospect, Scene, Spectrum};
 use super::{Report, count};
 
 /// A spectrum may name one that names one, and so on, so often.
@@ -78,20 +78,10 @@ pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {
 pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("materials", "a material", &scene.materials);
     for (name, material) in &scene.materials {
-        if let Material::Leaf { reflectance, transmittance, .. } = material {
+        if let Material::Leaf(Leaf { reflectance, transmittance, .. }) = material {
             warn_two_leaves(name, [reflectance, transmittance], scene, report);
         }
-        let (keys, back) = match material {
-            Material::Lambertian { reflectance, back_reflectance, .. } => {
-                (vec![("reflectance", reflectance)], back_reflectance)
-            }
-            Material::Leaf { reflectance, transmittance, back_reflectance, .. } => (
-                vec![("reflectance", reflectance), ("transmittance", transmittance)],
-                back_reflectance,
-            ),
-        };
-        let back = back.iter().map(|back| ("back_reflectance", back));
-        for (key, spectrum) in keys.into_iter().chain(back) {
+        for (key, spectrum) in material.spectra() {
             let path = format!("materials.{name}.{key}");
             check_spectrum(&path, spectrum, Quantity::Fraction, scene, report);
         }
@@ -104,9 +94,8 @@ fn warn_two_leaves(name: &str, spectra: [&Spectrum; 2], scene: &Scene, report: &
         Spectrum::Named(name) => resolve(name, scene),
         other => Some(other),
     });
-    let are_leaves = [reflectance, transmittance]
-        .iter()
-        .all(|one| matches!(one, Some(Spectrum::Prospect { .. })));
+    let are_leaves =
+        [reflectance, transmittance].iter().all(|one| matches!(one, Some(Spectrum::Prospect(_))));
     if are_leaves && reflectance != transmittance {
         let message = "reflectance and transmittance are those of two different leaves";
         let help = "define the leaf once, `spectra: { \"leaf\": Prospect(..) }`, and write \
@@ -140,7 +129,7 @@ pub(super) fn check_spectrum(
                 value(report, &format!("{path}[{index}][1]"), *one);
             }
         }
-        Spectrum::Table { scale, .. } => report.above_zero(&format!("{path}.scale"), *scale),
+        Spectrum::Table(table) => report.above_zero(&format!("{path}.scale"), table.scale),
         Spectrum::AstmG173 => {
             if quantity == Quantity::Fraction {
                 let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
@@ -149,14 +138,13 @@ pub(super) fn check_spectrum(
             }
         }
         Spectrum::Named(name) => {
-            report.name(path, "spectrum", name, &scene.spectra, "spectra");
-            let is_leaf = matches!(resolve(name, scene), Some(Spectrum::Prospect { .. }));
+            let is_leaf = matches!(resolve(name, scene), Some(Spectrum::Prospect(_)));
             if quantity == Quantity::Irradiance && is_leaf {
                 refuse_leaf_as_light(path, report);
             }
         }
-        Spectrum::Prospect { .. } => {
-            check_prospect(path, spectrum, report);
+        Spectrum::Prospect(leaf) => {
+            check_prospect(path, leaf, report);
             if quantity == Quantity::Irradiance {
                 refuse_leaf_as_light(path, report);
             }
@@ -207,8 +195,8 @@ fn refuse_leaf_as_light(path: &str, report: &mut Report<'_>) {
     report.error(path, "`Prospect` is the spectrum of a leaf, not of light", help);
 }
 
-fn check_prospect(path: &str, spectrum: &Spectrum, report: &mut Report<'_>) {
-    let Spectrum::Prospect {
+fn check_prospect(path: &str, leaf: &Prospect, report: &mut Report<'_>) {
+    let Prospect {
         n,
         chlorophyll_ug_cm2,
         carotenoid_ug_cm2,
@@ -218,10 +206,7 @@ fn check_prospect(path: &str, spectrum: &Spectrum, report: &mut Report<'_>) {
         dry_matter_g_cm2,
         protein_g_cm2,
         carbon_g_cm2,
-    } = spectrum
-    else {
-        return;
-    };
+    } = leaf;
     report.at_least(&format!("{path}.n"), *n, 1.0);
     let contents = [
         ("chlorophyll_ug_cm2", chlorophyll_ug_cm2),
@@ -265,7 +250,7 @@ fn resolve<'a>(name: &str, scene: &'a Scene) -> Option<&'a Spectrum> {
     let mut spectrum = scene.spectra.get(name)?;
     for _ in 0..CHAIN {
         match spectrum {
-            Spectrum::Named(next) => spectrum = scene.spectra.get(next)?,
+            Spectrum::Named(next) => spectrum = next.find(scene)?,
             _ => return Some(spectrum),
         }
     }
@@ -279,7 +264,7 @@ fn check_chain(start: usize, path: &str, scene: &Scene, report: &mut Report<'_>)
     while let Some((name, Spectrum::Named(next))) = scene.spectra.get_index(at) {
         chain.push(format!("`{name}`"));
         let help = "give one of them values of its own";
-        match scene.spectra.get_index_of(next) {
+        match scene.spectra.get_index_of(next.as_str()) {
             Some(next) if next == start => {
                 let message = match chain.as_slice() {
                     [own] => format!("the spectrum {own} names itself"),

@@ -1,12 +1,12 @@
 //! Transport systems: which sensor can be measured by which.
 
-use super::super::scene::{ImageMeasure, Scene, Sensor, System};
+use super::super::scene::{ImageMeasure, Photons, Scene, Sensor, System};
 use super::Report;
 
 /// Whether a sensor can be measured by the system that it asks for.
 pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
     let Some(system) = sensor.system() else { return };
-    if let Sensor::Photons { measure, .. } = sensor
+    if let Sensor::Photons(Photons { measure, .. }) = sensor
         && system == System::Analog
     {
         let views = measure.iter().position(|measure| !measure.is_measured_by(system));
@@ -56,11 +56,11 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
         return;
     }
     let (message, help) = match (sensor, system) {
-        (Sensor::Photons { .. }, _) => (
+        (Sensor::Photons(_), _) => (
             "photons come from the sources of light",
             "write `system: Forward` or `system: Analog`",
         ),
-        (Sensor::Perspective { .. } | Sensor::Fisheye { .. }, System::Forward) => (
+        (Sensor::Perspective(_) | Sensor::Fisheye(_), System::Forward) => (
             "photon packets never meet the one point that this camera looks from",
             "take `system: Forward` out; only orthographic images can be drawn forward",
         ),

@@ -108,7 +108,7 @@ pub(super) fn needs_light(scene: &Scene) -> bool {
     };
     scene.sensors.is_empty()
         || scene.sensors.values().any(|sensor| match sensor {
-            Sensor::Photons { measure, .. } => measure.iter().any(of_photons),
+            Sensor::Photons(photons) => photons.measure.iter().any(of_photons),
             other => other.image_measures().into_iter().flatten().any(of_band),
         })
 }

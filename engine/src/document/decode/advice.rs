@@ -1,7 +1,7 @@
 //! Advice for values of the wrong kind that tell what is meant.
 
 use super::super::params::{entries, key};
-use super::super::syntax::{Node, Value};
+use super::super::ron_text::{Node, Value};
 use super::Reader;
 
 /// Names of other programs for choices of the scene language: what is expected, the other name in small

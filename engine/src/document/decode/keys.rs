@@ -2,7 +2,8 @@
 
 use super::super::diagnostic::{nearest, suggestion};
 use super::super::params::plain_number;
-use super::super::syntax::{Field, Node, Span, Step, Value};
+use super::super::path::Step;
+use super::super::ron_text::{Field, Node, Span, Value};
 use super::advice::other_name;
 use super::{Decode, ERRORS, Reader};
 
@@ -100,43 +101,38 @@ impl<'a> Fields<'a> {
         self.unknown().take(ERRORS).any(|field| nearest(&field.name, known()) == Some(name))
     }
 
-    pub(in super::super) fn required<T: Decode>(
+    /// Value of a key; its default, or an error where there is none, if it is missing.
+    pub(in super::super) fn key<T: Decode>(
         &self,
         name: &'static str,
+        default: Option<T>,
         example: Option<&'static str>,
         reader: &mut Reader<'a>,
     ) -> T {
-        reader.within(Step::Key(name), |reader| match self.find(name) {
-            Some(field) => reader.by_example(example, |reader| T::decode(&field.value, reader)),
-            // Under a name like this one it is there, and that has been reported.
-            None if self.is_misspelt(name) || self.may_be_lost(reader) => {
-                reader.mark_broken();
-                T::placeholder()
+        // The example of a key with a default is for its owner.
+        let example = if default.is_some() { None } else { example };
+        reader.within(Step::Key(name), |reader| {
+            if let Some(field) = self.find(name) {
+                return reader.by_example(example, |reader| T::decode(&field.value, reader));
             }
-            None => {
+            let is_lost = self.may_be_lost(reader);
+            if let Some(default) = default {
+                if is_lost {
+                    reader.mark_broken();
+                }
+                return default;
+            }
+            // Under a name like this one it is there, and that has been reported.
+            if is_lost || self.is_misspelt(name) {
+                reader.mark_broken();
+            } else {
                 let message = format!("{} lacks the key `{name}`", self.owner);
                 let example = example.map_or_else(T::example, str::to_owned);
                 let help = format!("write, for example, `{name}: {example}`");
                 reader.error(self.head, message, Some(help));
-                T::placeholder()
             }
+            T::placeholder()
         })
-    }
-
-    pub(in super::super) fn optional<T: Decode>(
-        &self,
-        name: &'static str,
-        default: impl FnOnce() -> T,
-        reader: &mut Reader<'a>,
-    ) -> T {
-        match self.find(name) {
-            Some(field) => reader.within(Step::Key(name), |reader| T::decode(&field.value, reader)),
-            None if self.may_be_lost(reader) => {
-                reader.within(Step::Key(name), Reader::mark_broken);
-                default()
-            }
-            None => default(),
-        }
     }
 
     /// Whether a key that is missing may stand in a file that could not be included.
@@ -246,11 +242,4 @@ impl<'a> Variant<'a> {
         reader.error(self.name_span, message, Some(help));
         T::placeholder()
     }
-}
-
-/// `(zenith_deg: 30.0)` from keys and examples.
-pub(in super::super) fn example_of_keys(keys: &[Option<(&'static str, String)>]) -> String {
-    let keys: Vec<_> =
-        keys.iter().flatten().map(|(name, example)| format!("{name}: {example}")).collect();
-    format!("({})", keys.join(", "))
 }

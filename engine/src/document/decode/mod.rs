@@ -7,13 +7,15 @@ mod plain;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-pub(super) use keys::{Fields, Variant, example_of_keys};
+pub(super) use keys::{Fields, Variant};
+pub(super) use plain::MapKey;
 
 use super::describe::Book;
 use super::diagnostic::{Diagnostic, Place};
+use super::path::{Step, path_of};
+use super::ron_text::{Node, Span, Value};
 use super::scene::Param;
 use super::source::Source;
-use super::syntax::{Node, Span, Step, Value, path_of};
 
 /// No more errors than this are kept: nobody reads them.
 const ERRORS: usize = 100;
@@ -23,8 +25,6 @@ const BROKEN: usize = 1000;
 
 /// A type that can be read from the tree.
 pub(super) trait Decode: Sized {
-    /// Keys of a record.
-    const KEYS: &'static [&'static str] = &[];
     /// Whether its values stand in parentheses of their own; those of a variant serve as well.
     const IS_TUPLE: bool = false;
 
@@ -159,9 +159,9 @@ impl<'a> Reader<'a> {
         self.source.namespace(node.span)
     }
 
-    /// What the names and the paths of a node's file start with.
-    pub(super) fn file_of(&self, node: &Node) -> (&'a str, &'a str) {
-        (self.source.namespace(node.span), self.source.folder(node.span))
+    /// What the paths of a node's file start with: nothing, or `species/`.
+    pub(super) fn folder(&self, node: &Node) -> &'a str {
+        self.source.folder(node.span)
     }
 
     pub(super) fn place_of(&self, span: Span) -> Place {

@@ -1,13 +1,16 @@
 //! Numbers, strings, lists, maps and tuples.
 
 use std::borrow::Cow;
+use std::hash::Hash;
 
 use indexmap::IndexMap;
 use serde_json::json;
 
 use super::super::describe::Book;
+use super::super::leaves::Leaf;
+use super::super::path::Step;
+use super::super::ron_text::{Node, Value, decimal_advice};
 use super::super::scene::Param;
-use super::super::syntax::{Node, Step, Value, decimal_advice};
 use super::{Decode, Reader};
 
 impl Decode for f64 {
@@ -223,7 +226,31 @@ impl<T: Decode> Decode for Vec<T> {
     }
 }
 
-impl<T: Decode> Decode for IndexMap<String, T> {
+/// Key of a map.
+pub(in super::super) trait MapKey: Hash + Eq + Sized {
+    /// The key that is written as this name.
+    fn of_node(name: &str, node: &Node, reader: &Reader<'_>) -> Self;
+
+    /// The key as a name.
+    fn as_name(&self) -> &str;
+
+    /// What the key means beyond itself.
+    fn leaf(&self) -> Option<Leaf<'_>> {
+        None
+    }
+}
+
+impl MapKey for String {
+    fn of_node(name: &str, _: &Node, _: &Reader<'_>) -> Self {
+        name.to_owned()
+    }
+
+    fn as_name(&self) -> &str {
+        self
+    }
+}
+
+impl<K: MapKey, T: Decode> Decode for IndexMap<K, T> {
     fn expected() -> Cow<'static, str> {
         "a map `{..}`".into()
     }
@@ -254,7 +281,7 @@ impl<T: Decode> Decode for IndexMap<String, T> {
                 continue;
             };
             let value = reader.within(Step::Key(name), |reader| T::decode(value, reader));
-            map.insert(name.clone(), value);
+            map.insert(K::of_node(name, key, reader), value);
         }
         map
     }

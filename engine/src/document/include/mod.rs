@@ -5,21 +5,21 @@
 //! where no file closer to the scene has it. What stands closer to the scene always goes first.
 
 mod names;
-
-pub(super) use names::Role;
-#[cfg(test)]
-pub(super) use names::is_reference;
+mod pass;
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::decode::{Decode as _, Reader};
-use super::diagnostic::{Diagnostic, unknown_name};
-use super::params::{entries, key, plain, plain_number};
+use super::diagnostic::Diagnostic;
+use super::params::plain_number;
+use super::path::Step;
 use super::read::{FILE_SIZE, ReadError, text_of_file};
+use super::ron_text::{Field, Node, Span, Value, parse};
 use super::scene::{Include, Map, Scene};
+use super::schema::ReadKeys as _;
 use super::source::Source;
-use super::syntax::{Field, Node, Span, Step, Value, parse};
+use pass::{Passed, simplify};
 
 /// Files may include others so deep.
 const DEPTH: usize = 32;
@@ -56,9 +56,6 @@ pub(super) fn include(tree: &mut Node, source: &mut Source) -> Included {
     }
     including.included
 }
-
-/// Parameters that an include passes, by name.
-type Passed = Vec<(Node, Node)>;
 
 /// A file that is being included.
 struct Link {
@@ -206,7 +203,7 @@ impl Including<'_> {
             self.refuse_repeated(&repeated);
             inner
         });
-        names::qualify(&mut tree, namespace, &folder);
+        names::qualify(&mut tree, namespace);
         self.pass(&mut tree, include, passed, entry, namespace)?;
         let fields = fields(&mut tree).map(std::mem::take)?;
         self.merge(fields, namespace, scene);
@@ -214,70 +211,6 @@ impl Including<'_> {
             self.chain.push(link);
             self.entries(&inner, namespace, scene);
             self.chain.pop();
-        }
-        Some(())
-    }
-
-    /// Gives the parameters of an included file the values of its variant and of its include.
-    fn pass(
-        &mut self,
-        tree: &mut Node,
-        include: &Include,
-        mut passed: Passed,
-        entry: &Node,
-        namespace: &str,
-    ) -> Option<()> {
-        let at = format!("include.{}", namespace.trim_end_matches('.'));
-        if let Some(name) = &include.variant {
-            let full = format!("{namespace}{name}");
-            let Some((_, variant)) =
-                entries(key(tree, "variants")).find(|(variant, _)| *variant == full)
-            else {
-                let own = entries(key(tree, "variants"));
-                let own = own.map(|(name, _)| bare(name, namespace));
-                let error = unknown_name(format!("{at}.variant"), "variant", name, own);
-                let error = error.at(self.source.place_of(entry.span));
-                self.included.diagnostics.push(Diagnostic {
-                    message: format!("no variant `{name}` in {}", include.file),
-                    help: error.help.map(|help| help.replace("this scene", "that file")),
-                    ..error
-                });
-                return None;
-            };
-            if let Value::Map(changes) = &variant.inner().value {
-                let changes = changes.iter().filter(|(_, value)| plain(value).is_some());
-                passed.extend(changes.cloned().map(|(mut key, value)| {
-                    if let Value::Text(name) = &mut key.value {
-                        *name = bare(name, namespace).to_owned();
-                    }
-                    (key, value)
-                }));
-            }
-        }
-        let own: Vec<String> = entries(key(tree, "params"))
-            .map(|(name, _)| bare(name, namespace).to_owned())
-            .collect();
-        for (key, _) in &passed {
-            let Value::Text(name) = &key.value else { continue };
-            if !own.contains(name) {
-                let path = format!("{at}.params.{name}");
-                let error = unknown_name(path, "parameter", name, own.iter().map(String::as_str));
-                let message = format!("no parameter `{name}` in {}", include.file);
-                let help = error.help.map(|help| help.replace("this scene", "that file"));
-                let place = self.source.place_of(key.span);
-                let error = Diagnostic { message, help, ..error }.at(place);
-                self.included.diagnostics.push(error);
-            }
-        }
-        let params = fields(tree)?.iter_mut().find(|field| field.name == "params");
-        if let Some(Field { value: Node { value: Value::Map(params), .. }, .. }) = params {
-            for (key, value) in params {
-                let Value::Text(name) = &key.value else { continue };
-                let given = |(key, _): &&(Node, Node)| matches!(&key.value, Value::Text(given) if given == bare(name, namespace));
-                if let Some((_, given)) = passed.iter().find(given) {
-                    *value = given.clone();
-                }
-            }
         }
         Some(())
     }
@@ -359,43 +292,6 @@ fn take_includes(tree: &mut Node) -> Option<(Node, Vec<Span>)> {
     let mut taken = fields.extract_if(.., |field| field.name == "include");
     let includes = taken.next()?.value;
     Some((includes, taken.map(|field| field.name_span).collect()))
-}
-
-/// Each file by its name, where it stands, and the parameters that are passed to it. Leaves what the
-/// decoder can read: formulas have their place in the tree, not here.
-fn simplify(includes: &mut Node) -> Vec<(String, Node, Passed)> {
-    let mut found = Vec::new();
-    let Value::Map(map) = &mut includes.value else { return found };
-    for (key, node) in map {
-        let Value::Text(name) = &key.value else { continue };
-        let mut passed = Vec::new();
-        let mut place = node.clone();
-        if let Value::Text(_) | Value::Formula(_) = node.value {
-            let name = "file".to_owned();
-            let file = Field { name, name_span: node.span, value: node.clone() };
-            node.value = Value::Record(vec![file]);
-        } else if let Value::Record(fields) = &mut node.value {
-            if let Some(file) = fields.iter().find(|field| field.name == "file") {
-                place = file.value.clone();
-            }
-            let params = fields.iter_mut().find(|field| field.name == "params");
-            if let Some(Field { value: Node { value: Value::Map(params), .. }, .. }) = params {
-                passed.clone_from(params);
-                for (_, value) in params {
-                    if let Value::Formula(_) = value.value {
-                        value.value = Value::Float(0.0);
-                    }
-                }
-            }
-        }
-        found.push((name.clone(), place, passed));
-    }
-    found
-}
-
-/// A name as the file itself has it.
-fn bare<'a>(name: &'a str, namespace: &str) -> &'a str {
-    name.strip_prefix(namespace).unwrap_or(name)
 }
 
 /// What tells a file from all others, however it is called.

@@ -1,11 +1,5 @@
 //! Trees and shrubs that are generated leaf by leaf.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
-
 choice! {
     /// Outline of a generated crown.
     pub enum CrownShape ("a crown shape") {

@@ -1,61 +1,66 @@
 //! The ground.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
-use super::Map;
+use super::{FilePath, Map, Material, Mesh, Ref};
 
 choice! {
     /// The ground.
     #[expect(clippy::large_enum_variant, reason = "a scene has one")]
     pub enum Terrain ("a terrain") {
         /// Horizontal rectangle.
-        Plane {
-            /// Extent to the east and to the north, m.
-            size_m: (f64, f64) => "(100.0, 100.0)",
-            /// Material.
-            material: String => r#""soil""#,
-            /// South-west corner, m.
-            corner_m: (f64, f64) = (0.0, 0.0),
-            /// Height, m.
-            height_m: f64 = 0.0,
-        },
+        Plane(..TerrainPlane),
         /// Heights from a file: ESRI ASCII grid, ENVI or `GeoTIFF`. It lies where the file says, less
         /// the frame's origin.
-        Raster {
-            /// Path, relative to the scene file.
-            file: String => r#""dem.asc""#,
-            /// Material of all of it.
-            material: Option<String> => r#""soil""# = None,
-            /// Materials by class, in place of `material`.
-            land_cover: Option<LandCover> = None,
-            /// How far the ground may lie above or below a cell's height, m; 0 keeps every cell.
-            tolerance_m: f64 = 0.0,
-            /// What the coordinates are, where the file does not say; degrees are refused without it.
-            coordinates: Option<Coordinates> = None,
-            /// Part of the raster that is read, to whole cells; all of it if left out.
-            window: Option<RasterWindow> = None,
-            /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
-            /// for feet. Without it, heights that the file says are in feet become metres.
-            height_unit_m: Option<f64> => "0.01" = None,
-            /// What becomes of cells without data.
-            no_data: NoData = NoData::Refuse,
-            /// South-west corner, m, in place of the file's.
-            corner_m: Option<(f64, f64)> = None,
-            /// Extent to the east and to the north, m, in place of the file's.
-            size_m: Option<(f64, f64)> = None,
-            /// Height of the lowest cell, m, in place of the file's.
-            lowest_m: Option<f64> = None,
-        },
+        Raster(..TerrainRaster),
         /// A mesh, whose rectangle is the one around it.
         Mesh {
             /// Its name among `meshes`.
-            mesh: String => r#""hill""#,
+            mesh: Ref<Mesh> => r#""hill""#,
             /// Where its origin lies, m.
             at_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
         },
+    }
+}
+
+record! {
+    /// Horizontal rectangle of ground.
+    pub struct TerrainPlane ("a level terrain") {
+        /// Extent to the east and to the north, m.
+        size_m: (f64, f64) => "(100.0, 100.0)",
+        /// Material.
+        material: Ref<Material> => r#""soil""#,
+        /// South-west corner, m.
+        corner_m: (f64, f64) = (0.0, 0.0),
+        /// Height, m.
+        height_m: f64 = 0.0,
+    }
+}
+
+record! {
+    /// Terrain from a raster of heights.
+    pub struct TerrainRaster ("a terrain from a raster") {
+        /// Path, relative to the scene file.
+        file: FilePath => r#""dem.asc""#,
+        /// Material of all of it.
+        material: Option<Ref<Material>> => r#""soil""# = None,
+        /// Materials by class, in place of `material`.
+        land_cover: Option<LandCover> = None,
+        /// How far the ground may lie above or below a cell's height, m; 0 keeps every cell.
+        tolerance_m: f64 = 0.0,
+        /// What the coordinates are, where the file does not say; degrees are refused without it.
+        coordinates: Option<Coordinates> = None,
+        /// Part of the raster that is read, to whole cells; all of it if left out.
+        window: Option<RasterWindow> = None,
+        /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
+        /// for feet. Without it, heights that the file says are in feet become metres.
+        height_unit_m: Option<f64> => "0.01" = None,
+        /// What becomes of cells without data.
+        no_data: NoData = NoData::Refuse,
+        /// South-west corner, m, in place of the file's.
+        corner_m: Option<(f64, f64)> = None,
+        /// Extent to the east and to the north, m, in place of the file's.
+        size_m: Option<(f64, f64)> = None,
+        /// Height of the lowest cell, m, in place of the file's.
+        lowest_m: Option<f64> = None,
     }
 }
 
@@ -73,9 +78,9 @@ record! {
     /// Classes of the ground from a raster.
     pub struct LandCover ("a land cover") {
         /// Path, relative to the scene file.
-        file: String => r#""classes.asc""#,
+        file: FilePath => r#""classes.asc""#,
         /// Material of each class, by its number or, of ENVI classifications, its name.
-        classes: Map<String> => r#"{ "1": "soil", "2": "grass" }"#,
+        classes: Map<Ref<Material>> => r#"{ "1": "soil", "2": "grass" }"#,
     }
 }
 

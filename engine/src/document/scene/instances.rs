@@ -2,106 +2,130 @@
 
 use std::borrow::Cow;
 
-use super::super::decode::{Decode, Reader, Variant, example_of_keys};
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use super::super::decode::{Decode, Reader};
 use super::super::describe::Book;
 use super::super::diagnostic::nearest;
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::{Node, Value};
-use super::Map;
+use super::super::encode::Encode;
+use super::super::leaves::Walk;
+use super::super::ron_text::{Node, Text, Value};
+use super::{FilePath, InstancesName, Map, Mesh, Ref};
 
 choice! {
     /// Instances of mesh prototypes.
     #[expect(clippy::large_enum_variant, reason = "a scene has few of them")]
     pub enum Instances ("instances") {
         /// Places from a text table.
-        Table {
-            /// Path, relative to the scene file.
-            file: String => r#""stand.csv""#,
-            /// Mesh that stands there, or the mesh of each species: `{ "birch": "birch.tree" }`.
-            of: SpeciesMeshes => r#""tree""#,
-            /// Names of the columns where the file has no header, or in place of those in its header:
-            /// `x_m`, `y_m`, `z_m`, `yaw_deg` or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`, `species`
-            /// (a key of `of`), and for the size `scale` and `scale_vertical`, or `height_m` and
-            /// `crown_diameter_m`. With `height_m` the top of the mesh is so high above its origin,
-            /// with `crown_diameter_m` (or `diameter_m`) the mean of its extents to the east and to the
-            /// north is so wide; where one of the two is missing, the mesh keeps its proportions.
-            /// Columns of other names are let be.
-            columns: Option<Vec<String>> = None,
-            /// Whether heights count from the terrain below each place.
-            on_terrain: bool = false,
-            /// What the coordinates are; if absent, whichever of the two lies on the terrain.
-            coordinates: Option<TableCoordinates> = None,
-            /// Name for `hide` and `select`.
-            name: Option<String> = None,
-        },
+        Table(..InstanceTable),
         /// Places written here.
-        List {
-            /// Mesh that stands there.
-            of: String => r#""tree""#,
-            /// Positions, m.
-            at_m: Vec<(f64, f64, f64)> => "[(20.0, 30.0, 0.0)]",
-            /// Turn of each (counter-clockwise seen from above), degrees; none if empty.
-            yaw_deg: Vec<f64> = Vec::new(),
-            /// Scale of each; 1 if empty.
-            scale: Vec<f64> = Vec::new(),
-            /// Whether heights count from the terrain below each place.
-            on_terrain: bool = false,
-            /// Name for `hide` and `select`.
-            name: Option<String> = None,
-        },
+        List(..InstanceList),
         /// Places by a rule, on the terrain. The same seed and name give the same places.
-        Scatter {
-            /// Meshes and their shares. One more leaves all stems in place: some become its own.
-            of: Map<f64> => r#"{ "oak": 0.7, "birch": 0.3 }"#,
-            /// How places are chosen.
-            rule: Rule,
-            /// How many.
-            stems: Stems = Stems::Fill,
-            /// Only in these; everywhere if empty.
-            inside: Vec<Area> = Vec::new(),
-            /// Not in these.
-            outside: Vec<Area> = Vec::new(),
-            /// Turn (counter-clockwise seen from above), degrees.
-            yaw_deg: Distribution = Distribution::Uniform((0.0, 360.0)),
-            /// Lean from the vertical, degrees.
-            tilt_deg: Distribution = Distribution::Fixed(0.0),
-            /// Azimuth of the lean, degrees.
-            tilt_azimuth_deg: Distribution = Distribution::Uniform((0.0, 360.0)),
-            /// Height, m, to which a mesh is scaled as a whole; as it is if absent.
-            height_m: Option<Distribution> = None,
-            /// Further scale.
-            scale: Distribution = Distribution::Fixed(1.0),
-            /// Further vertical scale; that of `scale` if absent.
-            scale_vertical: Option<Distribution> = None,
-            /// How deep the mesh's origin lies below the terrain, m.
-            sink_m: f64 = 0.0,
-            /// Name for `hide` and `select`, and of the random numbers: with it, instances may come
-            /// and go before these without moving them.
-            name: Option<String> = None,
-            /// Another number is another forest under the same light; that of `transport` if absent.
-            seed: Option<u64> = None,
-        },
+        Scatter(..Scatter),
         /// Trees as a canopy height model shows them, on the terrain.
-        CanopyHeights {
-            /// Raster of heights above the ground, m: ESRI ASCII grid, ENVI or `GeoTIFF`. It lies where
-            /// the file says, as the terrain does; over the whole terrain if the file does not.
-            file: String => r#""chm.asc""#,
-            /// Meshes. Each tree gets the one whose ratio of height to crown diameter is nearest to
-            /// its own, scaled to both.
-            of: Vec<String> => r#"["oak", "fir"]"#,
-            /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
-            /// for feet. Without it, heights that the file says are in feet become metres.
-            height_unit_m: Option<f64> => "0.01" = None,
-            /// What is lower is no tree, m.
-            min_height_m: f64 = 3.0,
-            /// Two numbers a, b: of tops less than half of a m + b h² from one of height h m, only
-            /// the highest counts.
-            window: (f64, f64) = (2.51, 0.009),
-            /// How deep the mesh's origin lies below the terrain, m.
-            sink_m: f64 = 0.0,
-            /// Name for `hide` and `select`, and of the random numbers that turn the trees.
-            name: Option<String> = None,
-        },
+        CanopyHeights(..CanopyHeights),
+    }
+}
+
+record! {
+    /// Instances at places from a text table.
+    pub struct InstanceTable ("a table of instances") {
+        /// Path, relative to the scene file.
+        file: FilePath => r#""stand.csv""#,
+        /// Mesh that stands there, or the mesh of each species: `{ "birch": "birch.tree" }`.
+        of: SpeciesMeshes => r#""tree""#,
+        /// Names of the columns where the file has no header, or in place of those in its header:
+        /// `x_m`, `y_m`, `z_m`, `yaw_deg` or `yaw_rad`, `tilt_deg`, `tilt_azimuth_deg`, `species`
+        /// (a key of `of`), and for the size `scale` and `scale_vertical`, or `height_m` and
+        /// `crown_diameter_m`. With `height_m` the top of the mesh is so high above its origin,
+        /// with `crown_diameter_m` (or `diameter_m`) the mean of its extents to the east and to the
+        /// north is so wide; where one of the two is missing, the mesh keeps its proportions.
+        /// Columns of other names are let be.
+        columns: Option<Vec<String>> = None,
+        /// Whether heights count from the terrain below each place.
+        on_terrain: bool = false,
+        /// What the coordinates are; if absent, whichever of the two lies on the terrain.
+        coordinates: Option<TableCoordinates> = None,
+        /// Name for `hide` and `select`.
+        name: Option<InstancesName> = None,
+    }
+}
+
+record! {
+    /// Instances at places that the scene lists.
+    pub struct InstanceList ("a list of instances") {
+        /// Mesh that stands there.
+        of: Ref<Mesh> => r#""tree""#,
+        /// Positions, m.
+        at_m: Vec<(f64, f64, f64)> => "[(20.0, 30.0, 0.0)]",
+        /// Turn of each (counter-clockwise seen from above), degrees; none if empty.
+        yaw_deg: Vec<f64> = Vec::new(),
+        /// Scale of each; 1 if empty.
+        scale: Vec<f64> = Vec::new(),
+        /// Whether heights count from the terrain below each place.
+        on_terrain: bool = false,
+        /// Name for `hide` and `select`.
+        name: Option<InstancesName> = None,
+    }
+}
+
+record! {
+    /// Instances that a rule of placement puts on the terrain.
+    pub struct Scatter ("scattered instances") {
+        /// Meshes and their shares. One more leaves all stems in place: some become its own.
+        of: IndexMap<Ref<Mesh>, f64> => r#"{ "oak": 0.7, "birch": 0.3 }"#,
+        /// How places are chosen.
+        rule: Rule,
+        /// How many.
+        stems: Stems = Stems::Fill,
+        /// Only in these; everywhere if empty.
+        inside: Vec<Area> = Vec::new(),
+        /// Not in these.
+        outside: Vec<Area> = Vec::new(),
+        /// Turn (counter-clockwise seen from above), degrees.
+        yaw_deg: Distribution = Distribution::Uniform((0.0, 360.0)),
+        /// Lean from the vertical, degrees.
+        tilt_deg: Distribution = Distribution::Fixed(0.0),
+        /// Azimuth of the lean, degrees.
+        tilt_azimuth_deg: Distribution = Distribution::Uniform((0.0, 360.0)),
+        /// Height, m, to which a mesh is scaled as a whole; as it is if absent.
+        height_m: Option<Distribution> = None,
+        /// Further scale.
+        scale: Distribution = Distribution::Fixed(1.0),
+        /// Further vertical scale; that of `scale` if absent.
+        scale_vertical: Option<Distribution> = None,
+        /// How deep the mesh's origin lies below the terrain, m.
+        sink_m: f64 = 0.0,
+        /// Name for `hide` and `select`, and of the random numbers: with it, instances may come
+        /// and go before these without moving them.
+        name: Option<InstancesName> = None,
+        /// Another number is another forest under the same light; that of `transport` if absent.
+        seed: Option<u64> = None,
+    }
+}
+
+record! {
+    /// Trees as a canopy height model shows them.
+    pub struct CanopyHeights ("trees of a canopy height model") {
+        /// Raster of heights above the ground, m: ESRI ASCII grid, ENVI or `GeoTIFF`. It lies where
+        /// the file says, as the terrain does; over the whole terrain if the file does not.
+        file: FilePath => r#""chm.asc""#,
+        /// Meshes. Each tree gets the one whose ratio of height to crown diameter is nearest to
+        /// its own, scaled to both.
+        of: Vec<Ref<Mesh>> => r#"["oak", "fir"]"#,
+        /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
+        /// for feet. Without it, heights that the file says are in feet become metres.
+        height_unit_m: Option<f64> => "0.01" = None,
+        /// What is lower is no tree, m.
+        min_height_m: f64 = 3.0,
+        /// Two numbers a, b: of tops less than half of a m + b h² from one of height h m, only
+        /// the highest counts.
+        window: (f64, f64) = (2.51, 0.009),
+        /// How deep the mesh's origin lies below the terrain, m.
+        sink_m: f64 = 0.0,
+        /// Name for `hide` and `select`, and of the random numbers that turn the trees.
+        name: Option<InstancesName> = None,
     }
 }
 
@@ -140,7 +164,7 @@ choice! {
         /// not. Beside it and where it has no data stands nothing.
         Raster {
             /// Path, relative to the scene file.
-            file: String => r#""density.asc""#,
+            file: FilePath => r#""density.asc""#,
             /// Stems per hectare of a value of 1.
             factor: f64 = 1.0,
         },
@@ -194,7 +218,7 @@ choice! {
         /// All polygons of a GeoJSON file in metres.
         GeoJson {
             /// Path, relative to the scene file.
-            file: String => r#""stand.geojson""#,
+            file: FilePath => r#""stand.geojson""#,
             /// Whether it holds eastings and northings: `frame.origin_m` is subtracted.
             georeferenced: bool = true,
         },
@@ -202,7 +226,7 @@ choice! {
         /// another ring) and `hole` (1 in rings that are holes of the outline before them).
         Table {
             /// Path, relative to the scene file.
-            file: String => r#""stand.csv""#,
+            file: FilePath => r#""stand.csv""#,
             /// Whether it holds eastings and northings: `frame.origin_m` is subtracted.
             georeferenced: bool = false,
         },
@@ -222,12 +246,13 @@ choice! {
 }
 
 /// Meshes of the instances in a table: one, or one for each species.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
 pub enum SpeciesMeshes {
     /// The same for all.
-    One(String),
+    One(Ref<Mesh>),
     /// By the column `species`.
-    BySpecies(Map<String>),
+    BySpecies(Map<Ref<Mesh>>),
 }
 
 impl SpeciesMeshes {
@@ -236,7 +261,7 @@ impl SpeciesMeshes {
     pub fn meshes(&self) -> Vec<&str> {
         match self {
             Self::One(mesh) => vec![mesh],
-            Self::BySpecies(meshes) => meshes.values().map(String::as_str).collect(),
+            Self::BySpecies(meshes) => meshes.values().map(Ref::as_str).collect(),
         }
     }
 }
@@ -251,21 +276,21 @@ impl Decode for SpeciesMeshes {
     }
 
     fn schema(book: &mut Book) -> serde_json::Value {
-        serde_json::json!({ "anyOf": [String::schema(book), Map::<String>::schema(book)] })
+        serde_json::json!({ "anyOf": [String::schema(book), Map::<Ref<Mesh>>::schema(book)] })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
         match &node.value {
             Value::Map(_) => Self::BySpecies(Map::decode(node, reader)),
             Value::Text(_) | Value::Formula(_) | Value::Named(_) => {
-                Self::One(String::decode(node, reader))
+                Self::One(Ref::decode(node, reader))
             }
             _ => reader.mismatch(node),
         }
     }
 
     fn placeholder() -> Self {
-        Self::One(String::new())
+        Self::One(Ref::placeholder())
     }
 }
 
@@ -274,6 +299,13 @@ impl Encode for SpeciesMeshes {
         match self {
             Self::One(mesh) => mesh.encode(),
             Self::BySpecies(meshes) => meshes.encode(),
+        }
+    }
+
+    fn visit<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+        match self {
+            Self::One(mesh) => mesh.visit(walk),
+            Self::BySpecies(meshes) => meshes.visit(walk),
         }
     }
 }
@@ -311,21 +343,22 @@ impl Instances {
     /// Name that the author gave.
     #[must_use]
     pub fn name(&self) -> Option<&str> {
-        let (Self::Table { name, .. }
-        | Self::List { name, .. }
-        | Self::Scatter { name, .. }
-        | Self::CanopyHeights { name, .. }) = self;
-        name.as_deref()
+        match self {
+            Self::Table(table) => table.name.as_deref(),
+            Self::List(list) => list.name.as_deref(),
+            Self::Scatter(scatter) => scatter.name.as_deref(),
+            Self::CanopyHeights(canopy) => canopy.name.as_deref(),
+        }
     }
 
     /// Meshes that it places, in document order.
     #[must_use]
     pub fn meshes(&self) -> Vec<&str> {
         match self {
-            Self::Table { of, .. } => of.meshes(),
-            Self::List { of, .. } => vec![of],
-            Self::Scatter { of, .. } => of.keys().map(String::as_str).collect(),
-            Self::CanopyHeights { of, .. } => of.iter().map(String::as_str).collect(),
+            Self::Table(table) => table.of.meshes(),
+            Self::List(list) => vec![&list.of],
+            Self::Scatter(scatter) => scatter.of.keys().map(Ref::as_str).collect(),
+            Self::CanopyHeights(canopy) => canopy.of.iter().map(Ref::as_str).collect(),
         }
     }
 }

@@ -1,10 +1,5 @@
 //! Sun and sky.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
 use super::Spectrum;
 
 record! {
@@ -32,26 +27,31 @@ choice! {
         /// From place and time by the Solar Position Algorithm, good to 0.0003°.
         ///
         /// Source: Reda and Andreas (2004), Solar Energy 76, 577-589.
-        Spa {
-            /// Year, month and day.
-            date: (u32, u32, u32) => "(2026, 6, 21)",
-            /// Hour, minute and second, each with a fraction if need be: `(12.5, 0, 0)`.
-            time: (f64, f64, f64) => "(12, 0, 0)",
-            /// Hours that the clock is ahead of UTC: 1 in Berlin in winter, -7 in Denver.
-            utc_offset_h: f64 = 0.0,
-            /// North is positive, degrees.
-            latitude_deg: f64 => "52.5",
-            /// East is positive, degrees.
-            longitude_deg: f64 => "13.4",
-            /// Above sea level, m.
-            altitude_m: f64 = 0.0,
-            /// Air pressure of the refraction, hPa; 0 leaves refraction out.
-            pressure_hpa: f64 = 1013.25,
-            /// Air temperature of the refraction, °C.
-            temperature_c: f64 = 15.0,
-            /// Terrestrial time less universal time, s; estimated from the date if absent.
-            delta_t_s: Option<f64> = None,
-        },
+        Spa(..Spa),
+    }
+}
+
+record! {
+    /// Place and time for the Solar Position Algorithm.
+    pub struct Spa ("a place and a time") {
+        /// Year, month and day.
+        date: (u32, u32, u32) => "(2026, 6, 21)",
+        /// Hour, minute and second, each with a fraction if need be: `(12.5, 0, 0)`.
+        time: (f64, f64, f64) => "(12, 0, 0)",
+        /// Hours that the clock is ahead of UTC: 1 in Berlin in winter, -7 in Denver.
+        utc_offset_h: f64 = 0.0,
+        /// North is positive, degrees.
+        latitude_deg: f64 => "52.5",
+        /// East is positive, degrees.
+        longitude_deg: f64 => "13.4",
+        /// Above sea level, m.
+        altitude_m: f64 = 0.0,
+        /// Air pressure of the refraction, hPa; 0 leaves refraction out.
+        pressure_hpa: f64 = 1013.25,
+        /// Air temperature of the refraction, °C.
+        temperature_c: f64 = 15.0,
+        /// Terrestrial time less universal time, s; estimated from the date if absent.
+        delta_t_s: Option<f64> = None,
     }
 }
 

@@ -1,100 +1,168 @@
 //! Mesh prototypes, from files and generated.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Reader, Variant, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
-use super::Map;
 use super::crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
+use super::{FilePath, Map, Material, Ref};
 
 choice! {
     /// A mesh prototype.
     pub enum Mesh ("a mesh") {
         /// Wavefront OBJ; `parts_by` says what the parts are.
-        Obj {
-            /// Path, relative to the scene file.
-            file: String => r#""assets/tree.obj""#,
-            /// Which axis points up.
-            up: Axis => "Z",
-            /// Length of the file's unit, m.
-            unit_m: f64 => "1.0",
-            /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
-            /// counts before patterns, of these the one with most other letters, then the first.
-            parts: Map<String> = Map::new(),
-            /// What the parts are.
-            parts_by: PartsBy = PartsBy::Group,
-            /// Material of the parts that `parts` does not name.
-            material: Option<String> = None,
-            /// What becomes the origin.
-            origin: Origin = Origin::File,
-        },
+        Obj(..Obj),
         /// glTF 2.0 or GLB; materials are the parts.
-        Gltf {
-            /// Path, relative to the scene file.
-            file: String => r#""assets/tree.glb""#,
-            /// Which axis points up (Y, if the file keeps to the standard).
-            up: Axis => "Y",
-            /// Length of the file's unit, m.
-            unit_m: f64 => "1.0",
-            /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
-            /// counts before patterns, of these the one with most other letters, then the first.
-            parts: Map<String> = Map::new(),
-            /// Material of the parts that `parts` does not name.
-            material: Option<String> = None,
-            /// What becomes the origin.
-            origin: Origin = Origin::File,
-        },
+        Gltf(..Gltf),
         /// A cloud of discs: CSV with the header `radius,x,y,z,nx,ny,nz`, or a RAMI `.def` text
         /// with rows `r x y z nx ny nz`; m, z up.
         Discs {
             /// Path, relative to the scene file.
-            file: String => r#""assets/crown.csv""#,
+            file: FilePath => r#""assets/crown.csv""#,
             /// Material of the discs.
-            material: String => r#""leaf""#,
+            material: Ref<Material> => r#""leaf""#,
         },
         /// Polygons written here: sheets, walls, boxes.
         Faces {
             /// Corners of each polygon, m, counter-clockwise seen from its front.
             faces_m: Vec<Vec<(f64, f64, f64)>> => "[[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)]]",
             /// Material of them all.
-            material: String => r#""leaf""#,
+            material: Ref<Material> => r#""leaf""#,
         },
         /// A tree or shrub generated leaf by leaf.
-        Crown {
-            /// Outline of the crown.
-            shape: CrownShape => "Ellipsoid(diameter_m: 3.0, height_m: 5.0)",
-            /// Height of the crown's lowest point above the ground, m.
-            base_m: f64 => "2.0",
-            /// One-sided area of all leaves, m²; 0 for none.
-            leaf_area_m2: f64 => "30.0",
-            /// How leaf area changes with height.
-            leaf_profile: LeafProfile = LeafProfile::Even,
-            /// Clumps that leaves are gathered in; without them each stands by itself.
-            clumps: Option<Clumps> = None,
-            /// Distribution of leaf inclinations.
-            leaf_angle: LeafAngle = LeafAngle::Spherical,
-            /// Shape and size of a leaf.
-            leaf: LeafShape => "Disc(radius_m: 0.05)",
-            /// False: no leaf intersects another leaf of the crown. Leaves keep
-            /// their number and inclinations; those that would overlap stand elsewhere in the crown, or in
-            /// their clump. The needles of one shoot may cross each other, and so may leaves of two instances.
-            overlap: bool = true,
-            /// Minimum distance between the centres of two leaves of the crown, m; of shoots, between the
-            /// middles of their twigs. Leaves that are nearer to an earlier one stand elsewhere, as with
-            /// `overlap: false`. Leaves of a diameter up to this distance never intersect.
-            min_distance_m: f64 = 0.0,
-            /// Material of the leaves.
-            leaf_material: String => r#""leaf""#,
-            /// Trunk, if any.
-            trunk: Option<Trunk> = None,
-            /// Branches from the trunk into the crown, if any.
-            branches: Option<Branches> = None,
-            /// Material of trunk and branches.
-            wood_material: Option<String> = None,
-            /// Another number is another tree of the same kind.
-            seed: u64 = 1,
-        },
+        Crown(..GeneratedCrown),
+    }
+}
+
+record! {
+    /// Mesh from a Wavefront OBJ file.
+    pub struct Obj ("a mesh from an OBJ file") {
+        /// Path, relative to the scene file.
+        file: FilePath => r#""assets/tree.obj""#,
+        /// Which axis points up.
+        up: Axis => "Z",
+        /// Length of the file's unit, m.
+        unit_m: f64 => "1.0",
+        /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
+        /// counts before patterns, of these the one with most other letters, then the first.
+        parts: Map<Ref<Material>> = Map::new(),
+        /// What the parts are.
+        parts_by: PartsBy = PartsBy::Group,
+        /// Material of the parts that `parts` does not name.
+        material: Option<Ref<Material>> = None,
+        /// What becomes the origin.
+        origin: Origin = Origin::File,
+    }
+}
+
+record! {
+    /// Mesh from a glTF file.
+    pub struct Gltf ("a mesh from a glTF file") {
+        /// Path, relative to the scene file.
+        file: FilePath => r#""assets/tree.glb""#,
+        /// Which axis points up (Y, if the file keeps to the standard).
+        up: Axis => "Y",
+        /// Length of the file's unit, m.
+        unit_m: f64 => "1.0",
+        /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
+        /// counts before patterns, of these the one with most other letters, then the first.
+        parts: Map<Ref<Material>> = Map::new(),
+        /// Material of the parts that `parts` does not name.
+        material: Option<Ref<Material>> = None,
+        /// What becomes the origin.
+        origin: Origin = Origin::File,
+    }
+}
+
+/// Keys that OBJ and glTF files have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshFile<'a> {
+    /// Path, relative to the scene file.
+    pub file: &'a str,
+    /// Which axis points up.
+    pub up: &'a Axis,
+    /// Length of the file's unit, m.
+    pub unit_m: f64,
+    /// Material of each part, by its name or a pattern.
+    pub parts: &'a Map<Ref<Material>>,
+    /// Material of the parts that `parts` does not name.
+    pub material: Option<&'a Ref<Material>>,
+    /// What becomes the origin.
+    pub origin: &'a Origin,
+}
+
+macro_rules! mesh_file {
+    ($mesh:expr) => {
+        MeshFile {
+            file: &$mesh.file,
+            up: &$mesh.up,
+            unit_m: $mesh.unit_m,
+            parts: &$mesh.parts,
+            material: $mesh.material.as_ref(),
+            origin: &$mesh.origin,
+        }
+    };
+}
+
+impl Obj {
+    /// Keys that it shares with glTF files.
+    #[must_use]
+    pub fn mesh_file(&self) -> MeshFile<'_> {
+        mesh_file!(self)
+    }
+}
+
+impl Gltf {
+    /// Keys that it shares with OBJ files.
+    #[must_use]
+    pub fn mesh_file(&self) -> MeshFile<'_> {
+        mesh_file!(self)
+    }
+}
+
+impl Mesh {
+    /// Keys of a mesh from a file with parts, if it is one.
+    #[must_use]
+    pub fn mesh_file(&self) -> Option<MeshFile<'_>> {
+        match self {
+            Self::Obj(obj) => Some(obj.mesh_file()),
+            Self::Gltf(gltf) => Some(gltf.mesh_file()),
+            Self::Discs { .. } | Self::Faces { .. } | Self::Crown(_) => None,
+        }
+    }
+}
+
+record! {
+    /// Tree or shrub that is generated leaf by leaf.
+    pub struct GeneratedCrown ("a generated crown") {
+        /// Outline of the crown.
+        shape: CrownShape => "Ellipsoid(diameter_m: 3.0, height_m: 5.0)",
+        /// Height of the crown's lowest point above the ground, m.
+        base_m: f64 => "2.0",
+        /// One-sided area of all leaves, m²; 0 for none.
+        leaf_area_m2: f64 => "30.0",
+        /// How leaf area changes with height.
+        leaf_profile: LeafProfile = LeafProfile::Even,
+        /// Clumps that leaves are gathered in; without them each stands by itself.
+        clumps: Option<Clumps> = None,
+        /// Distribution of leaf inclinations.
+        leaf_angle: LeafAngle = LeafAngle::Spherical,
+        /// Shape and size of a leaf.
+        leaf: LeafShape => "Disc(radius_m: 0.05)",
+        /// False: no leaf intersects another leaf of the crown. Leaves keep
+        /// their number and inclinations; those that would overlap stand elsewhere in the crown, or in
+        /// their clump. The needles of one shoot may cross each other, and so may leaves of two instances.
+        overlap: bool = true,
+        /// Minimum distance between the centres of two leaves of the crown, m; of shoots, between the
+        /// middles of their twigs. Leaves that are nearer to an earlier one stand elsewhere, as with
+        /// `overlap: false`. Leaves of a diameter up to this distance never intersect.
+        min_distance_m: f64 = 0.0,
+        /// Material of the leaves.
+        leaf_material: Ref<Material> => r#""leaf""#,
+        /// Trunk, if any.
+        trunk: Option<Trunk> = None,
+        /// Branches from the trunk into the crown, if any.
+        branches: Option<Branches> = None,
+        /// Material of trunk and branches.
+        wood_material: Option<Ref<Material>> = None,
+        /// Another number is another tree of the same kind.
+        seed: u64 = 1,
     }
 }
 

@@ -1,6 +1,5 @@
 //! What a scene file may say.
 
-mod camera;
 mod crown;
 mod ground;
 mod instances;
@@ -8,33 +7,36 @@ mod light;
 mod mesh;
 mod param;
 mod program;
+mod reference;
 mod sensor;
 mod spectrum;
 mod thermal;
 mod transport;
 mod until;
 
-use std::borrow::Cow;
-
 use indexmap::IndexMap;
 
-use super::decode::{Decode, Fields, Reader, example_of_keys};
-use super::encode::{Encode, Text, differs};
-use super::syntax::Node;
-
-pub use camera::{Cover, FisheyeProjection, Look, Picture};
 pub use crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
-pub use ground::{Boundary, Coordinates, LandCover, NoData, RasterWindow, Terrain};
-pub use instances::{
-    Area, Distribution, INSTANCE_COLUMNS, Instances, Rule, SpeciesMeshes, Stems, TableCoordinates,
-    meant_column,
+pub use ground::{
+    Boundary, Coordinates, LandCover, NoData, RasterWindow, Terrain, TerrainPlane, TerrainRaster,
 };
-pub use light::{Sky, Sun, SunPosition};
-pub use mesh::{Axis, Mesh, Origin, PartsBy};
+pub use instances::{
+    Area, CanopyHeights, Distribution, INSTANCE_COLUMNS, InstanceList, InstanceTable, Instances,
+    Rule, Scatter, SpeciesMeshes, Stems, TableCoordinates, meant_column,
+};
+pub use light::{Sky, Spa, Sun, SunPosition};
+pub use mesh::{Axis, GeneratedCrown, Gltf, Mesh, MeshFile, Obj, Origin, PartsBy};
 pub use param::Param;
 pub use program::{Include, Sweep};
-pub use sensor::{ImageMeasure, Layers, Per, PhotonMeasure, Sensor, System, Views, VirtualPlane};
-pub use spectrum::{Material, Spectrum, ValueUnit, WavelengthUnit};
+pub use reference::{Definition, FilePath, InstancesName, NamePattern, Ref};
+pub use sensor::{
+    Cover, Directions, Fisheye, FisheyeProjection, ImageMeasure, ImageOptions, Layers, Look,
+    Orthographic, Per, Perspective, PhotonMeasure, Photons, Picture, Sensor, System, Views,
+    VirtualPlane,
+};
+pub use spectrum::{
+    Lambertian, Leaf, Material, Prospect, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit,
+};
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
 pub use until::{Ends, Until};
@@ -71,9 +73,9 @@ record! {
         instances: Vec<Instances> = Vec::new(),
         /// Which of them are left out: patterns such as `"oak"` (a mesh) or `"plot 7/*"` (all that
         /// stands by the instances of that name). The others stay where they are.
-        hide: Vec<String> = Vec::new(),
+        hide: Vec<NamePattern> = Vec::new(),
         /// Which of them are kept, by the same patterns; all if empty.
-        select: Vec<String> = Vec::new(),
+        select: Vec<NamePattern> = Vec::new(),
         /// The sun; without it only the sky lights the scene.
         sun: Option<Sun> = None,
         /// The sky.

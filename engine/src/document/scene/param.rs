@@ -5,11 +5,11 @@ use std::fmt;
 
 use super::super::decode::{Decode, Reader};
 use super::super::describe::Book;
-use super::super::encode::{Encode, Text};
-use super::super::syntax::{Node, Value};
+use super::super::encode::Encode;
+use super::super::ron_text::{Node, Text, Value};
 
 /// Value of a parameter: a number, or a text that names a file, a material or a mesh, say.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(untagged)]
 pub enum Param {
     /// For formulas.

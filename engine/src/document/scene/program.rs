@@ -1,10 +1,8 @@
 //! What makes a scene a program: files that it includes, and points that it runs over.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Fields, Reader, Variant, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
+use super::super::leaves::{Leaf, visit_leaves};
+use super::super::path::path_of;
+use super::super::schema::ReadKeys as _;
 use super::{Band, Map, Param, Scene, Terrain};
 
 record! {
@@ -34,7 +32,19 @@ impl Scene {
     /// Bare ground that nothing lights and nothing measures, to which everything else can be added.
     #[must_use]
     pub fn new(bands: Vec<Band>, terrain: Terrain) -> Self {
-        Self { format: 1, bands, terrain, ..Self::placeholder() }
+        Self { format: 1, bands, terrain, ..Self::start() }
+    }
+
+    /// Paths of all files that it names, each with its path in the document.
+    #[must_use]
+    pub fn files(&self) -> Vec<(String, &str)> {
+        let mut files = Vec::new();
+        visit_leaves(self, &mut |steps, leaf| {
+            if let Leaf::File(file) = leaf {
+                files.push((path_of(steps), file));
+            }
+        });
+        files
     }
 
     /// The scene without what has been settled: parameters, variants and sweep. It gives the same

@@ -1,11 +1,6 @@
 //! Spectra and the materials that have them.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Reader, Variant, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
-use super::Temperature;
+use super::{FilePath, Ref, Temperature};
 
 choice! {
     /// A quantity as a function of wavelength, or given band by band.
@@ -17,51 +12,61 @@ choice! {
         /// Points (wavelength nm, value), joined by straight lines and averaged over each band.
         Points(Vec<(f64, f64)> => "[(400.0, 0.05), (800.0, 0.3)]"),
         /// Such points from two columns of a CSV file.
-        Table {
-            /// Path, relative to the scene file.
-            file: String => r#""spectra/soil.csv""#,
-            /// Header of the column of wavelengths, nm.
-            wavelength: String = "wavelength_nm".to_owned(),
-            /// Header of the column of values; if absent, the second column of the file.
-            value: Option<String> = None,
-            /// Unit of the wavelengths; nanometres if absent. A file whose header or titles name another
-            /// one is refused without it.
-            wavelength_unit: Option<WavelengthUnit> = None,
-            /// Unit of reflectances and transmittances; fractions if absent. A file that shows percent is
-            /// refused without it.
-            unit: Option<ValueUnit> = None,
-            /// Factor on all values: 0.0001 for reflectances that are kept as 0 to 10000, 0.001 for an
-            /// irradiance in W m⁻² µm⁻¹.
-            scale: f64 = 1.0,
-        },
+        Table(..TabulatedSpectrum),
         /// Irradiance of the sun and of the 2.9° around it on a plane that faces it, under a clear sky at
         /// air mass 1.5: 280 to 4000 nm.
         ///
         /// Source: ASTM G173-03, direct + circumsolar.
         AstmG173,
         /// One of the scene's `spectra`.
-        Named(String => r#""soil""#),
+        Named(Ref<Spectrum> => r#""soil""#),
         /// Leaf reflectance or transmittance (whichever the key asks for) by PROSPECT-PRO.
-        Prospect {
-            /// Leaf structure parameter N, 1 to 3.
-            n: f64 = 1.5,
-            /// Chlorophyll a + b, µg cm⁻².
-            chlorophyll_ug_cm2: f64 = 40.0,
-            /// Carotenoids, µg cm⁻².
-            carotenoid_ug_cm2: f64 = 8.0,
-            /// Anthocyanins, µg cm⁻².
-            anthocyanin_ug_cm2: f64 = 0.0,
-            /// Brown pigments, arbitrary units.
-            brown: f64 = 0.0,
-            /// Equivalent water thickness, cm.
-            water_cm: f64 = 0.01,
-            /// Dry matter, g cm⁻²; 0 where proteins and other carbon are given instead.
-            dry_matter_g_cm2: f64 = 0.009,
-            /// Proteins, g cm⁻².
-            protein_g_cm2: f64 = 0.0,
-            /// Carbon-based constituents other than proteins, g cm⁻².
-            carbon_g_cm2: f64 = 0.0,
-        },
+        Prospect(..Prospect),
+    }
+}
+
+record! {
+    /// Spectrum from two columns of a CSV file.
+    pub struct TabulatedSpectrum ("a table of a spectrum") {
+        /// Path, relative to the scene file.
+        file: FilePath => r#""spectra/soil.csv""#,
+        /// Header of the column of wavelengths, nm.
+        wavelength: String = "wavelength_nm".to_owned(),
+        /// Header of the column of values; if absent, the second column of the file.
+        value: Option<String> = None,
+        /// Unit of the wavelengths; nanometres if absent. A file whose header or titles name another
+        /// one is refused without it.
+        wavelength_unit: Option<WavelengthUnit> = None,
+        /// Unit of reflectances and transmittances; fractions if absent. A file that shows percent is
+        /// refused without it.
+        unit: Option<ValueUnit> = None,
+        /// Factor on all values: 0.0001 for reflectances that are kept as 0 to 10000, 0.001 for an
+        /// irradiance in W m⁻² µm⁻¹.
+        scale: f64 = 1.0,
+    }
+}
+
+record! {
+    /// Leaf for PROSPECT-PRO.
+    pub struct Prospect ("a leaf") {
+        /// Leaf structure parameter N, 1 to 3.
+        n: f64 = 1.5,
+        /// Chlorophyll a + b, µg cm⁻².
+        chlorophyll_ug_cm2: f64 = 40.0,
+        /// Carotenoids, µg cm⁻².
+        carotenoid_ug_cm2: f64 = 8.0,
+        /// Anthocyanins, µg cm⁻².
+        anthocyanin_ug_cm2: f64 = 0.0,
+        /// Brown pigments, arbitrary units.
+        brown: f64 = 0.0,
+        /// Equivalent water thickness, cm.
+        water_cm: f64 = 0.01,
+        /// Dry matter, g cm⁻²; 0 where proteins and other carbon are given instead.
+        dry_matter_g_cm2: f64 = 0.009,
+        /// Proteins, g cm⁻².
+        protein_g_cm2: f64 = 0.0,
+        /// Carbon-based constituents other than proteins, g cm⁻².
+        carbon_g_cm2: f64 = 0.0,
     }
 }
 
@@ -123,24 +128,70 @@ choice! {
     /// A surface.
     pub enum Material ("a material") {
         /// Reflects diffusely on both sides; opaque.
-        Lambertian {
-            /// Reflectance of the front side, and of the back unless that is given.
-            reflectance: Spectrum => "Constant(0.3)",
-            /// Reflectance of the back side.
-            back_reflectance: Option<Spectrum> = None,
-            /// How warm it is; needed where a sensor measures what it emits.
-            temperature: Option<Temperature> = None,
-        },
+        Lambertian(..Lambertian),
         /// Reflects and transmits diffusely.
-        Leaf {
-            /// Reflectance of the front side, and of the back unless that is given.
-            reflectance: Spectrum => "Constant(0.3)",
-            /// Transmittance, the same in both directions.
-            transmittance: Spectrum => "Constant(0.2)",
-            /// Reflectance of the back side.
-            back_reflectance: Option<Spectrum> = None,
-            /// How warm it is; needed where a sensor measures what it emits.
-            temperature: Option<Temperature> = None,
-        },
+        Leaf(..Leaf),
+    }
+}
+
+record! {
+    /// Opaque surface that reflects diffusely.
+    pub struct Lambertian ("a Lambertian surface") {
+        /// Reflectance of the front side, and of the back unless that is given.
+        reflectance: Spectrum => "Constant(0.3)",
+        /// Reflectance of the back side.
+        back_reflectance: Option<Spectrum> = None,
+        /// How warm it is; needed where a sensor measures what it emits.
+        temperature: Option<Temperature> = None,
+    }
+}
+
+record! {
+    /// Surface that reflects and transmits diffusely.
+    pub struct Leaf ("a leaf surface") {
+        /// Reflectance of the front side, and of the back unless that is given.
+        reflectance: Spectrum => "Constant(0.3)",
+        /// Transmittance, the same in both directions.
+        transmittance: Spectrum => "Constant(0.2)",
+        /// Reflectance of the back side.
+        back_reflectance: Option<Spectrum> = None,
+        /// How warm it is; needed where a sensor measures what it emits.
+        temperature: Option<Temperature> = None,
+    }
+}
+
+impl Material {
+    /// Reflectance of the front side, and of the back unless [`Self::back_reflectance`] gives that.
+    #[must_use]
+    pub const fn reflectance(&self) -> &Spectrum {
+        match self {
+            Self::Lambertian(surface) => &surface.reflectance,
+            Self::Leaf(leaf) => &leaf.reflectance,
+        }
+    }
+
+    /// Reflectance of the back side, if it was given.
+    #[must_use]
+    pub const fn back_reflectance(&self) -> Option<&Spectrum> {
+        match self {
+            Self::Lambertian(surface) => surface.back_reflectance.as_ref(),
+            Self::Leaf(leaf) => leaf.back_reflectance.as_ref(),
+        }
+    }
+
+    /// Transmittance, if the surface is not opaque.
+    #[must_use]
+    pub const fn transmittance(&self) -> Option<&Spectrum> {
+        match self {
+            Self::Lambertian(_) => None,
+            Self::Leaf(leaf) => Some(&leaf.transmittance),
+        }
+    }
+
+    /// All spectra, each with its key.
+    pub fn spectra(&self) -> impl Iterator<Item = (&'static str, &Spectrum)> {
+        let transmittance = self.transmittance().map(|spectrum| ("transmittance", spectrum));
+        let back = self.back_reflectance().map(|spectrum| ("back_reflectance", spectrum));
+        std::iter::once(("reflectance", self.reflectance())).chain(transmittance).chain(back)
     }
 }

@@ -1,10 +1,5 @@
 //! What surfaces and the sky radiate by themselves.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Reader, Variant};
-use super::super::encode::{Encode, Text};
-use super::super::syntax::Node;
 use super::{Band, ImageMeasure, Material, PhotonMeasure, Scene, Sensor, Spectrum};
 
 /// Beyond this wavelength surfaces on Earth radiate more than they reflect of the sun, nm.
@@ -102,9 +97,8 @@ impl Material {
     #[must_use]
     pub const fn temperature(&self) -> Option<&Temperature> {
         match self {
-            Self::Lambertian { temperature, .. } | Self::Leaf { temperature, .. } => {
-                temperature.as_ref()
-            }
+            Self::Lambertian(surface) => surface.temperature.as_ref(),
+            Self::Leaf(leaf) => leaf.temperature.as_ref(),
         }
     }
 }
@@ -115,7 +109,7 @@ impl Scene {
     pub fn measures_emission(&self) -> bool {
         self.bands.iter().any(Band::emits)
             && self.sensors.values().any(|sensor| match sensor {
-                Sensor::Photons { measure, .. } => measure.iter().any(PhotonMeasure::is_absolute),
+                Sensor::Photons(photons) => photons.measure.iter().any(PhotonMeasure::is_absolute),
                 other => {
                     other.image_measures().into_iter().flatten().any(ImageMeasure::is_radiance)
                 }

@@ -1,11 +1,5 @@
 //! How light is traced.
 
-use std::borrow::Cow;
-
-use super::super::decode::{Decode, Fields, Reader, example_of_keys};
-use super::super::encode::{Encode, Text, differs};
-use super::super::syntax::Node;
-
 record! {
     /// How light is traced.
     pub struct Transport ("`transport`") {
@@ -28,12 +22,6 @@ impl Transport {
     }
 }
 
-impl Default for Transport {
-    fn default() -> Self {
-        Self { seed: 1, roulette: Roulette::default(), first_order_only: false, max_order: None }
-    }
-}
-
 record! {
     /// Russian roulette: from some order on a path ends with some probability; those that survive
     /// carry its power on. Where that would give them more than they started with, fewer end.
@@ -42,11 +30,5 @@ record! {
         after_order: u32 = 5,
         /// Probability to end, below 1.
         kill: f64 = 0.05,
-    }
-}
-
-impl Default for Roulette {
-    fn default() -> Self {
-        Self { after_order: 5, kill: 0.05 }
     }
 }

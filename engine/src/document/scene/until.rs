@@ -2,11 +2,13 @@
 
 use std::borrow::Cow;
 
-use super::super::decode::{Decode, Reader, Variant};
+use serde::{Deserialize, Serialize};
+
+use super::super::decode::{Decode, Reader};
 use super::super::describe::Book;
-use super::super::encode::{Encode, Text};
-use super::super::numbers::Walk;
-use super::super::syntax::{Node, Value};
+use super::super::encode::Encode;
+use super::super::leaves::Walk;
+use super::super::ron_text::{Node, Text, Value};
 use super::Map;
 
 choice! {
@@ -25,8 +27,35 @@ choice! {
 }
 
 /// Ends of a measurement, one or a list: the first that holds ends it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "OneOrMany", into = "OneOrMany")]
 pub struct Ends(pub Vec<Until>);
+
+/// Form of [`Ends`] in files.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(untagged)]
+enum OneOrMany {
+    One(Until),
+    Many(Vec<Until>),
+}
+
+impl From<OneOrMany> for Ends {
+    fn from(ends: OneOrMany) -> Self {
+        match ends {
+            OneOrMany::One(end) => end.into(),
+            OneOrMany::Many(ends) => Self(ends),
+        }
+    }
+}
+
+impl From<Ends> for OneOrMany {
+    fn from(ends: Ends) -> Self {
+        match <[Until; 1]>::try_from(ends.0) {
+            Ok([end]) => Self::One(end),
+            Err(ends) => Self::Many(ends),
+        }
+    }
+}
 
 impl From<Until> for Ends {
     fn from(end: Until) -> Self {
@@ -67,10 +96,10 @@ impl Encode for Ends {
         }
     }
 
-    fn numbers<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
+    fn visit<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
         match self.0.as_slice() {
-            [end] => end.numbers(walk),
-            _ => self.0.numbers(walk),
+            [end] => end.visit(walk),
+            _ => self.0.visit(walk),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::Resources;
 use super::hide_and_select::needed_meshes;
 use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
 use crate::components::{Mesh, PartMaterials};
-use crate::document::{self, Diagnostic};
+use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj};
 
 pub(super) use part_materials::part_materials;
 
@@ -45,7 +45,7 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
             Err(error) => {
                 let key = match source {
                     document::Mesh::Faces { .. } => ".faces_m",
-                    document::Mesh::Crown { .. } => "",
+                    document::Mesh::Crown(_) => "",
                     _ => ".file",
                 };
                 resources.report(Diagnostic::error(format!("{path}{key}"), error.to_string()));
@@ -57,32 +57,33 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
 /// Notes the file of a mesh as read.
 pub(super) fn note_file(mesh: &document::Mesh, resources: &mut Resources) {
     match mesh {
-        document::Mesh::Obj { file, .. }
-        | document::Mesh::Gltf { file, .. }
+        document::Mesh::Obj(Obj { file, .. })
+        | document::Mesh::Gltf(Gltf { file, .. })
         | document::Mesh::Discs { file, .. } => {
             resources.file(file);
         }
-        document::Mesh::Faces { .. } | document::Mesh::Crown { .. } => {}
+        document::Mesh::Faces { .. } | document::Mesh::Crown(_) => {}
     }
+}
+
+fn import(mesh: &MeshFile<'_>) -> Import {
+    Import { up: mesh.up.clone(), unit_m: mesh.unit_m, origin: mesh.origin.clone() }
 }
 
 /// Loads or generates a mesh.
 pub(super) fn load(mesh: &document::Mesh, folder: &Path) -> Result<Loaded<Mesh>, AssetError> {
     match mesh {
-        document::Mesh::Obj { file, up, unit_m, origin, parts_by, .. } => assets::read_obj(
-            &folder.join(file),
-            &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
-            parts_by,
-        ),
-        document::Mesh::Gltf { file, up, unit_m, origin, .. } => assets::read_gltf(
-            &folder.join(file),
-            &Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() },
-        ),
+        document::Mesh::Obj(obj) => {
+            let import = import(&obj.mesh_file());
+            assets::read_obj(&folder.join(&obj.file), &import, &obj.parts_by)
+        }
+        document::Mesh::Gltf(gltf) => {
+            assets::read_gltf(&folder.join(&gltf.file), &import(&gltf.mesh_file()))
+        }
         document::Mesh::Discs { file, .. } => assets::read_discs(&folder.join(file)),
         document::Mesh::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),
-        document::Mesh::Crown { .. } => {
-            let spec = CrownSpec::from_document(mesh).expect("this arm is that of crowns");
-            let value = assets::grow_crown(&spec)?;
+        document::Mesh::Crown(crown) => {
+            let value = assets::grow_crown(&CrownSpec::from_document(crown))?;
             Ok(Loaded { value, warnings: Vec::new() })
         }
     }

@@ -1,7 +1,9 @@
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::components::{MaterialId, Mesh};
-use crate::document::{self, Diagnostic, Map, PartsBy, unknown_name};
+use crate::document::{
+    self, Diagnostic, GeneratedCrown, Map, Material, Obj, PartsBy, Ref, unknown_name,
+};
 use crate::placement::is_like;
 use crate::systems::Resources;
 
@@ -17,22 +19,19 @@ pub(in crate::systems) fn part_materials(
 ) -> Vec<MaterialId> {
     let none = Map::new();
     let (named, rest) = match mesh {
-        document::Mesh::Obj { parts, material, .. }
-        | document::Mesh::Gltf { parts, material, .. } => (parts, material.as_ref()),
+        document::Mesh::Obj(obj) => (&obj.parts, obj.material.as_ref()),
+        document::Mesh::Gltf(gltf) => (&gltf.parts, gltf.material.as_ref()),
         document::Mesh::Discs { material, .. } | document::Mesh::Faces { material, .. } => {
             (&none, Some(material))
         }
-        document::Mesh::Crown { leaf_material, wood_material, .. } => {
-            let wood = wood_material.as_deref();
-            return crown_materials(leaf_material, wood, loaded, path, resources);
-        }
+        document::Mesh::Crown(crown) => return crown_materials(crown, loaded, path, resources),
     };
     check_part_names(named, loaded, path, resources);
-    let patterns: Vec<(&str, &String)> = patterns(named);
+    let patterns: Vec<_> = patterns(named);
     // Parts of one material are many: it is looked up once.
     let mut materials = Vec::new();
     let mut missing = Vec::new();
-    let mut known: Map<Option<MaterialId>> = Map::new();
+    let mut known: HashMap<&str, Option<MaterialId>> = HashMap::new();
     for part in &loaded.parts {
         let pattern = || patterns.iter().find(|(pattern, _)| is_like(pattern, &part.name));
         let (material, key) = match (named.get(&part.name), rest) {
@@ -46,11 +45,11 @@ pub(in crate::systems) fn part_materials(
                 }
             },
         };
-        let id = if let Some(id) = known.get(material) {
+        let id = if let Some(id) = known.get(material.as_str()) {
             *id
         } else {
             let id = resources.material(material, &format!("{path}.{key}"));
-            known.insert(material.clone(), id);
+            known.insert(material, id);
             id
         };
         materials.extend(id);
@@ -63,7 +62,12 @@ pub(in crate::systems) fn part_materials(
 }
 
 /// Refuses names in `parts` that no part of the mesh has.
-fn check_part_names(named: &Map<String>, loaded: &Mesh, path: &str, resources: &mut Resources) {
+fn check_part_names(
+    named: &Map<Ref<Material>>,
+    loaded: &Mesh,
+    path: &str,
+    resources: &mut Resources,
+) {
     if named.is_empty() {
         return;
     }
@@ -87,13 +91,13 @@ fn check_part_names(named: &Map<String>, loaded: &Mesh, path: &str, resources: &
 
 /// Materials of the parts of a generated crown.
 fn crown_materials(
-    leaf: &str,
-    wood: Option<&str>,
+    crown: &GeneratedCrown,
     loaded: &Mesh,
     path: &str,
     resources: &mut Resources,
 ) -> Vec<MaterialId> {
-    let leaf = resources.material(leaf, &format!("{path}.leaf_material"));
+    let leaf = resources.material(&crown.leaf_material, &format!("{path}.leaf_material"));
+    let wood = crown.wood_material.as_deref();
     let wood = wood.and_then(|name| resources.material(name, &format!("{path}.wood_material")));
     let of = |part: &str| if part == "leaf" { leaf } else { wood };
     // `document::check` asks for a wood material wherever there is wood.
@@ -101,7 +105,7 @@ fn crown_materials(
 }
 
 /// Names with `*` and their materials, those with most other letters first.
-fn patterns(named: &Map<String>) -> Vec<(&str, &String)> {
+fn patterns(named: &Map<Ref<Material>>) -> Vec<(&str, &Ref<Material>)> {
     let letters = |pattern: &str| pattern.chars().filter(|&letter| letter != '*').count();
     let patterns = named.iter().filter(|(name, _)| name.contains('*'));
     let mut patterns: Vec<_> = patterns.map(|(name, material)| (name.as_str(), material)).collect();
@@ -125,7 +129,7 @@ fn missing_parts(mesh: &document::Mesh, missing: &[&str], path: &str) -> Diagnos
     let mut help = format!("write parts: {{ {entries} }}, or material: \"..\" for all others");
     if missing.len() > 1 {
         help += "; `*` in a name stands for any text, as in parts: { \"leaf*\": \"leaf\" }";
-        if matches!(mesh, document::Mesh::Obj { parts_by: PartsBy::Group, .. }) {
+        if matches!(mesh, document::Mesh::Obj(Obj { parts_by: PartsBy::Group, .. })) {
             help +=
                 ", and with parts_by: Material the parts are the materials (`usemtl`) of the file";
         }

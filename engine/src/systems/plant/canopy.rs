@@ -1,6 +1,6 @@
 use super::{Site, rectangle_of};
 use crate::components::Placement;
-use crate::document::{Diagnostic, Instances};
+use crate::document::{CanopyHeights, Diagnostic, Mesh, Ref};
 use crate::geometry::{millimetres, place_text};
 use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
 use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
@@ -14,15 +14,11 @@ const TALL: f64 = 70.0;
 
 /// Trees of a canopy height model; `None` after an error.
 pub(super) fn plant_canopy(
-    instances: &Instances,
+    canopy: &CanopyHeights,
     ground: &Ground,
     site: &mut Site<'_>,
 ) -> Option<Vec<Placement>> {
-    let Instances::CanopyHeights { file, of, height_unit_m, min_height_m, window, sink_m, name } =
-        instances
-    else {
-        return None;
-    };
+    let CanopyHeights { file, of, height_unit_m, min_height_m, window, sink_m, name } = canopy;
     let terrain = rectangle_of(ground);
     let models = models(of, site)?;
     let at = format!("{}.file", site.path);
@@ -75,7 +71,7 @@ pub(super) fn plant_canopy(
 }
 
 /// Meshes that may stand for trees; `None` if there is none.
-fn models(of: &[String], site: &mut Site<'_>) -> Option<Vec<Model>> {
+fn models(of: &[Ref<Mesh>], site: &mut Site<'_>) -> Option<Vec<Model>> {
     let mut models = Vec::new();
     for (index, name) in of.iter().enumerate() {
         let path = format!("{}.of[{index}]", site.path);

@@ -155,23 +155,23 @@ fn shapes(world: &World) -> BTreeMap<u32, Shape> {
 /// Placements of a planting, those of hidden meshes included.
 fn placements_of(instances: &Instances, site: &mut Site<'_>) -> Vec<Placement> {
     match instances {
-        Instances::Table { .. } => plant_table(instances, site),
-        Instances::List { of, at_m, yaw_deg, scale, on_terrain, .. } => {
-            let rows = listed(at_m, yaw_deg, scale);
-            match site.resources.prototype(of, &format!("{}.of", site.path)) {
+        Instances::Table(_) => plant_table(instances, site),
+        Instances::List(list) => {
+            let rows = listed(&list.at_m, &list.yaw_deg, &list.scale);
+            match site.resources.prototype(&list.of, &format!("{}.of", site.path)) {
                 Some(prototype) => {
                     let prototypes = vec![prototype; rows.len()];
-                    plant_rows(instances, &rows, &prototypes, *on_terrain, site)
+                    plant_rows(instances, &rows, &prototypes, list.on_terrain, site)
                 }
                 None => Vec::new(),
             }
         }
         // A terrain that has an error was reported.
-        Instances::Scatter { .. } => {
-            site.ground.map_or_else(Vec::new, |ground| scatter(instances, ground, site))
+        Instances::Scatter(rule) => {
+            site.ground.map_or_else(Vec::new, |ground| scatter(rule, ground, site))
         }
-        Instances::CanopyHeights { .. } => {
-            site.ground.and_then(|ground| plant_canopy(instances, ground, site)).unwrap_or_default()
+        Instances::CanopyHeights(canopy) => {
+            site.ground.and_then(|ground| plant_canopy(canopy, ground, site)).unwrap_or_default()
         }
     }
 }

@@ -1,19 +1,17 @@
+use indexmap::IndexMap;
+
 use super::areas::region;
 use super::{Site, rectangle_of};
 use crate::components::Placement;
-use crate::document::{Diagnostic, Instances, Map, Stems};
+use crate::document::{Diagnostic, Mesh, Ref, Scatter, Stems};
 use crate::geometry::{Rectangle, place_text};
 use crate::placement::{Amount, Habit, Species, instantiate_trees, places};
 use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
 use crate::terrain::{Cells, Ground};
 
 /// Instances that a rule of placement scatters; reports an error if there is no place for them.
-pub(super) fn scatter(
-    instances: &Instances,
-    ground: &Ground,
-    site: &mut Site<'_>,
-) -> Vec<Placement> {
-    let Instances::Scatter {
+pub(super) fn scatter(scatter: &Scatter, ground: &Ground, site: &mut Site<'_>) -> Vec<Placement> {
+    let Scatter {
         of,
         rule,
         stems,
@@ -28,10 +26,7 @@ pub(super) fn scatter(
         sink_m,
         name,
         seed,
-    } = instances
-    else {
-        return Vec::new();
-    };
+    } = scatter;
     let species = species(of, height_m.is_some(), site);
     let terrain = rectangle_of(ground);
     let Some(region) = region(terrain, inside, outside, site) else {
@@ -81,7 +76,7 @@ pub(super) fn scatter(
 
 /// Species that compete for each stem.
 fn species<'a>(
-    of: &'a Map<f64>,
+    of: &'a IndexMap<Ref<Mesh>, f64>,
     is_scaled_to_height: bool,
     site: &mut Site<'_>,
 ) -> Vec<Species<'a>> {

@@ -3,7 +3,9 @@ use glam::{DVec2, Vec3Swizzles as _};
 use super::{Site, plant_rows};
 use crate::assets::{Row, StemTable, read_instances};
 use crate::components::{Placement, PrototypeId};
-use crate::document::{Diagnostic, Instances, SpeciesMeshes, TableCoordinates, suggestion};
+use crate::document::{
+    Diagnostic, InstanceTable, Instances, SpeciesMeshes, TableCoordinates, suggestion,
+};
 use crate::geometry::place_text;
 
 /// A plant's diameter below this part of its height is that of its stem, not of its crown.
@@ -32,7 +34,9 @@ struct Kind {
 
 /// Instances of a table.
 pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Placement> {
-    let Instances::Table { file, of, columns, on_terrain, coordinates, .. } = instances else {
+    let Instances::Table(InstanceTable { file, of, columns, on_terrain, coordinates, .. }) =
+        instances
+    else {
         return Vec::new();
     };
     let at = format!("{}.file", site.path);

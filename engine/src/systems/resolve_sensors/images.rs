@@ -17,35 +17,28 @@ pub(super) fn image(
     place: &SensorPlace,
     resources: &Resources,
 ) -> Option<ImageSensor> {
-    let (size, samples, measure, picture, system) = match sensor {
-        Sensor::Orthographic {
-            size_px,
-            samples_per_px,
-            samples_per_m2,
-            measure,
-            picture,
-            system,
-            ..
-        } => {
-            let per_pixel = ImageSamples::PerPixel(samples_per_px.unwrap_or(SAMPLES));
-            let samples = samples_per_m2.map_or(per_pixel, ImageSamples::PerArea);
+    let image = sensor.image_options()?;
+    let (size, samples) = match sensor {
+        Sensor::Orthographic(sensor) => {
+            let per_pixel = ImageSamples::PerPixel(sensor.samples_per_px.unwrap_or(SAMPLES));
+            let samples = sensor.samples_per_m2.map_or(per_pixel, ImageSamples::PerArea);
             // `run/pixels.rs` counts pixels of a given side once the stage is known.
-            (size_px.unwrap_or((1, 1)), samples, measure, picture, system)
+            (sensor.size_px.unwrap_or((1, 1)), samples)
         }
-        Sensor::Perspective { size_px, samples_per_px, measure, picture, system, .. }
-        | Sensor::Fisheye { size_px, samples_per_px, measure, picture, system, .. } => {
-            (*size_px, ImageSamples::PerPixel(*samples_per_px), measure, picture, system)
+        Sensor::Perspective(sensor) => {
+            (sensor.size_px, ImageSamples::PerPixel(sensor.samples_per_px))
         }
-        Sensor::Directions { .. } | Sensor::Photons { .. } => return None,
+        Sensor::Fisheye(sensor) => (sensor.size_px, ImageSamples::PerPixel(sensor.samples_per_px)),
+        Sensor::Directions(_) | Sensor::Photons(_) => return None,
     };
     Some(ImageSensor {
         size: UVec2::from(size),
         optics: camera(sensor, place)?,
         samples,
         until: stop_criteria(sensor),
-        measure: image_measures(measure),
-        picture: resolve_picture(picture, resources)?,
-        system: system_of(*system),
+        measure: image_measures(&image.measure),
+        picture: resolve_picture(&image.picture, resources)?,
+        system: system_of(image.system),
     })
 }
 
@@ -66,65 +59,45 @@ fn resolve_picture(picture: &document::Picture, resources: &Resources) -> Option
 
 fn camera(sensor: &Sensor, place: &SensorPlace) -> Option<Optics> {
     Some(match sensor {
-        Sensor::Orthographic {
-            pixel_m,
-            extent_m,
-            cover,
-            center_m,
-            zenith_deg,
-            azimuth_deg,
-            virtual_plane,
-            ..
-        } => {
+        Sensor::Orthographic(sensor) => {
             let middle = place.corner + 0.5 * place.size;
             // `document::check` asks for exactly one of the two.
-            let footprint = match (cover, extent_m) {
+            let footprint = match (&sensor.cover, sensor.extent_m) {
                 (None, Some(extent)) => Footprint::Rectangle {
-                    extent: DVec2::from(*extent),
-                    center: center_m.map_or(middle, DVec2::from),
+                    extent: DVec2::from(extent),
+                    center: sensor.center_m.map_or(middle, DVec2::from),
                 },
                 (Some(Cover::WholeScene), _) | (None, None) => Footprint::WholeScene,
             };
-            let view = view(*zenith_deg, *azimuth_deg);
-            let plane = resolve_plane(virtual_plane.as_ref(), place.corner, place.size);
-            Optics::Orthographic(Orthographic { footprint, pixel: *pixel_m, view, plane })
+            let view = view(sensor.zenith_deg, sensor.azimuth_deg);
+            let plane = resolve_plane(sensor.virtual_plane.as_ref(), place.corner, place.size);
+            Optics::Orthographic(Orthographic { footprint, pixel: sensor.pixel_m, view, plane })
         }
-        Sensor::Perspective {
-            position_m, target_m, up, fov_deg, above_ground, sees_sky, ..
-        } => Optics::Perspective(Perspective {
+        Sensor::Perspective(sensor) => Optics::Perspective(Perspective {
             stand: Stand {
-                position: DVec3::from(*position_m),
-                look: Look::Target(DVec3::from(*target_m)),
-                up: DVec3::from(*up),
-                above_ground: *above_ground,
+                position: DVec3::from(sensor.position_m),
+                look: Look::Target(DVec3::from(sensor.target_m)),
+                up: DVec3::from(sensor.up),
+                above_ground: sensor.above_ground,
             },
-            field: DVec2::new(fov_deg.0.to_radians(), fov_deg.1.to_radians()),
-            sees_sky: *sees_sky,
+            field: DVec2::new(sensor.fov_deg.0.to_radians(), sensor.fov_deg.1.to_radians()),
+            sees_sky: sensor.sees_sky,
         }),
-        Sensor::Fisheye {
-            position_m,
-            look,
-            up,
-            fov_deg,
-            projection,
-            above_ground,
-            sees_sky,
-            ..
-        } => {
-            let (look, usual_up) = look_of(look);
+        Sensor::Fisheye(sensor) => {
+            let (look, usual_up) = look_of(&sensor.look);
             Optics::Fisheye(Fisheye {
                 stand: Stand {
-                    position: DVec3::from(*position_m),
+                    position: DVec3::from(sensor.position_m),
                     look,
-                    up: up.map_or(usual_up, DVec3::from),
-                    above_ground: *above_ground,
+                    up: sensor.up.map_or(usual_up, DVec3::from),
+                    above_ground: sensor.above_ground,
                 },
-                mapping: mapping(projection),
-                field: fov_deg.to_radians(),
-                sees_sky: *sees_sky,
+                mapping: mapping(&sensor.projection),
+                field: sensor.fov_deg.to_radians(),
+                sees_sky: sensor.sees_sky,
             })
         }
-        Sensor::Directions { .. } | Sensor::Photons { .. } => return None,
+        Sensor::Directions(_) | Sensor::Photons(_) => return None,
     })
 }
 

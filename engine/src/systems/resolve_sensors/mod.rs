@@ -54,21 +54,23 @@ fn sensor(
     resources: &mut Resources,
 ) -> Option<Sensor> {
     Some(match sensor {
-        document::Sensor::Orthographic { .. }
-        | document::Sensor::Perspective { .. }
-        | document::Sensor::Fisheye { .. } => Sensor::Image(image(sensor, place, resources)?),
-        document::Sensor::Directions { views, until: _, measure, virtual_plane, system } => {
+        document::Sensor::Orthographic(_)
+        | document::Sensor::Perspective(_)
+        | document::Sensor::Fisheye(_) => Sensor::Image(image(sensor, place, resources)?),
+        document::Sensor::Directions(directions) => {
+            let plane = directions.virtual_plane.as_ref();
+            let path = format!("{path}.views");
             Sensor::Directions(Directions {
-                views: resolve_views(views, &format!("{path}.views"), place, resources)?,
+                views: resolve_views(&directions.views, &path, place, resources)?,
                 until: stop_criteria(sensor),
-                measure: image_measures(measure),
-                plane: resolve_plane(virtual_plane.as_ref(), place.corner, place.size),
-                system: system.map(system_of),
+                measure: image_measures(&directions.measure),
+                plane: resolve_plane(plane, place.corner, place.size),
+                system: directions.system.map(system_of),
             })
         }
-        document::Sensor::Photons { per_m2, until: _, measure, virtual_plane, system } => {
+        document::Sensor::Photons(photons) => {
             let mut measures = Vec::new();
-            for (index, measure) in measure.iter().enumerate() {
+            for (index, measure) in photons.measure.iter().enumerate() {
                 let at = format!("{path}.measure[{index}]");
                 measures.push(match measure {
                     document::PhotonMeasure::BrfCells(cells) => PhotonMeasure::BrfCells(*cells),
@@ -109,11 +111,14 @@ fn sensor(
                     }
                 });
             }
-            let plane = resolve_plane(virtual_plane.as_ref(), place.corner, place.size);
-            let until = stop_criteria(sensor);
-            let system = system_of(*system);
-            let (per_area, measure) = (*per_m2, measures);
-            Sensor::Photons(Photons { per_area, until, measure, plane, system })
+            let plane = photons.virtual_plane.as_ref();
+            Sensor::Photons(Photons {
+                per_area: photons.per_m2,
+                until: stop_criteria(sensor),
+                measure: measures,
+                plane: resolve_plane(plane, place.corner, place.size),
+                system: system_of(photons.system),
+            })
         }
     })
 }

@@ -3,7 +3,7 @@ mod table;
 use std::collections::BTreeSet;
 
 use super::Resources;
-use crate::document::{Diagnostic, IRRADIANCE, Spectrum, unknown_name};
+use crate::document::{Diagnostic, IRRADIANCE, Prospect, Spectrum, unknown_name};
 use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
 use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
 
@@ -87,10 +87,10 @@ pub(super) fn reads_file<'a>(mut spectrum: &'a Spectrum, resources: &'a Resource
     // Names that go in a circle end after as many steps as there are names.
     for _ in 0..=resources.spectra.len() {
         let Spectrum::Named(name) = spectrum else { break };
-        let Some(named) = resources.spectra.get(name) else { break };
+        let Some(named) = resources.spectra.get(name.as_str()) else { break };
         spectrum = named;
     }
-    matches!(spectrum, Spectrum::Table { .. })
+    matches!(spectrum, Spectrum::Table(_))
 }
 
 fn resolve(
@@ -105,14 +105,14 @@ fn resolve(
         Spectrum::Constant(value) => Ok(vec![*value; bands]),
         Spectrum::Bands(values) => Ok(values.clone()),
         Spectrum::Points(points) => mean_over_bands(points, quantity, path, resources),
-        Spectrum::Table { .. } => table_means(spectrum, quantity, path, resources),
+        Spectrum::Table(table) => table_means(table, quantity, path, resources),
         Spectrum::AstmG173 => astm_g173(quantity, path, resources),
         Spectrum::Named(name) => {
-            let Some(named) = resources.spectra.get(name) else {
+            let Some(named) = resources.spectra.get(name.as_str()) else {
                 let known = resources.spectra.keys().map(String::as_str);
                 return Err(Box::new(unknown_name(path, "spectrum", name, known)));
             };
-            if !visited.insert(name.clone()) {
+            if !visited.insert(name.to_string()) {
                 let problem = Diagnostic::error(path, format!("spectrum `{name}` names itself"));
                 let help = "give it values: Constant, Bands, Points, Table or Prospect";
                 return Err(Box::new(problem.help(help)));
@@ -120,7 +120,7 @@ fn resolve(
             let named = named.clone();
             resolve(&named, quantity, &format!("spectra.{name}"), visited, resources)
         }
-        &Spectrum::Prospect {
+        &Spectrum::Prospect(Prospect {
             n,
             chlorophyll_ug_cm2,
             carotenoid_ug_cm2,
@@ -130,7 +130,7 @@ fn resolve(
             dry_matter_g_cm2,
             protein_g_cm2,
             carbon_g_cm2,
-        } => {
+        }) => {
             let chemistry = LeafChemistry {
                 n,
                 chlorophyll: chlorophyll_ug_cm2,

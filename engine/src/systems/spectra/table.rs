@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Quantity, STRONG, warn_wide_bands};
 use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
-use crate::document::{Band, Diagnostic, Spectrum, ValueUnit, WavelengthUnit};
+use crate::document::{Band, Diagnostic, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 use crate::spectral::band_mean;
 use crate::systems::Resources;
 
@@ -39,14 +39,12 @@ struct Values<'a> {
 
 /// Mean in each band of a spectrum that a table holds.
 pub(super) fn table_means(
-    spectrum: &Spectrum,
+    spectrum: &TabulatedSpectrum,
     quantity: Quantity,
     path: &str,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
-    let Spectrum::Table { file, wavelength, value, wavelength_unit, unit, scale } = spectrum else {
-        return Err(Box::new(Diagnostic::error(path, "this spectrum is no table")));
-    };
+    let TabulatedSpectrum { file, wavelength, value, wavelength_unit, unit, scale } = spectrum;
     let path = format!("{path}.file");
     let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
     let table = read_spectrum(&resources.file(file), &columns)

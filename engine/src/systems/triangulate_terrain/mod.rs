@@ -50,8 +50,8 @@ fn terrain_patch(
         return Some(patch);
     }
     let path = match terrain {
-        Terrain::Plane { .. } => "terrain.size_m",
-        Terrain::Raster { .. } | Terrain::Mesh { .. } => "terrain",
+        Terrain::Plane(_) => "terrain.size_m",
+        Terrain::Raster(_) | Terrain::Mesh { .. } => "terrain",
     };
     let message = format!("the ground is {x:?} m x {y:?} m: at least {SMALLEST_M} m are expected");
     let problem = Diagnostic::error(path, message).help("extents are in metres");
@@ -67,11 +67,12 @@ fn patch_of_any_size(
 ) -> Option<TerrainPatch> {
     let projection = frame_projection(map, resources);
     let patch = match terrain {
-        Terrain::Plane { size_m, material, corner_m, height_m } => {
-            let material = resources.material(material, "terrain.material")?;
-            plane(DVec2::from(*corner_m), DVec2::from(*size_m), *height_m, material)
+        Terrain::Plane(ground) => {
+            let material = resources.material(&ground.material, "terrain.material")?;
+            let (corner, size) = (DVec2::from(ground.corner_m), DVec2::from(ground.size_m));
+            plane(corner, size, ground.height_m, material)
         }
-        Terrain::Raster { .. } => return raster_patch(terrain, map, resources),
+        Terrain::Raster(raster) => return raster_patch(raster, map, resources),
         Terrain::Mesh { mesh, at_m } => mesh_patch(mesh, DVec3::from(*at_m), world, resources)?,
     };
     Some(TerrainPatch { projection, ..patch })

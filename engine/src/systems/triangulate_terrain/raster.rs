@@ -5,7 +5,7 @@ use super::no_data::fill_no_data;
 use super::steepness::warn_steepness;
 use crate::assets::{Extent, Projection, Raster};
 use crate::components::TerrainPatch;
-use crate::document::{Coordinates, Diagnostic, Terrain};
+use crate::document::{Coordinates, Diagnostic, TerrainRaster};
 use crate::geometry::Rectangle;
 use crate::systems::Resources;
 use crate::systems::georeference::{
@@ -22,11 +22,11 @@ const NARROWING: f64 = 0.01;
 
 /// Ground of a raster.
 pub(super) fn raster_patch(
-    terrain: &Terrain,
+    terrain: &TerrainRaster,
     map: &mut MapFrame,
     resources: &mut Resources,
 ) -> Option<TerrainPatch> {
-    let Terrain::Raster {
+    let TerrainRaster {
         file,
         material,
         land_cover,
@@ -38,10 +38,7 @@ pub(super) fn raster_patch(
         height_unit_m,
         size_m,
         ..
-    } = terrain
-    else {
-        return None;
-    };
+    } = terrain;
     let (east, north, up) = resources.frame.origin_m;
     let extent = window.as_ref().map(|window| {
         let corner = DVec2::from(window.corner_m) + DVec2::new(east, north);
@@ -89,7 +86,7 @@ pub(super) fn raster_patch(
     warn_steepness(&heights, resources);
     let (cover, parts) = match (material, land_cover) {
         (Some(name), _) => {
-            (None, vec![(name.clone(), resources.material(name, "terrain.material")?)])
+            (None, vec![(name.to_string(), resources.material(name, "terrain.material")?)])
         }
         (None, Some(cover)) => {
             let rectangle = Rectangle { min: corner, max: corner + size };
@@ -127,13 +124,11 @@ fn projection_of_raster(
 /// South-west corner and extent of a raster, m, local frame.
 fn rectangle_of(
     raster: &Raster,
-    terrain: &Terrain,
+    terrain: &TerrainRaster,
     map: &MapFrame,
     resources: &mut Resources,
 ) -> Option<(DVec2, DVec2)> {
-    let Terrain::Raster { coordinates, corner_m, size_m, .. } = terrain else {
-        return None;
-    };
+    let TerrainRaster { coordinates, corner_m, size_m, .. } = terrain;
     let (corner, size) = (corner_m.map(DVec2::from), size_m.map(DVec2::from));
     let Some(place) = &raster.place else {
         if size.is_none() {

@@ -10,7 +10,9 @@ use super::measure_bounds::placed_meshes;
 use super::resolve_sensors::resolve_plane;
 use super::warn_floating_instances::vertical_extent;
 use crate::components::{Instance, InstanceQuery, MeshBounds, TerrainPatch};
-use crate::document::{Diagnostic, Layers, Look, PhotonMeasure, Sensor, VirtualPlane};
+use crate::document::{
+    Diagnostic, Fisheye, Layers, Look, Perspective, PhotonMeasure, Sensor, VirtualPlane,
+};
 use crate::terrain::Ground;
 
 use camera_beside::problem_of_camera_beside;
@@ -43,19 +45,17 @@ struct CameraPlace {
 impl CameraPlace {
     fn of(sensor: &Sensor) -> Option<Self> {
         let (position, target, target_key, is_above_ground) = match sensor {
-            Sensor::Perspective { position_m, target_m, above_ground, .. } => {
+            Sensor::Perspective(Perspective { position_m, target_m, above_ground, .. }) => {
                 (position_m, Some(*target_m), "target_m", *above_ground)
             }
-            Sensor::Fisheye { position_m, look, above_ground, .. } => {
+            Sensor::Fisheye(Fisheye { position_m, look, above_ground, .. }) => {
                 let target = match look {
                     Look::Target { at_m } => Some(*at_m),
                     Look::Up | Look::Down | Look::Towards { .. } => None,
                 };
                 (position_m, target, "look", *above_ground)
             }
-            Sensor::Orthographic { .. } | Sensor::Directions { .. } | Sensor::Photons { .. } => {
-                return None;
-            }
+            Sensor::Orthographic(_) | Sensor::Directions(_) | Sensor::Photons(_) => return None,
         };
         let target = target.map(DVec3::from);
         Some(Self { position: DVec3::from(*position), target, target_key, is_above_ground })
@@ -144,11 +144,11 @@ pub(super) fn warn_sensor_heights(world: &mut World, resources: &mut Resources) 
             let frame = DVec2::new(x, y);
             diagnostics.extend(warn_camera(&camera, &path, &relief, frame));
         }
-        if let Some(plane) = virtual_plane(sensor) {
+        if let Some(plane) = sensor.virtual_plane() {
             diagnostics.extend(check_plane_height(plane, &path, &relief, patch));
         }
-        let Sensor::Photons { measure, .. } = sensor else { continue };
-        for (index, measure) in measure.iter().enumerate() {
+        let Sensor::Photons(photons) = sensor else { continue };
+        for (index, measure) in photons.measure.iter().enumerate() {
             let at = format!("{path}.measure[{index}]");
             match measure {
                 PhotonMeasure::Fluxes { heights_m, .. } => {
@@ -192,15 +192,6 @@ fn check_plane_height(
         );
         Diagnostic::warning(path, message).help(help)
     })
-}
-
-fn virtual_plane(sensor: &Sensor) -> Option<&VirtualPlane> {
-    match sensor {
-        Sensor::Orthographic { virtual_plane, .. }
-        | Sensor::Directions { virtual_plane, .. }
-        | Sensor::Photons { virtual_plane, .. } => virtual_plane.as_ref(),
-        Sensor::Perspective { .. } | Sensor::Fisheye { .. } => None,
-    }
 }
 
 fn warn_camera(

@@ -366,7 +366,7 @@ fn the_scene_language_describes_the_same_crown() {
         branches,
         seed,
     } = crown.clone();
-    let mesh = document::Mesh::Crown {
+    let mesh = document::GeneratedCrown {
         shape,
         base_m,
         leaf_area_m2,
@@ -376,11 +376,11 @@ fn the_scene_language_describes_the_same_crown() {
         leaf,
         overlap,
         min_distance_m,
-        leaf_material: "leaf".to_owned(),
+        leaf_material: "leaf".into(),
         trunk,
         branches,
         wood_material: None,
         seed,
     };
-    assert_eq!(CrownSpec::from_document(&mesh), Some(crown));
+    assert_eq!(CrownSpec::from_document(&mesh), crown);
 }

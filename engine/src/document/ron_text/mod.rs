@@ -1,16 +1,19 @@
-//! RON text to a tree in which every node knows its place.
+//! RON text: its tokens, its tree, in which every node knows its place, and its layout. Nothing here knows scenes.
 //!
-//! Ours, because `ron` with `serde` stops at the first error, keeps no places, and takes repeated
-//! keys and `NaN` in silence.
+//! The reader is ours, because `ron` with `serde` stops at the first error, keeps no places, and takes repeated
+//! keys and `NaN` without an error.
 
 mod comments;
+mod layout;
 mod lexer;
+mod normal;
 mod parser;
 mod strange;
 #[cfg(test)]
 mod tests;
 
-pub(super) use comments::{Comment, comments};
+pub(super) use layout::{Group, Item, Text, quoted};
+pub(super) use normal::normal_form;
 pub(super) use parser::parse;
 pub(super) use strange::decimal_advice;
 
@@ -91,30 +94,6 @@ pub(super) struct Named {
     pub(super) name_span: Span,
     /// [`Value::Tuple`] or [`Value::Record`].
     pub(super) body: Option<Node>,
-}
-
-/// One step of a path in the document.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step<'a> {
-    Key(&'a str),
-    Index(usize),
-}
-
-/// `sensors.nadir.size_px[0]`.
-pub(super) fn path_of(steps: &[Step<'_>]) -> String {
-    let mut path = String::new();
-    for step in steps {
-        match step {
-            Step::Key(key) => {
-                if !path.is_empty() {
-                    path.push('.');
-                }
-                path.push_str(key);
-            }
-            Step::Index(index) => path.extend(["[", &index.to_string(), "]"]),
-        }
-    }
-    path
 }
 
 impl Node {

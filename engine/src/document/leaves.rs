@@ -1,0 +1,71 @@
+//! All numbers, names of definitions and paths of files in a document, each with the keys that it stands under.
+
+use super::encode::Encode;
+use super::path::Step;
+use super::scene::Scene;
+
+/// A value without parts that means something beyond itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Leaf<'a> {
+    /// A real number.
+    Number(f64),
+    /// Name of a definition.
+    Reference {
+        /// What it refers to.
+        target: Target,
+        /// The name.
+        name: &'a str,
+    },
+    /// Path of a file.
+    File(&'a str),
+}
+
+/// Definitions that a name refers to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Target {
+    /// What a person calls such a definition.
+    pub(super) kind: &'static str,
+    /// Key of the scene that holds the definitions.
+    pub(super) key: &'static str,
+    /// Returns whether a definition has this name.
+    pub(super) is_defined: fn(&Scene, &str) -> bool,
+    /// Returns the names of all definitions.
+    pub(super) names: fn(&Scene) -> Vec<&str>,
+}
+
+/// Function that receives the path to a leaf and the leaf.
+pub(super) type Visit<'v, 'a> = &'v mut dyn FnMut(&[Step<'a>], Leaf<'a>);
+
+/// Traversal of all leaves of a document.
+pub(super) struct Walk<'v, 'a> {
+    steps: Vec<Step<'a>>,
+    visit: Visit<'v, 'a>,
+}
+
+impl<'a> Walk<'_, 'a> {
+    /// Visits all leaves below a step.
+    pub(super) fn below(&mut self, step: Step<'a>, value: &'a (impl Encode + ?Sized)) {
+        self.steps.push(step);
+        value.visit(self);
+        self.steps.pop();
+    }
+
+    /// Visits the key of a map, which stands at the step to its value.
+    pub(super) fn key(&mut self, name: &'a str, leaf: Option<Leaf<'a>>) {
+        if let Some(leaf) = leaf {
+            self.steps.push(Step::Name(name));
+            self.leaf(leaf);
+            self.steps.pop();
+        }
+    }
+
+    /// Visits a leaf at the present path.
+    pub(super) fn leaf(&mut self, leaf: Leaf<'a>) {
+        (self.visit)(&self.steps, leaf);
+    }
+}
+
+/// Visits all leaves of a value.
+pub(super) fn visit_leaves<'a>(value: &'a impl Encode, visit: Visit<'_, 'a>) {
+    value.visit(&mut Walk { steps: Vec::new(), visit });
+}

@@ -1,0 +1,124 @@
+//! What all images have in common, and images by parallel projection.
+
+use super::{Band, Ends, Scene, System, VirtualPlane};
+
+record! {
+    /// Keys that all images have.
+    pub struct ImageOptions ("options of an image") {
+        /// When it is good enough; the number of samples then is no limit.
+        until: Option<Ends> = None,
+        /// What to report.
+        measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
+        /// How its PNG is coloured.
+        picture: Picture = Picture::Quicklook,
+        /// Which transport system estimates it.
+        system: System = System::Backward,
+    }
+}
+
+record! {
+    /// Parallel-projection image.
+    pub struct Orthographic ("an orthographic image") {
+        /// Columns and rows; either this or `pixel_m` is required.
+        size_px: Option<(u32, u32)> => "(256, 256)" = None,
+        /// Side of a square pixel in the plane perpendicular to the view, m, in place of `size_px`. A
+        /// footprint that is no whole number of pixels grows around its middle to the next one.
+        pixel_m: Option<f64> = None,
+        /// Width and height of the footprint in the plane perpendicular to the view, m.
+        extent_m: Option<(f64, f64)> = None,
+        /// `WholeScene`, in place of `extent_m` and `center_m`.
+        cover: Option<Cover> = None,
+        /// Point on the ground in the middle of the image, m; the terrain's middle if absent.
+        center_m: Option<(f64, f64)> = None,
+        /// Zenith angle of the sensor, degrees.
+        zenith_deg: f64 = 0.0,
+        /// Where the sensor is, clockwise from north, degrees. A nadir image has north up at 180.
+        azimuth_deg: f64 = 180.0,
+        /// Samples per pixel; 64 if neither this nor `samples_per_m2` is written.
+        samples_per_px: Option<u32> = None,
+        /// Samples per m² of the footprint, in place of `samples_per_px`.
+        samples_per_m2: Option<f64> = None,
+        /// Only light that leaves through it is seen.
+        virtual_plane: Option<VirtualPlane> = None,
+        /// Keys of all images; this one measures BRF by default.
+        image as keys: ImageOptions =
+            ImageOptions { measure: vec![ImageMeasure::Brf], ..ImageOptions::default() },
+    }
+}
+
+choice! {
+    /// What an orthographic image covers where it is no rectangle of its own.
+    pub enum Cover ("what an image covers") {
+        /// All that stands on the terrain's rectangle, from whichever side.
+        WholeScene,
+    }
+}
+
+choice! {
+    /// What an image holds.
+    pub enum ImageMeasure ("a measure of an image") {
+        /// Radiance, W m⁻² sr⁻¹ nm⁻¹, from the sources that the band names.
+        Radiance,
+        /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
+        Brf,
+        /// The same, split as RAMI does: `brf_uc` (scattered once, by the ground), `brf_co_sgl`
+        /// (once, by anything else) and `brf_mlt` (more often).
+        Orders,
+        /// Temperature of the black body of this radiance, K, in bands that hold emission.
+        BrightnessTemperature,
+        /// Shares of sunlit ground, sunlit canopy, shaded ground and shaded canopy in what is seen;
+        /// of an image the dominant one too. Sunlit is where the sun is visible from the side that
+        /// is seen, so a leaf that is lit from above is shaded from below; temperatures of `SunlitShaded`
+        /// count both sides of it as sunlit. Ground is the terrain.
+        FourComponents,
+        /// Share of the ground in what is seen, or of the sky in a camera that looks up; of directions,
+        /// and of a fisheye that looks straight up or down, the leaf area index that it implies too.
+        GapFraction,
+    }
+}
+
+impl ImageMeasure {
+    /// Returns whether a transport system estimates it in a scene. `FirstOrder` and `Reference` measure reflected
+    /// light, `FirstOrder` that of all orders only where no more than one counts; the surface that is seen first is
+    /// measured backwards.
+    #[must_use]
+    pub fn is_measured_by(&self, system: System, scene: &Scene) -> bool {
+        let has_all_orders = system != System::FirstOrder || scene.transport.most_orders() == 1;
+        let has_emission = !matches!(system, System::FirstOrder | System::Reference);
+        match self {
+            Self::Orders => system != System::Reference,
+            Self::Brf => has_all_orders,
+            Self::Radiance => {
+                has_all_orders && (has_emission || !scene.bands.iter().any(Band::emits))
+            }
+            Self::BrightnessTemperature => has_emission,
+            Self::FourComponents | Self::GapFraction => system == System::Backward,
+        }
+    }
+}
+
+choice! {
+    /// How the PNG of an image is coloured. The numbers are in the other files.
+    pub enum Picture ("a picture") {
+        /// For a first look: bands chosen by wavelength, each stretched.
+        Quicklook,
+        /// Three bands.
+        Bands {
+            /// Band that is shown as red.
+            red: String => "\"nir\"",
+            /// Band that is shown as green.
+            green: String => "\"red\"",
+            /// Band that is shown as blue.
+            blue: String => "\"green\"",
+            /// Stops over the exposure that shows a white surface on the horizontal as white;
+            /// automatic if absent.
+            exposure_stops: Option<f64> = None,
+        },
+        /// What a person would see in daylight, from ten bands or more between 380 and 780 nm.
+        Cie {
+            /// Stops over the exposure that shows a white surface on the horizontal as white;
+            /// automatic if absent.
+            exposure_stops: Option<f64> = None,
+        },
+    }
+}

@@ -1,0 +1,167 @@
+//! What measures the light, and how it is traced.
+
+mod camera;
+mod directions;
+mod image;
+mod photons;
+mod system;
+
+pub use camera::{Fisheye, FisheyeProjection, Look, Perspective};
+pub use directions::{Directions, Views, VirtualPlane};
+pub use image::{Cover, ImageMeasure, ImageOptions, Orthographic, Picture};
+pub use photons::{Layers, Per, PhotonMeasure, Photons};
+pub use system::System;
+
+use super::until::{Ends, Until};
+use super::{Band, Scene};
+
+choice! {
+    /// A sensor.
+    pub enum Sensor ("a sensor") {
+        /// Parallel-projection image.
+        Orthographic(..Orthographic),
+        /// Image of a camera in the scene or beside it, straight lines stay straight.
+        Perspective(..Perspective),
+        /// Image of a camera that sees a hemisphere or more of its surroundings, as a disc as wide
+        /// as the image's shorter side; no data beside it. Of the sun it sees what it lights, not
+        /// the disc.
+        Fisheye(..Fisheye),
+        /// The scene seen from many directions: the mean over all lines through the rectangle of its
+        /// ground. `scenes/ISOLATED.md` says what that is where the scene ends.
+        Directions(..Directions),
+        /// Photon packets from sun and sky, and from what surfaces and `thermal_sky` emit.
+        Photons(..Photons),
+    }
+}
+
+impl Sensor {
+    /// Options of an image; `None` for directions and photons.
+    #[must_use]
+    pub const fn image_options(&self) -> Option<&ImageOptions> {
+        match self {
+            Self::Orthographic(sensor) => Some(&sensor.image),
+            Self::Perspective(sensor) => Some(&sensor.image),
+            Self::Fisheye(sensor) => Some(&sensor.image),
+            Self::Directions(_) | Self::Photons(_) => None,
+        }
+    }
+
+    /// What an image or a list of directions is to report; `None` for photons.
+    #[must_use]
+    pub fn image_measures(&self) -> Option<&[ImageMeasure]> {
+        match self {
+            Self::Directions(sensor) => Some(&sensor.measure),
+            other => other.image_options().map(|image| image.measure.as_slice()),
+        }
+    }
+
+    /// Virtual plane through which light counts, if there is one.
+    #[must_use]
+    pub const fn virtual_plane(&self) -> Option<&VirtualPlane> {
+        match self {
+            Self::Orthographic(sensor) => sensor.virtual_plane.as_ref(),
+            Self::Directions(sensor) => sensor.virtual_plane.as_ref(),
+            Self::Photons(sensor) => sensor.virtual_plane.as_ref(),
+            Self::Perspective(_) | Self::Fisheye(_) => None,
+        }
+    }
+
+    /// Transport systems that can measure it, or some of what it is to report.
+    #[must_use]
+    pub const fn systems(&self) -> &'static [System] {
+        match self {
+            Self::Orthographic(_) | Self::Directions(_) => {
+                &[System::Backward, System::Forward, System::FirstOrder, System::Reference]
+            }
+            Self::Perspective(_) | Self::Fisheye(_) => {
+                &[System::Backward, System::FirstOrder, System::Reference]
+            }
+            Self::Photons(_) => &[System::Forward, System::Analog],
+        }
+    }
+
+    /// The transport system that it asks for.
+    #[must_use]
+    pub fn system(&self) -> Option<System> {
+        match self {
+            Self::Directions(sensor) => sensor.system,
+            Self::Photons(sensor) => Some(sensor.system),
+            other => other.image_options().map(|image| image.system),
+        }
+    }
+
+    /// The same sensor, and of what it is to report in a scene as much as a system can measure; `None`
+    /// if that is nothing. Where that is not all, the loosest of limits to the errors of single products
+    /// holds for every one that is left.
+    #[must_use]
+    pub fn measured_by(&self, by: System, scene: &Scene) -> Option<Self> {
+        let mut sensor = self.clone();
+        let measures = self.measures();
+        match &mut sensor {
+            Self::Orthographic(Orthographic { image, .. })
+            | Self::Perspective(Perspective { image, .. })
+            | Self::Fisheye(Fisheye { image, .. }) => {
+                image.measure.retain(|measure| measure.is_measured_by(by, scene));
+                image.system = by;
+            }
+            Self::Photons(Photons { measure, system, .. }) => {
+                measure.retain(|measure| measure.is_measured_by(by));
+                if !measure.iter().any(PhotonMeasure::is_radiance) {
+                    measure.retain(|measure| *measure != PhotonMeasure::BrightnessTemperature);
+                }
+                *system = by;
+            }
+            Self::Directions(Directions { measure, system, .. }) => {
+                measure.retain(|measure| measure.is_measured_by(by, scene));
+                *system = Some(by);
+            }
+        }
+        if sensor.measures() == 0 {
+            return None;
+        }
+        if sensor.measures() < measures {
+            sensor.loosen();
+        }
+        self.systems().contains(&by).then_some(sensor)
+    }
+
+    /// Number of its measures.
+    fn measures(&self) -> usize {
+        match self {
+            Self::Photons(sensor) => sensor.measure.len(),
+            other => other.image_measures().map_or(0, <[ImageMeasure]>::len),
+        }
+    }
+
+    /// Puts a limit for all products in the place of limits by name.
+    fn loosen(&mut self) {
+        let ends = match self {
+            Self::Directions(sensor) => Some(&mut sensor.until),
+            Self::Photons(Photons { until, .. })
+            | Self::Orthographic(Orthographic { image: ImageOptions { until, .. }, .. })
+            | Self::Perspective(Perspective { image: ImageOptions { until, .. }, .. })
+            | Self::Fisheye(Fisheye { image: ImageOptions { until, .. }, .. }) => until.as_mut(),
+        };
+        for end in ends.into_iter().flat_map(|ends| &mut ends.0) {
+            if let Until::RelErrors(limits) = end {
+                *end = Until::RelError(limits.values().copied().fold(0.0, f64::max));
+            }
+        }
+    }
+
+    /// Ends of its measurement, if any are written.
+    #[must_use]
+    pub fn ends(&self) -> Option<&Ends> {
+        match self {
+            Self::Directions(sensor) => Some(&sensor.until),
+            Self::Photons(sensor) => sensor.until.as_ref(),
+            other => other.image_options().and_then(|image| image.until.as_ref()),
+        }
+    }
+
+    /// When it is good enough, if that is written.
+    #[must_use]
+    pub fn until(&self) -> &[Until] {
+        self.ends().map_or(&[], |ends| &ends.0)
+    }
+}
