@@ -158,6 +158,48 @@ fn light_of_the_first_order_is_what_walks_and_packets_find_of_it() {
     }
 }
 
+/// *Scene*: the grove under a sun with a disc and a sky, periodic and isolated. *Expected*: the reference integrator,
+/// one plain loop without roulette by throughput, batches or lobes evaluated later, agrees with backward paths and
+/// with packets: images, cameras and directions.
+#[test]
+fn the_reference_integrator_finds_what_the_others_find() {
+    for light in ["boundary: Periodic,", "boundary: Isolated, transport: (max_order: 3),"] {
+        let light = format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.2])), {light}");
+        let sensors = |(system, more): (&str, u32)| {
+            let keys = format!("measure: [Brf], system: {system}");
+            let camera = format!(
+                r#""camera {system}": Perspective(size_px: (4, 3), position_m: (2.0, 0.0, 3.0), target_m: (2.5, 2.5, 1.0),
+            fov_deg: (50.0, 40.0), sees_sky: true, samples_per_px: {}, {keys}),"#,
+                1024 * more
+            );
+            format!(
+                r#"
+        "views {system}": Directions(views: List([(0.0, 0.0), (40.0, 100.0), (60.0, 190.0)]), until: Samples({}), {keys}),
+        "image {system}": Orthographic(size_px: (3, 3), extent_m: (4.0, 4.0), samples_per_px: {}, {keys}),
+        {}"#,
+                20_000 * more,
+                1024 * more,
+                if system == "Forward" { "" } else { &camera }
+            )
+        };
+        let systems = [("Reference", 1), ("Backward", 1), ("Forward", 4)];
+        let report = grove(&light, &systems.map(sensors).concat());
+        let hdrf = |sensor: &str| whole(product(&report, sensor, "hdrf"));
+        let mut known = 0;
+        for (sensor, system) in [
+            ("views", "Backward"),
+            ("image", "Backward"),
+            ("camera", "Backward"),
+            ("views", "Forward"),
+            ("image", "Forward"),
+        ] {
+            let reference = hdrf(&format!("{sensor} Reference"));
+            known += agreeing(&reference, &hdrf(&format!("{sensor} {system}")));
+        }
+        assert!(known >= 40, "{light}: {known} values");
+    }
+}
+
 /// The values of a product and, of an image, those of its pixels.
 fn whole(product: &Product) -> Product {
     let mut product = product.clone();
