@@ -42,9 +42,12 @@ fn rpv(sun: f64, view: f64, azimuth: f64) -> f64 {
     let ((sin_i, cos_i), (sin_o, cos_o)) = (sun.sin_cos(), view.sin_cos());
     let cos_g = cos_i * cos_o + sin_i * sin_o * azimuth.cos();
     let (tan_i, tan_o) = (sin_i / cos_i, sin_o / cos_o);
-    let distance = (tan_i * tan_i + tan_o * tan_o - 2.0 * tan_i * tan_o * azimuth.cos()).max(0.0).sqrt();
+    let distance =
+        (tan_i * tan_i + tan_o * tan_o - 2.0 * tan_i * tan_o * azimuth.cos()).max(0.0).sqrt();
     let phase = (1.0 - theta * theta) / (1.0 + 2.0 * theta * cos_g + theta * theta).powf(1.5);
-    rho0 * (cos_i * cos_o * (cos_i + cos_o)).powf(k - 1.0) * phase * (1.0 + (1.0 - rho_c) / (1.0 + distance))
+    rho0 * (cos_i * cos_o * (cos_i + cos_o)).powf(k - 1.0)
+        * phase
+        * (1.0 + (1.0 - rho_c) / (1.0 + distance))
 }
 
 /// *Scene*: bare ground of RPV under the sun. *Expected*: its BRF is the formula in every view, by every system;
@@ -61,9 +64,13 @@ fn bare_rpv_ground_has_the_brf_of_its_formula() {
     for sensor in ["back", "forth", "plain"] {
         let brf = product(&report, sensor, "brf");
         for (view, (zenith, azimuth)) in views.into_iter().enumerate() {
-            let expected = rpv(50_f64.to_radians(), f64::to_radians(zenith), f64::to_radians(azimuth - 10.0));
+            let expected =
+                rpv(50_f64.to_radians(), f64::to_radians(zenith), f64::to_radians(azimuth - 10.0));
             let value = Estimate::of(brf, 3 * view).value;
-            assert!((value / expected - 1.0).abs() < 1e-4, "{sensor}, {zenith}: {value} for {expected}");
+            assert!(
+                (value / expected - 1.0).abs() < 1e-4,
+                "{sensor}, {zenith}: {value} for {expected}"
+            );
         }
     }
     let n = 400;
@@ -86,7 +93,8 @@ fn bare_rpv_ground_has_the_brf_of_its_formula() {
 #[test]
 fn systems_agree_on_models_that_depend_on_directions() {
     for (ground, boundary) in [("rpv", "Periodic"), ("soilspect", "Isolated")] {
-        let keys = format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.0])), boundary: {boundary},");
+        let keys =
+            format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.0])), boundary: {boundary},");
         let views = "views: List([(0.0, 0.0), (45.0, 15.0), (60.0, 190.0)]), until: Samples(40000)";
         let measures = "measure: [Albedo, BrfCones([(40.0, 100.0, 20.0)]), Fapar(layer_m: 1.0)]";
         let sensors = format!(

@@ -1,9 +1,15 @@
+use std::collections::BTreeMap;
+
 use hecs::World;
 
 use super::spectra::{Quantity, reads_file, resolve_spectrum};
 use super::{Resources, set_component};
-use crate::components::{EnergyGain, LambertianOptics, MaterialId, SurfaceOptics};
-use crate::document::{Diagnostic, Material, Spectrum};
+use crate::components::{
+    EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, MaterialId, RpvParameters,
+    SoilspectParameters, SurfaceOptics,
+};
+use crate::document::{Diagnostic, Lambertian, Leaf, Material, Rpv, Spectrum, SurfaceQuantity};
+use crate::scattering::ModelFault;
 
 /// Resolves the spectra of used materials to bands, and checks the others as far as that takes no file. Reads
 /// `document::Material` and the resources `spectra`, `bands` and `used_materials`; writes [`SurfaceOptics`].
@@ -20,7 +26,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
             let material = world.get::<&Material>(entity);
             let material = material.expect("`spawn` gives materials their source");
             let reads_file =
-                material.spectra().any(|(_, spectrum)| reads_file(spectrum, resources));
+                material.spectra().iter().any(|(_, spectrum, _)| reads_file(spectrum, resources));
             if is_used || !reads_file { optics(&material, &path, resources) } else { None }
         };
         set_component(world, entity, optics.filter(|_| is_used));
@@ -29,38 +35,158 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
 
 /// Optics of a material; `None` after an error.
 fn optics(material: &Material, path: &str, resources: &mut Resources) -> Option<SurfaceOptics> {
+    match material {
+        Material::Lambertian(Lambertian { reflectance, back_reflectance, .. }) => {
+            let opaque = Spectrum::Constant(0.0);
+            let sides =
+                Sides { reflectance, back: back_reflectance.as_ref(), transmittance: &opaque };
+            lambertian(&sides, path, resources).map(SurfaceOptics::BiLambertian)
+        }
+        Material::Leaf(Leaf { reflectance, transmittance, back_reflectance, coating, .. }) => {
+            let sides = Sides { reflectance, back: back_reflectance.as_ref(), transmittance };
+            let body = lambertian(&sides, path, resources)?;
+            Some(match coating {
+                None => SurfaceOptics::BiLambertian(body),
+                Some(coating) => SurfaceOptics::GlossyLeaf(GlossyOptics {
+                    body,
+                    coating: LeafCoating {
+                        refractive_index: coating.refractive_index,
+                        roughness: coating.roughness,
+                    },
+                }),
+            })
+        }
+        Material::Rpv(surface) => {
+            let bands = rpv(surface, material, path, resources)?;
+            directional(
+                SurfaceOptics::Rpv(bands),
+                "lower `rho0`, or bring `k` nearer to 1",
+                path,
+                resources,
+            )
+        }
+        Material::Soilspect(_) => {
+            let bands = soilspect(material, path, resources)?;
+            let help = "lower `albedo`, or bring `b`, `c`, `b_prime` and `c_prime` nearer to 0";
+            directional(SurfaceOptics::Soilspect(bands), help, path, resources)
+        }
+    }
+}
+
+/// Spectra of a Lambertian surface.
+struct Sides<'s> {
+    reflectance: &'s Spectrum,
+    back: Option<&'s Spectrum>,
+    transmittance: &'s Spectrum,
+}
+
+fn lambertian(
+    sides: &Sides<'_>,
+    path: &str,
+    resources: &mut Resources,
+) -> Option<LambertianOptics> {
     let at = |key: &str| format!("{path}.{key}");
-    let reflectance = material.reflectance();
+    let Sides { reflectance, back, transmittance } = sides;
     let front = resolve_spectrum(reflectance, Quantity::Reflectance, &at("reflectance"), resources);
-    let back = match material.back_reflectance() {
+    let back = match back {
         Some(back) => {
             resolve_spectrum(back, Quantity::Reflectance, &at("back_reflectance"), resources)
         }
         None => front.clone(),
     };
-    let opaque = Spectrum::Constant(0.0);
-    let transmittance = material.transmittance().unwrap_or(&opaque);
     let through =
         resolve_spectrum(transmittance, Quantity::Transmittance, &at("transmittance"), resources);
-    match LambertianOptics::new(&front?, &back?, &through?) {
-        Ok(optics) => Some(SurfaceOptics::BiLambertian(optics)),
-        Err(EnergyGain { band, reflectance, transmittance }) => {
-            let band = &resources.bands[band].name;
-            // As many digits as tell the sum from 1, without the rounding of the sum itself.
-            let sum = format!("{:.12}", reflectance + transmittance);
-            let sum = sum.trim_end_matches('0').trim_end_matches('.');
-            resources.messages.report(
-                Diagnostic::error(
-                    path,
-                    format!(
-                        "in band `{band}` reflectance {reflectance} and transmittance \
-                             {transmittance} sum to {sum}: a surface cannot send out more light \
-                             than it receives"
-                    ),
-                )
-                .help("lower one of them so that they sum to at most 1"),
-            );
-            None
-        }
+    let EnergyGain { band, reflectance, transmittance } =
+        match LambertianOptics::new(&front?, &back?, &through?) {
+            Ok(optics) => return Some(optics),
+            Err(gain) => gain,
+        };
+    let band = &resources.bands[band].name;
+    // As many digits as tell the sum from 1, without the rounding of the sum itself.
+    let sum = format!("{:.12}", reflectance + transmittance);
+    let sum = sum.trim_end_matches('0').trim_end_matches('.');
+    let message = format!(
+        "in band `{band}` reflectance {reflectance} and transmittance {transmittance} sum to {sum}: \
+         a surface cannot send out more light than it receives"
+    );
+    let help = "lower one of them so that they sum to at most 1";
+    resources.messages.report(Diagnostic::error(path, message).help(help));
+    None
+}
+
+/// Parameters of a material by their keys, each of shape `[bands]`; `None` after an error.
+fn parameters(
+    material: &Material,
+    path: &str,
+    resources: &mut Resources,
+) -> Option<BTreeMap<&'static str, Vec<f64>>> {
+    let mut found = BTreeMap::new();
+    let spectra = material.spectra();
+    for &(key, spectrum, quantity) in &spectra {
+        let quantity = match quantity {
+            SurfaceQuantity::Fraction => Quantity::Reflectance,
+            SurfaceQuantity::Parameter { least, most } => Quantity::Parameter { least, most },
+        };
+        let values = resolve_spectrum(spectrum, quantity, &format!("{path}.{key}"), resources);
+        found.extend(values.map(|values| (key, values)));
     }
+    (found.len() == spectra.len()).then_some(found)
+}
+
+fn rpv(
+    surface: &Rpv,
+    material: &Material,
+    path: &str,
+    resources: &mut Resources,
+) -> Option<Vec<RpvParameters>> {
+    let values = parameters(material, path, resources)?;
+    let rho_c = if surface.rho_c.is_some() { "rho_c" } else { "rho0" };
+    let band = |band: usize| {
+        let value = |key: &str| values[key][band] as f32;
+        RpvParameters {
+            rho0: value("rho0"),
+            k: value("k"),
+            asymmetry: value("asymmetry"),
+            hot_spot: value(rho_c),
+        }
+    };
+    Some((0..resources.bands.len()).map(band).collect())
+}
+
+fn soilspect(
+    material: &Material,
+    path: &str,
+    resources: &mut Resources,
+) -> Option<Vec<SoilspectParameters>> {
+    let values = parameters(material, path, resources)?;
+    let band = |band: usize| {
+        let value = |key: &str| values[key][band] as f32;
+        SoilspectParameters {
+            albedo: value("albedo"),
+            roughness: value("roughness"),
+            hot_spot: value("hot_spot"),
+            backward: [value("b"), value("c")],
+            forward: [value("b_prime"), value("c_prime")],
+        }
+    };
+    Some((0..resources.bands.len()).map(band).collect())
+}
+
+/// Optics of a model that depends on both directions, if it keeps energy in every band.
+fn directional(
+    optics: SurfaceOptics,
+    help: &str,
+    path: &str,
+    resources: &mut Resources,
+) -> Option<SurfaceOptics> {
+    let Err(ModelFault { band, zenith, dhr }) = optics.check() else { return Some(optics) };
+    let message = format!(
+        "in band `{}` this surface would reflect {:.1} % of the light from a zenith angle of {:.0}°: \
+         a surface cannot send out more light than it receives",
+        resources.bands[band].name,
+        100.0 * dhr,
+        zenith.to_degrees()
+    );
+    resources.messages.report(Diagnostic::error(path, message).help(help));
+    None
 }

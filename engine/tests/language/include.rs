@@ -369,7 +369,7 @@ fn texts_are_qualified_by_the_file_that_uses_them() {
     assert!(reading.is_sound(), "{}", reading.render());
     let reflectance = |name: &str| match &reading.scene.materials[name] {
         Material::Lambertian(Lambertian { reflectance, .. }) => reflectance.clone(),
-        other @ Material::Leaf(_) => panic!("{other:?}"),
+        other => panic!("{other:?}"),
     };
     let Spectrum::Table(TabulatedSpectrum { file, .. }) = reflectance("a.leaf") else {
         panic!("a table")

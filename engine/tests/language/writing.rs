@@ -3,14 +3,14 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Area, Axis, Band, BandSource, Boundary, Cover, Directions, Distribution, Ends, Fisheye,
-    FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions, InstanceList, InstanceTable,
-    Instances, Lambertian, Layers, Leaf, Look, Map, Material, Mesh, Obj, Origin, Orthographic,
-    Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture, Prospect, ReadOptions,
-    Roulette, Rule, Scatter, Scene, Sensor, Sky, Spa, SpeciesMeshes, Spectrum, Stems, Sun,
-    SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum, Temperature, Terrain,
-    TerrainPlane, ThermalSky, Transport, Until, ValueUnit, Views, VirtualPlane, WavelengthUnit,
-    read_file, read_text,
+    Area, Axis, Band, BandSource, Boundary, Coating, Cover, Directions, Distribution, Ends,
+    Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions, InstanceList,
+    InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Mesh, Obj, Origin,
+    Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture, Prospect,
+    ReadOptions, Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, Soilspect, Spa, SpeciesMeshes,
+    Spectrum, Stems, Sun, SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum,
+    Temperature, Terrain, TerrainPlane, ThermalSky, Transport, Until, ValueUnit, Views,
+    VirtualPlane, WavelengthUnit, read_file, read_text,
 };
 
 use crate::crowns::crown;
@@ -97,16 +97,48 @@ fn material() -> BoxedStrategy<Material> {
                 Material::Lambertian(Lambertian { reflectance, back_reflectance, temperature })
             }
         ),
-        (spectrum(), spectrum(), option(spectrum()), option(temperature())).prop_map(
-            |(reflectance, transmittance, back_reflectance, temperature)| Material::Leaf(Leaf {
-                reflectance,
-                transmittance,
-                back_reflectance,
-                temperature
-            })
+        (spectrum(), spectrum(), option(spectrum()), option(coating()), option(temperature()))
+            .prop_map(|(reflectance, transmittance, back_reflectance, coating, temperature)| {
+                Material::Leaf(Leaf {
+                    reflectance,
+                    transmittance,
+                    back_reflectance,
+                    coating,
+                    temperature,
+                })
+            }),
+        (spectrum(), spectrum(), spectrum(), option(spectrum()), option(temperature())).prop_map(
+            |(rho0, k, asymmetry, rho_c, temperature)| {
+                Material::Rpv(Rpv { rho0, k, asymmetry, rho_c, temperature })
+            }
         ),
+        (
+            (spectrum(), spectrum(), spectrum()),
+            (spectrum(), spectrum(), spectrum(), spectrum()),
+            option(temperature())
+        )
+            .prop_map(
+                |((albedo, roughness, hot_spot), (b, c, b_prime, c_prime), temperature)| {
+                    Material::Soilspect(Soilspect {
+                        albedo,
+                        roughness,
+                        hot_spot,
+                        b,
+                        c,
+                        b_prime,
+                        c_prime,
+                        temperature,
+                    })
+                }
+            ),
     ]
     .boxed()
+}
+
+fn coating() -> BoxedStrategy<Coating> {
+    (number(), number())
+        .prop_map(|(refractive_index, roughness)| Coating { refractive_index, roughness })
+        .boxed()
 }
 
 fn temperature() -> BoxedStrategy<Temperature> {

@@ -127,6 +127,13 @@ impl Report<'_> {
         }
     }
 
+    fn within(&mut self, path: &str, value: f64, least: f64, most: f64) {
+        if !(least..=most).contains(&value) {
+            let message = format!("expected a number from {least} to {most}, found {value}");
+            self.push(Diagnostic::error(path, message));
+        }
+    }
+
     fn finite(&mut self, path: &str, values: &[f64]) {
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
             let message = format!("expected a finite number, found {value}");

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::super::scene::{Band, Leaf, Material, Prospect, Scene, Spectrum};
+use super::super::scene::{
+    Band, Coating, Leaf, Material, Prospect, Scene, Spectrum, SurfaceQuantity,
+};
 use super::{Report, count};
 
 /// A spectrum may name one that names one, and so on, so often.
@@ -11,14 +13,14 @@ const CHAIN: usize = 16;
 /// Shortest wavelength of a band, nm: the far ultraviolet.
 const SHORTEST_NM: f64 = 100.0;
 
-/// What a spectrum is the spectrum of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Quantity of a spectrum.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
-    /// Reflectance or transmittance, 0 to 1.
-    Fraction,
+    /// Reflectance, transmittance or parameter of a surface.
+    Surface(SurfaceQuantity),
     /// 0 or above.
     Irradiance,
-    /// Whatever those who name it take it for.
+    /// Any of these: the quantity of those who name it.
     Any,
 }
 
@@ -81,10 +83,28 @@ pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
         if let Material::Leaf(Leaf { reflectance, transmittance, .. }) = material {
             warn_two_leaves(name, [reflectance, transmittance], scene, report);
         }
-        for (key, spectrum) in material.spectra() {
+        for (key, spectrum, quantity) in material.spectra() {
             let path = format!("materials.{name}.{key}");
-            check_spectrum(&path, spectrum, Quantity::Fraction, scene, report);
+            check_spectrum(&path, spectrum, Quantity::Surface(quantity), scene, report);
         }
+        if let Material::Leaf(Leaf { coating: Some(coating), .. }) = material {
+            check_coating(&format!("materials.{name}.coating"), coating, report);
+        }
+    }
+}
+
+fn check_coating(path: &str, coating: &Coating, report: &mut Report<'_>) {
+    let Coating { refractive_index, roughness } = *coating;
+    if !(1.1..=2.0).contains(&refractive_index) {
+        let message =
+            format!("expected a refractive index from 1.1 to 2, found {refractive_index}");
+        let help = "the wax of leaves has about 1.45";
+        report.error(&format!("{path}.refractive_index"), message, help);
+    }
+    if !(0.05..=1.0).contains(&roughness) {
+        let message = format!("expected a roughness from 0.05 to 1, found {roughness}");
+        let help = "it is a slope: about 0.1 for glossy leaves, 0.5 for dull ones";
+        report.error(&format!("{path}.roughness"), message, help);
     }
 }
 
@@ -112,7 +132,10 @@ pub(super) fn check_spectrum(
     report: &mut Report<'_>,
 ) {
     let value = |report: &mut Report<'_>, path: &str, value: f64| match quantity {
-        Quantity::Fraction => report.fraction(path, value),
+        Quantity::Surface(SurfaceQuantity::Fraction) => report.fraction(path, value),
+        Quantity::Surface(SurfaceQuantity::Parameter { least, most }) => {
+            report.within(path, value, least, most);
+        }
         Quantity::Irradiance | Quantity::Any => report.at_least(path, value, 0.0),
     };
     match spectrum {
@@ -131,7 +154,7 @@ pub(super) fn check_spectrum(
         }
         Spectrum::Table(table) => report.above_zero(&format!("{path}.scale"), table.scale),
         Spectrum::AstmG173 => {
-            if quantity == Quantity::Fraction {
+            if matches!(quantity, Quantity::Surface(_)) {
                 let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
                 let help = "write `Constant(..)`, `Bands(..)`, `Points(..)`, `Table(..)` or `Prospect(..)`";
                 report.error(path, message, help);
@@ -145,8 +168,14 @@ pub(super) fn check_spectrum(
         }
         Spectrum::Prospect(leaf) => {
             check_prospect(path, leaf, report);
-            if quantity == Quantity::Irradiance {
-                refuse_leaf_as_light(path, report);
+            match quantity {
+                Quantity::Irradiance => refuse_leaf_as_light(path, report),
+                Quantity::Surface(SurfaceQuantity::Parameter { .. }) => {
+                    let message = "`Prospect` is the spectrum of a leaf, no parameter of a model";
+                    let help = "write `Constant(..)`, `Bands(..)`, `Points(..)` or `Table(..)`";
+                    report.error(path, message, help);
+                }
+                Quantity::Surface(SurfaceQuantity::Fraction) | Quantity::Any => {}
             }
         }
     }

@@ -35,7 +35,8 @@ pub use sensor::{
     VirtualPlane,
 };
 pub use spectrum::{
-    Lambertian, Leaf, Material, Prospect, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit,
+    Coating, Lambertian, Leaf, Material, Prospect, Rpv, Soilspect, Spectrum, SurfaceQuantity,
+    TabulatedSpectrum, ValueUnit, WavelengthUnit,
 };
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};

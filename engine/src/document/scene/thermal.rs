@@ -99,6 +99,8 @@ impl Material {
         match self {
             Self::Lambertian(surface) => surface.temperature.as_ref(),
             Self::Leaf(leaf) => leaf.temperature.as_ref(),
+            Self::Rpv(surface) => surface.temperature.as_ref(),
+            Self::Soilspect(soil) => soil.temperature.as_ref(),
         }
     }
 }

@@ -17,11 +17,22 @@ const WIDE_NM: f64 = 200.0;
 const VARIED: f64 = 0.25;
 
 /// Quantity that a spectrum holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
     Reflectance,
     Transmittance,
     Irradiance,
+    /// Parameter of a surface model within these bounds.
+    Parameter {
+        least: f64,
+        most: f64,
+    },
+}
+
+impl Quantity {
+    const fn is_fraction(self) -> bool {
+        matches!(self, Self::Reflectance | Self::Transmittance)
+    }
 }
 
 /// Value of a spectrum in each band, shape `[bands]`; `None` after an error.
@@ -151,7 +162,7 @@ fn resolve(
                 Quantity::Transmittance => {
                     mean_over_bands(&leaf.transmittance, quantity, path, resources)
                 }
-                Quantity::Irradiance => {
+                Quantity::Irradiance | Quantity::Parameter { .. } => {
                     let what = "Prospect gives reflectance and transmittance, no irradiance";
                     let help = "write AstmG173, Constant, Bands, Points or Table";
                     Err(Box::new(Diagnostic::error(path, what).help(help)))
@@ -207,7 +218,7 @@ fn mean_over_bands(
     path: &str,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
-    if quantity != Quantity::Irradiance {
+    if quantity.is_fraction() {
         warn_wide_bands(points, path, resources);
     }
     let means = resources.bands.iter().map(|band| {
@@ -220,11 +231,21 @@ fn mean_over_bands(
 
 /// The values, if they can be those of the quantity.
 fn lawful(values: Vec<f64>, quantity: Quantity, path: &str) -> Result<Vec<f64>, Box<Diagnostic>> {
-    let beyond = values.iter().find_map(|&value| IRRADIANCE.problem(value));
-    match beyond.filter(|_| quantity == Quantity::Irradiance) {
-        Some((message, help)) => Err(Box::new(Diagnostic::error(path, message).help(help))),
-        None => Ok(values),
-    }
+    let error = match quantity {
+        Quantity::Reflectance | Quantity::Transmittance => None,
+        Quantity::Irradiance => {
+            let beyond = values.iter().find_map(|&value| IRRADIANCE.problem(value));
+            beyond.map(|(message, help)| Diagnostic::error(path, message).help(help))
+        }
+        Quantity::Parameter { least, most } => {
+            let beyond = values.iter().find(|value| !(least..=most).contains(value));
+            beyond.map(|value| {
+                let message = format!("expected numbers from {least} to {most}, found {value}");
+                Diagnostic::error(path, message)
+            })
+        }
+    };
+    error.map_or(Ok(values), |error| Err(Box::new(error)))
 }
 
 fn problem(path: &str, error: &dyn std::error::Error) -> Diagnostic {

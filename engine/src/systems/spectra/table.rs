@@ -49,7 +49,7 @@ pub(super) fn table_means(
     let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
     let table = read_spectrum(&resources.file(file), &columns)
         .map_err(|error| Box::new(Diagnostic::error(&path, error.to_string())))?;
-    let is_fraction = quantity != Quantity::Irradiance;
+    let is_fraction = quantity.is_fraction();
     let percent = if *unit == Some(ValueUnit::Percent) { 0.01 } else { 1.0 };
     if !is_fraction && unit.is_some() {
         let message = "`unit` is that of reflectances and transmittances, and this is a radiance \
@@ -67,7 +67,7 @@ pub(super) fn table_means(
         values.check_percent(is_settled)?;
         values.check_scale()?;
         values.warn_noise(&mut warnings);
-    } else {
+    } else if quantity == Quantity::Irradiance {
         values.warn_strong(&mut warnings);
     }
     let bands = &resources.bands;
