@@ -9,8 +9,8 @@ use sunfleck_tests::{Estimate, measure, product};
 
 /// Grounds, and a leaf with a coating, in two bands and one of emission.
 const MATERIALS: &str = r#"
-        "rpv": Rpv(rho0: Bands([0.05, 0.1, 0.03]), k: Bands([0.95, 0.6, 0.9]), asymmetry: Bands([-0.1, -0.2, 0.0]),
-            rho_c: Bands([0.05, 0.1, 0.03]), temperature: Uniform(300.0)),
+        "rpv": Rpv(rho0: Bands([0.05, 0.1, 0.1]), k: Bands([0.95, 0.6, 0.6]), asymmetry: Bands([-0.1, -0.2, 0.0]),
+            rho_c: Bands([0.05, 0.1, 0.1]), temperature: Uniform(300.0)),
         "soilspect": Soilspect(albedo: Bands([0.3, 0.7, 0.2]), roughness: Constant(0.2), b: Bands([0.0, 1.2, 0.5]),
             c: Constant(0.2), b_prime: Constant(0.1), c_prime: Constant(-0.1), temperature: Uniform(300.0)),
         "leaf": Leaf(reflectance: Bands([0.05, 0.45, 0.02]), transmittance: Bands([0.03, 0.45, 0.0]),
@@ -66,9 +66,11 @@ fn bare_rpv_ground_has_the_brf_of_its_formula() {
         for (view, (zenith, azimuth)) in views.into_iter().enumerate() {
             let expected =
                 rpv(50_f64.to_radians(), f64::to_radians(zenith), f64::to_radians(azimuth - 10.0));
-            let value = Estimate::of(brf, 3 * view).value;
+            let Estimate { value, error } = Estimate::of(brf, 3 * view);
+            // Nothing varies between paths; packets send virtual photons or none.
+            let tolerance = 1e-4 * expected + if sensor == "forth" { 4.0 * error } else { 0.0 };
             assert!(
-                (value / expected - 1.0).abs() < 1e-4,
+                (value - expected).abs() < tolerance,
                 "{sensor}, {zenith}: {value} for {expected}"
             );
         }
@@ -106,12 +108,16 @@ fn systems_agree_on_models_that_depend_on_directions() {
         let report = scene(ground, "(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)", &keys, &sensors);
         let mut compared = 0;
         let mut compare = |a: (&str, &str), b: (&str, &str)| {
+            let pair = (a, b);
             let (a, b) = (product(&report, a.0, a.1), product(&report, b.0, b.1));
             for index in (0..a.values.len()).filter(|index| index % 3 < 2) {
                 let (a, b) = (Estimate::of(a, index), Estimate::of(b, index));
                 if a.error < 0.2 * a.value && b.error < 0.2 * b.value {
                     let z = a.z_against(b);
-                    assert!(z.abs() < 5.0, "{ground}: {a:?} and {b:?}, z = {z:.2}");
+                    assert!(
+                        z.abs() < 5.0,
+                        "{ground}, {pair:?}[{index}]: {a:?} and {b:?}, z = {z:.2}"
+                    );
                     compared += 1;
                 }
             }
@@ -122,7 +128,7 @@ fn systems_agree_on_models_that_depend_on_directions() {
             let name = if name == "brf_cones" { "hdrf_cones" } else { name };
             compare(("packets", name), ("photons", name));
         }
-        assert!(compared > 30, "{ground}: {compared} values");
+        assert!(compared >= 30, "{ground}: {compared} values");
         for sensor in ["packets", "photons", "forth"] {
             let run = report.sensors.iter().find(|one| one.name == sensor).expect("a sensor");
             assert!(run.energy_imbalance.is_some_and(|part| part < 1e-9), "{sensor}: {run:?}");

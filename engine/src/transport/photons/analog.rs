@@ -68,9 +68,9 @@ impl Packet<'_> {
             let surface = stage.interaction(&hit, wo);
             let [lobe, u, v, survival] = sampler.next_event();
             let scattered = stage.models.value(&surface.scattered_fraction(), band);
-            let sample = (survival < f64::from(scattered))
-                .then(|| surface.sample_f(Importance::Band(band), [lobe, u, v]))
-                .flatten();
+            let survives = survival < f64::from(scattered);
+            let sample =
+                survives.then(|| surface.sample_f(Importance::Band(band), [lobe, u, v])).flatten();
             let is_reflected = sample.is_some_and(|sample| surface.is_same_side(sample.wi));
             let all_or_nothing = |is_all: bool| if is_all { Lobe::ONE } else { Lobe::ZERO };
             let is_last = visited.order >= max_order;
@@ -81,7 +81,8 @@ impl Packet<'_> {
                 visited,
                 is_last,
                 throughput,
-                scattered: all_or_nothing(sample.is_some()),
+                // A direction below the surface has a weight of 0: it is sampled, not absorbed.
+                scattered: all_or_nothing(survives),
                 reflected: all_or_nothing(is_reflected),
                 sampler,
             };
