@@ -11,6 +11,10 @@ macro_rules! choice {
     }) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq)]
+        #[allow(
+            clippy::large_enum_variant,
+            reason = "a document holds few of them, and programs write them without boxes"
+        )]
         pub enum $name {
             $($(#[$variant_meta])* $variant
                 $(($record))?
