@@ -4,7 +4,6 @@ use super::{FilePath, Map, Material, Mesh, Ref};
 
 choice! {
     /// The ground.
-    #[expect(clippy::large_enum_variant, reason = "a scene has one")]
     pub enum Terrain ("a terrain") {
         /// Horizontal rectangle.
         Plane(..TerrainPlane),

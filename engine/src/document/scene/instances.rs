@@ -15,7 +15,6 @@ use super::{FilePath, InstancesName, Map, Mesh, Ref};
 
 choice! {
     /// Instances of mesh prototypes.
-    #[expect(clippy::large_enum_variant, reason = "a scene has few of them")]
     pub enum Instances ("instances") {
         /// Places from a text table.
         Table(..InstanceTable),
