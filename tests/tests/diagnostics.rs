@@ -36,7 +36,7 @@ fn every_error_beyond_the_text_is_told_at_once_with_its_place() {
     // Files first: nothing else can be told before they are there.
     assert_eq!(
         places(dir.path()),
-        ["8:33 (meshes.tree.file)", "6:53 (materials.soil.reflectance.file)"]
+        ["6:53 (materials.soil.reflectance.file)", "8:33 (meshes.tree.file)"]
     );
     fs::write(dir.path().join("soil.csv"), "wavelength_nm,value\n400,0.1\n700,0.2\n")
         .expect("a file");
