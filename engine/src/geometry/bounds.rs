@@ -10,7 +10,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box that holds nothing: the neutral element of [`Bounds::union`].
+    /// Empty box: the neutral element of [`Bounds::union`].
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
     /// Smallest box around both.
@@ -25,14 +25,14 @@ impl Bounds {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// Whether it holds no point.
+    /// Returns whether the box holds no point.
     #[must_use]
     pub fn is_empty(self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// Where a line is inside the box, as the range `(enter, leave)` of `t` in
-    /// `origin + t direction`, clipped to `t >= 0`; `None` when it passes by.
+    /// Returns the range `(enter, leave)` of `t` within which `origin + t direction` is inside the box, clipped to
+    /// `t >= 0`; `None` if the line misses the box.
     #[must_use]
     pub fn clip(self, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
         let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);

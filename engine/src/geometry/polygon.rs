@@ -9,6 +9,31 @@ pub struct Polygon {
     pub rings: Vec<Vec<DVec2>>,
 }
 
+impl Polygon {
+    /// Returns whether a point lies inside; points on the rings do or do not.
+    #[must_use]
+    pub fn contains(&self, point: DVec2) -> bool {
+        let mut is_inside = false;
+        for ring in &self.rings {
+            let mut previous = ring.last().copied().unwrap_or_default();
+            for &corner in ring {
+                if (previous.y > point.y) != (corner.y > point.y) {
+                    let fraction = (point.y - previous.y) / (corner.y - previous.y);
+                    is_inside ^= point.x < previous.x + (corner.x - previous.x) * fraction;
+                }
+                previous = corner;
+            }
+        }
+        is_inside
+    }
+
+    /// Smallest rectangle around the corners, if there are any.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Rectangle> {
+        Rectangle::around(self.rings.iter().flatten().copied())
+    }
+}
+
 /// A rectangle on the ground, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
@@ -19,6 +44,24 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
+    /// Smallest rectangle around some points, if there are any.
+    pub fn around(points: impl IntoIterator<Item = DVec2>) -> Option<Self> {
+        let bounds = points.into_iter().map(|point| Self { min: point, max: point });
+        bounds.reduce(|a, b| Self { min: a.min.min(b.min), max: a.max.max(b.max) })
+    }
+
+    /// Returns whether a point lies inside or on a side.
+    #[must_use]
+    pub fn contains(self, point: DVec2) -> bool {
+        point.cmpge(self.min).all() && point.cmple(self.max).all()
+    }
+
+    /// Returns whether it shares an area with another rectangle.
+    #[must_use]
+    pub fn overlaps(self, other: Self) -> bool {
+        self.min.cmplt(other.max).all() && other.min.cmplt(self.max).all()
+    }
+
     /// Extent to the east and to the north, m.
     #[must_use]
     pub fn size(self) -> DVec2 {

@@ -1,14 +1,14 @@
-//! Stems by place, to ask for those nearby.
+//! Spatial hash of stems, to find those nearby.
 
 use glam::DVec2;
 
 use crate::geometry::Rectangle;
 
-/// Ends the list of a bucket.
+/// End of the list of a bucket.
 const NONE: u32 = u32::MAX;
 
-/// Points in buckets no narrower than the distance that is asked for; across the borders where the
-/// rectangle repeats.
+/// Points in buckets that are at least as wide as the distance of queries, across the borders of a rectangle that
+/// repeats.
 #[derive(Debug)]
 pub(super) struct Buckets {
     rectangle: Rectangle,
@@ -22,7 +22,7 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Buckets for about so many points.
+    /// Creates buckets for about this number of points.
     pub(super) fn new(
         rectangle: Rectangle,
         is_periodic: bool,
@@ -59,7 +59,7 @@ impl Buckets {
         self.points.push(point);
     }
 
-    /// From one point to another, or to that image of it which is nearest.
+    /// Returns the offset from one point to another, or to its nearest periodic image.
     pub(super) fn offset(&self, from: DVec2, to: DVec2) -> DVec2 {
         let offset = to - from;
         if !self.is_periodic {
@@ -69,7 +69,7 @@ impl Buckets {
         offset - size * (offset / size).round()
     }
 
-    /// Whether a point is nearer than the distance to one that is `reach` further away at most.
+    /// Returns whether a condition holds for the offset from a point to any point within the distance, at least.
     pub(super) fn any_near(&self, point: DVec2, is_near: impl Fn(DVec2) -> bool) -> bool {
         let (column, row) = self.place(point);
         let columns = around(column, self.columns, self.is_periodic);
@@ -88,13 +88,13 @@ impl Buckets {
         })
     }
 
-    /// Whether a point is nearer than the distance to another.
+    /// Returns whether any point is nearer than the distance.
     pub(super) fn is_taken(&self, point: DVec2) -> bool {
         let least = self.distance * self.distance;
         self.any_near(point, |offset| offset.length_squared() < least)
     }
 
-    /// Whether every point of a rectangle is nearer than the distance to one and the same point.
+    /// Returns whether all of a rectangle is nearer than the distance to one of the points.
     pub(super) fn covers(&self, Rectangle { min, max }: Rectangle) -> bool {
         let (center, half) = (0.5 * (min + max), 0.5 * (max - min));
         let least = self.distance * self.distance;
@@ -102,7 +102,7 @@ impl Buckets {
     }
 }
 
-/// An index and its neighbours, each once.
+/// Returns an index and its neighbours, each once.
 fn around(index: usize, count: usize, is_periodic: bool) -> [Option<usize>; 3] {
     let (below, above) = if is_periodic {
         ((index + count - 1) % count, (index + 1) % count)

@@ -1,11 +1,11 @@
-//! Numbers of a document's distributions.
+//! Random numbers with the distributions of a document.
 
 use std::f64::consts::TAU;
 
 use crate::document::Distribution;
 use crate::sampling::Key;
 
-/// The value that a stream draws from a distribution that `document::check` finds lawful.
+/// Draws a number from a distribution that `document::check` accepts.
 pub(super) fn draw(distribution: &Distribution, stream: Key) -> f64 {
     match *distribution {
         Distribution::Fixed(value) => value,
@@ -22,17 +22,17 @@ pub(super) fn draw(distribution: &Distribution, stream: Key) -> f64 {
     }
 }
 
-/// A Gaussian number between limits that have its mean between them, by rejection.
+/// Draws a Gaussian number between limits on both sides of its mean, by rejection.
 ///
 /// Narrow limits are proposed uniformly, others from the Gaussian: both ways at least four
-/// proposals in ten are taken, however the limits lie.
+/// proposals in ten are accepted, for all limits.
 fn truncated_normal(mean: f64, sd: f64, min: f64, max: f64, stream: Key) -> f64 {
     if sd <= 0.0 || min >= max {
         return mean;
     }
     let (low, high) = ((min - mean) / sd, (max - mean) / sd);
     let is_narrow = high - low < 2.5;
-    // A stream never runs dry: 0.6⁴⁰⁹⁶ is no number.
+    // All trials fail with a chance of 0.6⁴⁰⁹⁶, which is 0.
     for trial in 0..4096 {
         let (u, v) = (stream.uniform(2 * trial), stream.uniform(2 * trial + 1));
         let z = if is_narrow {

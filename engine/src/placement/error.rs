@@ -2,7 +2,7 @@ use glam::DVec2;
 
 use crate::memory::Lack;
 
-/// Why a rule places nothing.
+/// Error of a rule that cannot place its stems.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]
@@ -14,6 +14,11 @@ pub enum PlacementError {
     CrossesItself { polygon: u32, at: DVec2 },
     #[error("the areas have {corners} corners, more than {most}; simplify them")]
     TooManyCorners { corners: usize, most: usize },
+    #[error(
+        "the areas have a corner at ({:e}, {:e}) m, more than {most:e} m away; check the unit of its \
+         coordinates", .at.x, .at.y
+    )]
+    FarCorner { at: DVec2, most: f64 },
     #[error("the areas cross each other more than {most} times; simplify them")]
     TooManyCrossings { most: usize },
     #[error("the areas are too intricate; simplify them")]

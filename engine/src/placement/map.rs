@@ -1,4 +1,4 @@
-//! Stems as dense as a raster says, place by place.
+//! Stems with the density of a raster.
 
 use std::ops::Range;
 
@@ -11,22 +11,22 @@ use crate::geometry::Rectangle;
 use crate::sampling::Key;
 use crate::terrain::Cells;
 
-/// Darts for one stem before its block counts as full.
+/// Most trials for one stem before its block counts as full.
 const MOST_DARTS: u64 = 1000;
 
-/// Stems of a block keep their distance within about this many distances: enough that the block
-/// holds as many as its density says, wherever in it they find a place.
+/// Width of a block, as a multiple of the distance between stems: wide enough for the number of stems that its
+/// density asks for.
 const WIDTH: f64 = 8.0;
 
-/// Places of a density, m⁻², at least `distance` from each other.
+/// Returns places with a density, m⁻², at least `distance` from each other.
 ///
-/// The ground is cut into square blocks: cells, or so many of them that they are wide against the
-/// distance. A block of n expected stems gets ⌊n⌋ or ⌈n⌉ with mean n, so the density is met with less
-/// than the error of counting. Each stem draws a place by the density within its block, again and again
-/// while that is too close to another stem; what falls outside the region at first is left out.
+/// The ground is cut into square blocks of one or more cells, which are wide against the distance. A block of n
+/// expected stems gets ⌊n⌋ or ⌈n⌉ with mean n, so that the density is met with less than the error of counting.
+/// Each stem draws a place by the density within its block, repeatedly while it is too close to another stem; a
+/// stem whose first place is outside the region is left out.
 ///
 /// # Errors
-/// More than a scatter may have; a block where no place is left.
+/// More stems than a scatter may have; a block without room.
 pub(super) fn map(
     density: &Cells<f64>,
     region: &Region,
@@ -88,7 +88,7 @@ struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// Of those cells that reach into some bounds.
+    /// Creates the blocks of the cells that overlap some bounds.
     fn new(density: &'a Cells<f64>, bounds: Rectangle, distance: f64) -> Self {
         let cell = density.cell();
         let side = (WIDTH * distance / cell).ceil().max(DVec2::ONE).min(DVec2::splat(1e9));

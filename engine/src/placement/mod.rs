@@ -2,7 +2,7 @@
 //!
 //! | step | file |
 //! |---|---|
-//! | areas to a [`Region`] of known size | `region`, `crossings` |
+//! | areas to a [`Region`] of known size | `region`, `triangulation`, `locator` |
 //! | places: each on its own, at a distance, in rows | `uniform`, `poisson_disc`, `rows` |
 //! | places as dense as a raster says | `map` |
 //! | trees at the places | `trees`, `distribution` |
@@ -13,9 +13,9 @@
 
 mod buckets;
 pub mod canopy;
-mod crossings;
 mod distribution;
 mod error;
+mod locator;
 mod map;
 mod pattern;
 mod poisson_disc;
@@ -24,6 +24,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 mod trees;
+mod triangulation;
 mod uniform;
 
 use glam::DVec2;

@@ -1,7 +1,7 @@
 //! Patterns that name instances.
 
-/// What `hide` and `select` say: `oak` (all of that mesh), `plot/*` (all of those instances),
-/// `plot/oak`, with `*` for any letters.
+/// Pattern of `hide` and `select`: `oak` (a mesh), `plot/*` (all meshes of some instances) or `plot/oak`, with `*`
+/// for any characters.
 #[derive(Clone, Debug)]
 pub struct Pattern<'a> {
     instances: Option<&'a str>,
@@ -9,7 +9,7 @@ pub struct Pattern<'a> {
 }
 
 impl<'a> Pattern<'a> {
-    /// From its text.
+    /// Parses a pattern.
     #[must_use]
     pub fn new(text: &'a str) -> Self {
         match text.split_once('/') {
@@ -18,14 +18,14 @@ impl<'a> Pattern<'a> {
         }
     }
 
-    /// Whether it means a mesh where these instances place it.
+    /// Returns whether the pattern names a mesh of some instances.
     #[must_use]
     pub fn matches(&self, instances: &str, mesh: &str) -> bool {
         self.instances.is_none_or(|pattern| is_like(pattern, instances)) && is_like(self.mesh, mesh)
     }
 }
 
-/// Whether a name is a pattern with its stars filled in.
+/// Returns whether a name matches a pattern with stars.
 pub(crate) fn is_like(pattern: &str, name: &str) -> bool {
     let mut parts = pattern.split('*');
     let first = parts.next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Stems that keep a distance.
+//! Stems with a minimum distance: random sequential addition.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -8,21 +8,20 @@ use super::{MOST_STEMS, PlacementError, Region};
 use crate::geometry::Rectangle;
 use crate::sampling::Key;
 
-/// Stems a hectare of disc diameter 1 that stand when no more find a place: random sequential
-/// addition covers 0.547 of the plane.
+/// Number of points with a minimum distance of 1 per unit area when there is no room for more: random
+/// sequential addition covers 0.547 of the plane with discs.
 ///
 /// Source: Torquato, Uche and Stillinger (2006), Phys. Rev. E 74, 061308.
 const AT_RANDOM: f64 = 0.547 * 4.0 / std::f64::consts::PI;
 
-/// How often cells are cut into four. What is left free beyond is 2⁻¹⁶ of the distance wide.
+/// Number of times that cells are cut into four. Gaps that remain are at most 2⁻¹⁶ of the distance wide.
 const MOST_CUTS: u32 = 16;
 
-/// Uniform points of a region, one after the other, each kept if it is at least `distance` from all
-/// before it (random sequential addition); until there are `wanted`, or until no place is left.
+/// Returns points by random sequential addition: uniform points of a region are drawn one after the other, and
+/// each is kept if it is at least `distance` from all before it, until there are `wanted`, or no room is left.
 ///
-/// The darts are thrown only where a place may be left: at first into cells that cover the region,
-/// then, again and again, into the quarters of these that no disc covers as a whole. That changes
-/// nothing in the distribution.
+/// Points are drawn only where there may be room: at first in cells that cover the region, then, repeatedly, in
+/// the quarters of these that no disc covers as a whole. The distribution is the same.
 ///
 /// In a tile that repeats, distances count across its borders.
 ///
@@ -89,8 +88,8 @@ pub(super) fn poisson_disc(
     }
 }
 
-/// A bound of the stems at least `distance` apart: `2 A / (√3 d²)`, A with a border of d/2 where
-/// the plane does not repeat, for discs may reach beyond it by so much.
+/// Upper bound of the number of stems at least `distance` apart: `2 A / (√3 d²)`. Where the plane does not repeat,
+/// A includes a border of d/2, because discs may reach beyond the region by that much.
 fn tightest(region: &Region, tile: Option<Rectangle>, distance: f64) -> f64 {
     let grown = region.bounds().size() + distance;
     let area = match tile {
@@ -100,7 +99,7 @@ fn tightest(region: &Region, tile: Option<Rectangle>, distance: f64) -> f64 {
     (2.0 / 3_f64.sqrt() * area / (distance * distance)).floor()
 }
 
-/// Cells of a grid, all of one size.
+/// Grid of cells of one size.
 struct Grid {
     corner: DVec2,
     side: DVec2,
@@ -115,14 +114,14 @@ impl Grid {
     }
 }
 
-/// The cells where a place may be left.
+/// Cells where there may be room.
 struct Cells {
     grid: Grid,
     active: Vec<[u32; 2]>,
 }
 
 impl Cells {
-    /// Cells that a stem inside covers, or larger ones where few stems are expected.
+    /// Creates cells so small that a stem inside covers them, or larger ones if few stems are expected.
     fn new(bounds: Rectangle, distance: f64, expected: f64) -> Self {
         let size = bounds.size();
         let side = (distance / 2_f64.sqrt()).max((size.x * size.y / (4.0 * expected)).sqrt());

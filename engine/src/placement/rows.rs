@@ -12,12 +12,12 @@ pub(super) struct Rows {
     pub(super) spacing: DVec2,
     /// Azimuth along the rows, rad.
     pub(super) azimuth: f64,
-    /// How far a stem may be off its place in x and in y, m.
+    /// Largest offset of a stem from its place in x and in y, m.
     pub(super) jitter: f64,
 }
 
 impl Rows {
-    /// The places in a region; the first lies half a spacing from the corner.
+    /// Returns the places in a region; the first lies half a spacing from the corner.
     pub(super) fn places(
         &self,
         region: &Region,

@@ -1,4 +1,4 @@
-//! What placement promises, shown by counting.
+//! Tests of placement by counting.
 
 use std::f64::consts::PI;
 use std::slice::from_ref;
@@ -21,7 +21,7 @@ fn whole() -> Region {
     Region::new(TERRAIN, &[], &[]).expect("a rectangle is a region")
 }
 
-/// Whether a point lies in a polygon: crossings of a ray, edge by edge.
+/// Returns whether a point lies in a polygon: crossings of a ray, edge by edge.
 fn is_inside(polygon: &Polygon, p: DVec2) -> bool {
     let edges = polygon.rings.iter().flat_map(|ring| {
         let next = ring.iter().cycle().skip(1);
@@ -92,6 +92,88 @@ fn a_region_holds_the_points_that_its_polygons_say_and_no_others() {
         let sd = (share * (1.0 - share) / n as f64).sqrt();
         let z = (f64::from(hits) / n as f64 - share) / sd;
         assert!(z.abs() < 4.0, "trial {trial}: area {} of 6000, z = {z}", region.area());
+    }
+}
+
+/// *Scene*: squares of 10 m side by side, inside some and outside others, whose corners differ from each other by
+/// what rounding or another system of coordinates changes. *Expected*: the area of exact squares.
+#[test]
+fn borders_that_are_nearly_the_same_enclose_nothing() {
+    let square = |place: usize, offset: f64, key: Key| {
+        let corner = DVec2::new(place as f64 % 4.0, (place / 4) as f64) * 10.0;
+        let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].into_iter().zip(0..);
+        let ring = corners.map(|(at, index)| {
+            let off = DVec2::new(key.uniform(2 * index), key.uniform(2 * index + 1)) - 0.5;
+            corner + DVec2::from(at) + offset * off
+        });
+        Polygon { rings: vec![ring.collect()] }
+    };
+    for trial in 0..400 {
+        let key = Key::new(trial);
+        let offset = [0.0, 1e-14, 1e-12, 1e-9][trial as usize % 4];
+        let squares = |places: [usize; 6]| {
+            let squares = places.into_iter().zip(0..);
+            squares.map(|(place, index)| square(place, offset, key.index(index))).collect()
+        };
+        let inside: Vec<Polygon> = squares([0, 1, 1, 4, 5, 7]);
+        let outside: Vec<Polygon> = squares([2, 6, 8, 5, 5, 9]);
+        let region = Region::new(TERRAIN, &inside, &outside).expect("a region");
+        // Left are the squares 0, 1, 4 and 7.
+        assert!(
+            (region.area() - 400.0).abs() < 100.0 * offset + 1e-9,
+            "{trial}: {}",
+            region.area()
+        );
+    }
+}
+
+#[test]
+fn a_ring_of_many_corners_has_its_area() {
+    let key = Key::new(3);
+    let corner = |index: usize| {
+        let angle = 2.0 * PI * index as f64 / 3e4;
+        let radius = 25.0 + (17.0 * angle).sin() + 0.001 * key.uniform(index as u64);
+        DVec2::new(50.0, 30.0) + radius * DVec2::from_angle(angle)
+    };
+    let ring: Vec<DVec2> = (0..30_000).map(corner).collect();
+    let next = ring.iter().cycle().skip(1);
+    let center = DVec2::new(50.0, 30.0);
+    let area: f64 = ring.iter().zip(next).map(|(a, b)| (a - center).perp_dot(b - center)).sum();
+    let star = Polygon { rings: vec![ring] };
+    let region = Region::new(TERRAIN, from_ref(&star), &[]).expect("a region");
+    assert!((region.area() - 0.5 * area).abs() < 1e-12 * area, "{} {area}", region.area());
+    for index in 0..3000 {
+        let p = TERRAIN.at(key.uniform(2 * index), key.uniform(2 * index + 1));
+        assert_eq!(region.contains(p), is_inside(&star, p), "{p}");
+        let cell = Rectangle { min: p, max: p + 2.0 * key.uniform(index) };
+        let corners = [cell.min, cell.max, 0.5 * (cell.min + cell.max)];
+        let is_met = corners.iter().any(|&corner| is_inside(&star, corner));
+        assert!(!is_met || region.may_overlap(cell), "{cell:?}");
+        let far = cell.min.distance(center) > 29.1;
+        assert!(!far || !region.may_overlap(Rectangle { max: p + 0.01, ..cell }), "{cell:?}");
+    }
+}
+
+/// Rows of stems often lie on the sides of a polygon.
+#[test]
+fn of_two_regions_side_by_side_the_upper_one_holds_the_points_between() {
+    let band =
+        |low: f64| polygon(&[&[(10.0, low), (50.0, low), (50.0, low + 10.0), (10.0, low + 10.0)]]);
+    let region = |low: f64| Region::new(TERRAIN, &[band(low)], &[]).expect("a region");
+    let between = DVec2::new(20.0, 20.0);
+    assert!(!region(10.0).contains(between) && region(20.0).contains(between));
+    for x in [10.0, 50.0] {
+        assert!(region(10.0).contains(DVec2::new(x, 10.0)), "{x}");
+        assert!(!region(10.0).contains(DVec2::new(x, 20.0)), "{x}");
+    }
+}
+
+#[test]
+fn corners_beyond_all_maps_are_refused() {
+    for x in [1e10, f64::INFINITY, f64::NAN] {
+        let far = polygon(&[&[(10.0, 10.0), (50.0, 10.0), (x, 20.0)]]);
+        let error = Region::new(TERRAIN, &[far], &[]).expect_err("far");
+        assert!(matches!(error, PlacementError::FarCorner { .. }), "{error}");
     }
 }
 

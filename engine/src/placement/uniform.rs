@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use super::Region;
 use crate::sampling::Key;
 
-/// So many uniform points of a region; more of them leave the first where they are.
+/// Returns `count` uniform points of a region; a larger count adds points and moves none.
 pub(super) fn uniform(region: &Region, count: usize, stream: Key) -> Vec<DVec2> {
     let point = |index: usize| {
         let stem = stream.index(index as u64);

@@ -1,4 +1,4 @@
-//! Which cells belong to which tree: a watershed that is flooded from the tops.
+//! Crowns of trees in a canopy height model: a watershed that is flooded from the tops.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,4 +1,4 @@
-//! Which mesh is most like a tree, and how it is scaled to it.
+//! Choice of the mesh that is most like a tree, and its scale.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! Where the tops of trees are: local maxima in a window that grows with height.
+//! Tops of trees in a canopy height model: local maxima in a window that grows with height.
 
 use std::cmp::Ordering;
 
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::terrain::Cells;
 
-/// How wide the crown of a tree is expected to be: `a + b h²`, m, for a height h in m.
+/// Expected diameter of a tree's crown: `a + b h²`, m, for a height h in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Width of the lowest crowns, m.
