@@ -28,9 +28,9 @@ pub(crate) fn lacking(count: f64, bytes_each: u64) -> Option<Lack> {
 /// Memory that is needed and not there, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lack {
-    /// What is needed.
+    /// Memory that is needed, bytes.
     pub needed: u64,
-    /// What is free.
+    /// Memory that is free, bytes.
     pub free: u64,
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for Lack {
     }
 }
 
-/// What the system has left and the control groups of this process allow.
+/// Returns the free memory of the system within the limits of this process's control groups, bytes.
 fn system() -> Option<u64> {
     let mut system = System::new().ok()?;
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
@@ -60,7 +60,7 @@ fn system() -> Option<u64> {
 /// addresses that they do not use.
 const USABLE: f64 = 0.9;
 
-/// What is left of a resource limit of this process, bytes; `None` without a limit, and where the system
+/// Returns the unused part of a resource limit of this process, bytes; `None` without a limit, or if the system
 /// does not list limits in `/proc`.
 fn below_limit(limit: &str, used: &str) -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, JsonObject, Position};
 use glam::DVec2;
 
+use super::AssetError;
 use super::crs::{Axes, Crs, TargetSystem, from_name};
+use super::format::{self, FileReader};
 use super::table::{Table, known_columns, missing};
 use super::text;
-use super::{AssetError, foreign};
 use crate::geometry::Polygon;
 
 /// Largest GeoJSON file, bytes: corners take some thirty each.
@@ -39,7 +40,7 @@ pub struct Areas {
 /// range; coordinates in another unit than metres.
 pub fn read_geojson(path: &Path) -> Result<Areas, AssetError> {
     let file = || path.to_owned();
-    foreign::check(path, foreign::Reader::GeoJson)?;
+    format::check(path, FileReader::GeoJson)?;
     let bytes = text::size(path)?;
     if bytes > MOST_BYTES {
         return Err(AssetError::TooLarge { file: file(), bytes, most: MOST_BYTES });

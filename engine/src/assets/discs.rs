@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::format::{self, Reader};
+use super::format::{self, FileReader};
 use super::import::coarse;
 use super::table::{Column, Content, Table, known_columns, missing};
 use super::{AssetError, Loaded};
@@ -26,7 +26,7 @@ const MOST_DISCS: usize = 100_000_000;
 /// # Errors
 /// A file that cannot be read, is of another format, is not text or holds no disc; a row that is not a disc.
 pub fn read_discs(path: &Path) -> Result<Loaded<Mesh>, AssetError> {
-    format::check(path, Reader::Discs)?;
+    format::check(path, FileReader::Discs)?;
     let mut table = Table::open(path)?;
     let columns = columns(&mut table)?;
     let mut discs = Vec::new();

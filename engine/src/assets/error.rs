@@ -6,8 +6,7 @@ use super::crs::TargetSystem;
 use super::gltf::GltfError;
 use super::raster::RasterError;
 
-/// Why a file is not what a scene can use: the file, the line where it has lines, and what to
-/// write instead.
+/// Error of a file that a scene cannot use: the file, the line where it has lines, and advice.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]

@@ -1,247 +1,291 @@
-//! Formats of files that are given in place of meshes, recognised by their first bytes.
+//! Readers of files, and advice for a file of another format than the reader reads.
 
 use std::io::Read as _;
 use std::path::Path;
 
+use super::signatures::{by_content, by_extension, is_gltf, is_obj};
 use super::{AssetError, text};
 
-/// Bytes that are looked at.
+/// Number of bytes at the start of a file that tell its format.
 const HEAD: u64 = 4096;
 
-/// Keywords that the first line of an OBJ file may begin with.
-const OBJ: [&str; 11] = ["v", "vt", "vn", "vp", "f", "g", "o", "s", "usemtl", "mtllib", "l"];
-
-/// A reader of meshes, by its name in the scene language.
+/// Reader of files, by its name in the scene language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reader {
+pub(super) enum FileReader {
     Obj,
     Gltf,
     Discs,
+    Table,
+    GeoJson,
+    Raster,
 }
 
-impl Reader {
+/// Kind of content: files with the same have the same advice for each reader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
+    Obj,
+    Gltf,
+    DiscTable,
+    /// Materials of an OBJ file.
+    MaterialLibrary,
+    /// Mesh that only other programs read.
+    Mesh,
+    PointCloud,
+    /// Drawing of a CAD program, in two or three dimensions.
+    Drawing,
+    /// Features of a geographic information system.
+    Features,
+    /// Attributes of such features, without their places.
+    Attributes,
+    Spreadsheet,
+    /// Cells of values: a raster or an image.
+    Cells,
+    /// Table or arrays of a numerical program.
+    Numbers,
+    Archive,
+    /// Text about data, in place of the data.
+    Document,
+}
+
+impl Content {
+    /// Returns whether only readers of meshes look for this content.
+    fn is_of_mesh(self) -> bool {
+        matches!(
+            self,
+            Self::Obj | Self::Gltf | Self::DiscTable | Self::MaterialLibrary | Self::Mesh
+        )
+    }
+}
+
+/// Format of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct FileFormat {
+    /// Name with its article, as in `a PLY file`.
+    pub(super) name: &'static str,
+    pub(super) content: Content,
+}
+
+impl FileReader {
     fn name(self) -> &'static str {
         match self {
             Self::Obj => "Obj",
             Self::Gltf => "Gltf",
             Self::Discs => "Discs",
+            Self::Table => "Table",
+            Self::GeoJson => "GeoJson",
+            Self::Raster => "Raster",
         }
     }
 
-    fn reads(self) -> &'static str {
+    fn formats(self) -> &'static str {
         match self {
             Self::Obj => "Wavefront OBJ",
             Self::Gltf => "glTF 2.0 and GLB",
             Self::Discs => "a table of discs (`radius,x,y,z,nx,ny,nz`)",
+            Self::Table => "text tables (CSV)",
+            Self::GeoJson => "GeoJSON",
+            Self::Raster => "GeoTIFF, ENVI and ESRI grids",
         }
     }
-}
 
-/// What to do with a file of another format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Remedy {
-    /// Convert it.
-    Convert,
-    /// Triangulate points, or make discs of them.
-    Mesh,
-    Unpack,
-    Use(Reader),
-    /// Copy or download the file itself.
-    Fetch,
-    /// Name the file that it belongs to.
-    NameObj,
-}
+    pub(super) fn reads_mesh(self) -> bool {
+        matches!(self, Self::Obj | Self::Gltf | Self::Discs)
+    }
 
-impl Remedy {
-    fn text(self) -> String {
-        match self {
-            Self::Convert => "convert it to OBJ or glTF, with Blender or MeshLab, for example",
-            Self::Mesh => {
+    fn reads(self, content: Content) -> bool {
+        matches!(
+            (self, content),
+            (Self::Obj, Content::Obj)
+                | (Self::Gltf, Content::Gltf)
+                | (Self::Discs, Content::DiscTable)
+                | (Self::Raster, Content::Cells)
+        )
+    }
+
+    /// Advice for a file with other content, which has this name.
+    fn advice(self, content: Content, file: &str) -> String {
+        let text = match (content, self) {
+            (Content::Obj, _) => "write `Obj` in place of what reads it now",
+            (Content::Gltf, _) => "write `Gltf` in place of what reads it now",
+            (Content::DiscTable, _) => "write `Discs` in place of what reads it now",
+            (Content::MaterialLibrary, _) => "name the OBJ file that it belongs to",
+            (Content::PointCloud, Self::Obj | Self::Gltf | Self::Discs) => {
                 "convert the points to a mesh (OBJ or glTF), or to a table of discs for `Discs`"
             }
-            Self::Unpack => "unpack it and name the mesh file in it",
-            Self::Fetch => "get the file itself",
-            Self::NameObj => "name the OBJ file that it belongs to",
-            Self::Use(reader) => {
-                return format!("write `{}` in place of what reads it now", reader.name());
+            (Content::Archive, Self::Obj | Self::Gltf | Self::Discs) => {
+                "unpack it and name the mesh file in it"
             }
-        }
-        .to_owned()
+            (Content::Document, _) => "get the file itself",
+            (Content::Mesh, _)
+            | (
+                Content::Drawing | Content::Features | Content::Numbers,
+                Self::Obj | Self::Gltf | Self::Discs,
+            ) => "convert it to OBJ or glTF, with Blender or MeshLab, for example",
+            (_, Self::Obj | Self::Gltf | Self::Discs) => "name the file of the mesh",
+            (Content::Features | Content::Drawing, Self::GeoJson) => {
+                return format!("convert it: `ogr2ogr polygons.geojson {file}`");
+            }
+            (Content::Features | Content::Drawing, Self::Table) => {
+                return format!(
+                    "convert points to CSV: `ogr2ogr -f CSV -lco GEOMETRY=AS_XY points.csv {file}`; polygons \
+                     to GeoJSON, for `GeoJson(file: ..)`: `ogr2ogr polygons.geojson {file}`"
+                );
+            }
+            (Content::Features | Content::Drawing, Self::Raster) => {
+                "make a raster of it, with `gdal_rasterize`"
+            }
+            (Content::Attributes, Self::Table) => {
+                return format!(
+                    "export it as CSV: `ogr2ogr -f CSV table.csv {file}`; places are in the `.shp` beside it"
+                );
+            }
+            (Content::Attributes, _) => {
+                "name the file of features beside it, converted by `ogr2ogr`"
+            }
+            (Content::Spreadsheet, Self::Table) => {
+                "save it as CSV (UTF-8) in the spreadsheet program, and name that"
+            }
+            (Content::Spreadsheet, Self::GeoJson) => {
+                "save its corners as CSV (UTF-8), for `Table(file: ..)` in place of `GeoJson`"
+            }
+            (Content::Spreadsheet | Content::Numbers, Self::Raster) => {
+                "export its cells as an ESRI ASCII grid or a GeoTIFF"
+            }
+            (Content::PointCloud, Self::Raster) => {
+                "make a raster of its points, with `pdal` (`writers.gdal`) or LAStools"
+            }
+            (Content::PointCloud, _) => {
+                "a table or an area holds trees or corners: export those as CSV or GeoJSON; a canopy height \
+                 model of it is read by `CanopyHeights`"
+            }
+            (Content::Cells, _) => {
+                "it is a raster: areas are polygons (`gdal_polygonize.py`), tables are text"
+            }
+            (Content::Archive, _) => "unpack it and name the file in it",
+            (Content::Numbers, _) => "export it as a text table (CSV), in UTF-8",
+        };
+        text.to_owned()
     }
 }
 
-/// Refuses a file of a known format that this reader does not read.
+/// Refuses a file of a known format that a reader does not read.
+///
+/// The first bytes tell the format. If they do not, the extension does: for OBJ and glTF always, for tables of
+/// discs never, for other data if the file is binary.
 ///
 /// # Errors
-/// [`AssetError::OtherFormat`], which names the format by content, else by the file's extension if the content is
-/// not that of the reader; a file that cannot be read.
-pub(super) fn check(path: &Path, reader: Reader) -> Result<(), AssetError> {
+/// [`AssetError::OtherFormat`], which names the format; a file that cannot be read.
+pub(super) fn check(path: &Path, reader: FileReader) -> Result<(), AssetError> {
     let length = text::size(path)?;
     let mut head = Vec::new();
     let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     text::open(path)?.take(HEAD).read_to_end(&mut head).map_err(unreadable)?;
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&head);
-    let is_own = match reader {
-        Reader::Obj => is_obj(head),
-        Reader::Gltf => is_gltf(head),
-        // A table may begin in many ways.
-        Reader::Discs => false,
-    };
-    if is_own {
+    if (reader == FileReader::Obj && is_obj(head)) || (reader == FileReader::Gltf && is_gltf(head))
+    {
         return Ok(());
     }
-    let (found, remedy) = match (by_content(head, length), by_extension(path)) {
-        (Some((found, remedy)), _) => (found.to_owned(), remedy),
-        // The tables of `Discs` go by any name.
-        (None, Some((found, remedy))) if reader != Reader::Discs => {
-            (format!("{found}, by its name"), remedy)
-        }
-        _ => return Ok(()),
+    let (format, is_by_name) = match by_content(head, length, path, reader) {
+        Some(format) => (format, false),
+        None if reader == FileReader::Discs => return Ok(()),
+        None if reader.reads_mesh() || is_binary(head) => match by_extension(path) {
+            Some(format) => (format, reader.reads_mesh()),
+            None => return Ok(()),
+        },
+        None => return Ok(()),
     };
-    if remedy == Remedy::Use(reader) {
+    let FileFormat { name, content } = format;
+    if reader.reads(content) || (!reader.reads_mesh() && content.is_of_mesh()) {
         return Ok(());
     }
+    let file =
+        path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Err(AssetError::OtherFormat {
         file: path.to_owned(),
-        found,
+        found: if is_by_name { format!("{name}, by its name") } else { name.to_owned() },
         reader: reader.name(),
-        wanted: reader.reads(),
-        remedy: remedy.text(),
+        wanted: reader.formats(),
+        remedy: reader.advice(content, &file),
     })
 }
 
-/// Returns whether a text begins as OBJ does, behind blank lines and comments.
-fn is_obj(head: &[u8]) -> bool {
-    let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
-    let Some(line) = lines.find(|line| !line.is_empty() && line[0] != b'#') else { return false };
-    let Ok(line) = std::str::from_utf8(line) else { return line.starts_with(b"mtllib ") };
-    let mut words = line.split_ascii_whitespace();
-    let keyword = words.next().unwrap_or_default();
-    // `o` and the like begin lines of prose too; numbers tell.
-    let is_number = |word: &str| word.parse::<f64>().is_ok();
-    match keyword {
-        "v" | "vt" | "vn" | "vp" => words.next().is_some_and(is_number),
-        "f" | "l" => {
-            words.next().is_some_and(|word| is_number(word.split('/').next().unwrap_or(word)))
+/// Returns whether bytes are no text; UTF-16 is text, which its reader names.
+fn is_binary(head: &[u8]) -> bool {
+    let is_utf16 = head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff");
+    !is_utf16 && head.contains(&0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Message about a file of this name and content, from the format on.
+    fn message(reader: FileReader, name: &str, head: &[u8]) -> Option<String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join(name);
+        std::fs::write(&path, head).expect("a file");
+        let error = check(&path, reader).err()?.to_string();
+        Some(
+            error
+                .split_once(&format!("{name}: "))
+                .map_or(error.clone(), |(_, rest)| rest.to_owned()),
+        )
+    }
+
+    #[test]
+    fn formats_are_known_by_their_first_bytes_and_binary_files_by_their_extension() {
+        use FileReader::{Discs, GeoJson, Gltf, Obj, Raster, Table};
+        let binary = b"\x03\x7a\x01\x01\0\0".as_slice();
+        for (reader, name, head, expected) in [
+            (
+                Table,
+                "a",
+                b"PK\x03\x04....xl/workbook.xml".as_slice(),
+                Some("is an Excel workbook,"),
+            ),
+            (Table, "b.xlsx", b"PK\x03\x04....", Some("is an Excel workbook,")),
+            (Table, "b.zip", b"PK\x03\x04....plot.shp", Some("is a ZIP archive,")),
+            (GeoJson, "b", b"PK\x03\x04....doc.kml", Some("is a KMZ file,")),
+            (Table, "trees.DBF", binary, Some("is a dBASE table,")),
+            (GeoJson, "a.kml", b"<?xml version=\"1.0\"?>\n<kml xmlns=", Some("is a KML file,")),
+            (Raster, "a.nc", b"CDF\x01....", None),
+            (Raster, "a.las", b"LASF....", Some("is a LAS or LAZ point cloud,")),
+            // Tables and GeoJSON are text, whatever their extension and first word.
+            (Table, "trees.xls", b"x_m,y_m\n1,2\n", None),
+            (Table, "trees.csv", b"COFFEE,DRACO\n1,2\n", None),
+            (GeoJson, "plot.shp", b"{\"type\": \"Polygon\"}", None),
+            (Table, "trees.xls", b"\xff\xfex\0,\0", None),
+            (Table, "tree.glb", b"glTF\x02\0\0\0", None),
+            (Obj, "tree.max", b"no mesh", Some("is a 3ds Max file, by its name,")),
+            (Obj, "tree.obj", b"no mesh", None),
+            (Obj, "plot.obj", b"\x00\x00\x27\x0a....", Some("is an Esri shapefile,")),
+            (Gltf, "tree.gltf", b"solid a\nfacet normal", Some("is an STL file,")),
+            (Discs, "discs.ply", b"radius,x\n", None),
+            (Discs, "discs.csv", b"ply\nformat ascii 1.0\n", Some("is a PLY file,")),
+        ] {
+            let message = message(reader, name, head);
+            let start =
+                message.as_deref().map(|message| message.split(" and ").next().unwrap_or(""));
+            assert_eq!(start, expected, "{name}");
         }
-        _ => OBJ.contains(&keyword),
     }
-}
 
-fn is_gltf(head: &[u8]) -> bool {
-    head.starts_with(b"glTF") || head.trim_ascii_start().starts_with(b"{")
-}
-
-type Found = (&'static str, Remedy);
-
-fn by_content(head: &[u8], length: u64) -> Option<Found> {
-    use Remedy::{Convert, Fetch, Mesh, NameObj, Unpack, Use};
-    const STARTS: [(&[u8], Found); 35] = [
-        (b"ply\n", ("a PLY file", Convert)),
-        (b"ply\r", ("a PLY file", Convert)),
-        (b"Kaydara FBX", ("an FBX file", Convert)),
-        (b"; FBX", ("an FBX file", Convert)),
-        (b"glTF", ("a GLB file", Use(Reader::Gltf))),
-        (b"BLENDER", ("a Blender file", Convert)),
-        (b"#usda", ("a USD file", Convert)),
-        (b"PXR-USDC", ("a USD file", Convert)),
-        (b"Ogawa", ("an Alembic file", Convert)),
-        (b"#VRML", ("a VRML file", Convert)),
-        (b"#X3D", ("an X3D file", Convert)),
-        (b"OFF\n", ("an OFF file", Convert)),
-        (b"OFF\r", ("an OFF file", Convert)),
-        (b"COFF", ("an OFF file", Convert)),
-        (b"DRACO", ("a Draco file", Convert)),
-        (b"ISO-10303-21", ("a STEP or IFC file", Convert)),
-        (b"AC10", ("a DWG file", Convert)),
-        (b"LASF", ("a LAS or LAZ point cloud", Mesh)),
-        (b"ASTM-E57", ("an E57 point cloud", Mesh)),
-        (b"# .PCD", ("a PCD point cloud", Mesh)),
-        (b"MATLAB", ("a MATLAB file", Convert)),
-        (b"\x89HDF", ("an HDF5 file", Convert)),
-        (b"\x1f\x8b", ("a gzip archive", Unpack)),
-        (b"PK\x03\x04", ("a ZIP archive", Unpack)),
-        (b"7z\xbc\xaf", ("a 7z archive", Unpack)),
-        (b"Rar!", ("a RAR archive", Unpack)),
-        (b"BZh", ("a bzip2 archive", Unpack)),
-        (b"\xfd7zXZ", ("an xz archive", Unpack)),
-        (b"\x28\xb5\x2f\xfd", ("a Zstandard archive", Unpack)),
-        (b"\x89PNG", ("a PNG image", Fetch)),
-        (b"\xff\xd8\xff", ("a JPEG image", Fetch)),
-        (b"%PDF", ("a PDF file", Fetch)),
-        (b"<!DOCTYPE html", ("a web page", Fetch)),
-        (b"version https://git-lfs", ("a Git LFS pointer, not the file itself", Fetch)),
-        (b"newmtl", ("a material library of an OBJ file", NameObj)),
-    ];
-    if let Some((_, found)) = STARTS.iter().find(|(start, _)| head.starts_with(start)) {
-        return Some(*found);
+    #[test]
+    fn each_reader_says_what_it_can_be_given() {
+        let shape = b"\x00\x00\x27\x0a....";
+        assert_eq!(
+            message(FileReader::GeoJson, "plot.shp", shape).as_deref(),
+            Some(
+                "is an Esri shapefile, and `GeoJson` reads GeoJSON; convert it: `ogr2ogr \
+                 polygons.geojson plot.shp`"
+            )
+        );
+        assert_eq!(
+            message(FileReader::Gltf, "tree.glb", b"v 0 0 0\n").as_deref(),
+            Some(
+                "is a Wavefront OBJ file, and `Gltf` reads glTF 2.0 and GLB; write `Obj` in place of what \
+                 reads it now"
+            )
+        );
     }
-    let holds = |words: &[u8]| head.windows(words.len()).any(|window| window == words);
-    // 80 bytes of text, the number of triangles, and 50 bytes of each.
-    let count = head.get(80..84).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
-    let is_binary_stl =
-        count.is_some_and(|count| count > 0 && length == 84 + 50 * u64::from(count));
-    let is_3ds = head.starts_with(b"MM")
-        && head.get(2..6).and_then(|size| size.try_into().ok()).map(u32::from_le_bytes)
-            == u32::try_from(length).ok();
-    let text = head.trim_ascii_start();
-    if is_binary_stl || (text.starts_with(b"solid") && holds(b"facet")) {
-        Some(("an STL file", Convert))
-    } else if is_3ds {
-        Some(("a 3DS file", Convert))
-    } else if holds(b"<COLLADA") {
-        Some(("a COLLADA file", Convert))
-    } else if holds(b"<X3D") {
-        Some(("an X3D file", Convert))
-    } else if text.starts_with(b"<html") || text.starts_with(b"<HTML") {
-        Some(("a web page", Fetch))
-    } else if text.starts_with(b"<?xml") {
-        Some(("an XML file", Convert))
-    } else if text.starts_with(b"{") && holds(b"\"asset\"") {
-        Some(("a glTF file", Use(Reader::Gltf)))
-    } else if text.starts_with(b"{") {
-        Some(("a JSON file", Convert))
-    } else if text.starts_with(b"0") && holds(b"SECTION") {
-        Some(("a DXF file", Convert))
-    } else if is_obj(head) {
-        Some(("a Wavefront OBJ file", Use(Reader::Obj)))
-    } else {
-        None
-    }
-}
-
-fn by_extension(path: &Path) -> Option<Found> {
-    use Remedy::{Convert, Mesh, NameObj, Unpack, Use};
-    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    Some(match extension.as_str() {
-        "ply" => ("a PLY file", Convert),
-        "stl" => ("an STL file", Convert),
-        "fbx" => ("an FBX file", Convert),
-        "dae" => ("a COLLADA file", Convert),
-        "3ds" => ("a 3DS file", Convert),
-        "max" => ("a 3ds Max file", Convert),
-        "c4d" => ("a Cinema 4D file", Convert),
-        "blend" => ("a Blender file", Convert),
-        "skp" => ("a SketchUp file", Convert),
-        "spm" | "srt" => ("a SpeedTree file", Convert),
-        "usd" | "usda" | "usdc" | "usdz" => ("a USD file", Convert),
-        "x3d" => ("an X3D file", Convert),
-        "wrl" => ("a VRML file", Convert),
-        "off" => ("an OFF file", Convert),
-        "dxf" => ("a DXF file", Convert),
-        "mat" => ("a MATLAB file", Convert),
-        "las" | "laz" => ("a LAS or LAZ point cloud", Mesh),
-        "e57" => ("an E57 point cloud", Mesh),
-        "pcd" => ("a PCD point cloud", Mesh),
-        "xyz" => ("a point cloud", Mesh),
-        "gz" => ("a gzip archive", Unpack),
-        "zip" => ("a ZIP archive", Unpack),
-        "7z" => ("a 7z archive", Unpack),
-        "rar" => ("a RAR archive", Unpack),
-        "mtl" => ("a material library of an OBJ file", NameObj),
-        "obj" => ("a Wavefront OBJ file", Use(Reader::Obj)),
-        "gltf" | "glb" => ("a glTF file", Use(Reader::Gltf)),
-        "csv" | "def" => ("a table of discs", Use(Reader::Discs)),
-        _ => return None,
-    })
 }

@@ -1,4 +1,4 @@
-//! From a file's axes, unit and origin to a mesh in metres, z up.
+//! Conversion of a file's axes, unit and origin to a mesh in metres, z up.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,28 +16,28 @@ const MOST_TRIANGLES: usize = 100_000_000;
 /// Most vertices of one file.
 const MOST_VERTICES: usize = 3 * MOST_TRIANGLES;
 
-/// Marks a vertex that no triangle uses.
+/// Index of a vertex that no triangle uses.
 const UNUSED: u32 = u32::MAX;
 
-/// From 2^10 m on, f32 coordinates lie more than 0.1 mm apart.
+/// Distance from the origin beyond which f32 coordinates lie more than 0.1 mm apart, m.
 const COARSE: f32 = 1024.0;
 
 /// Most parts to name in a warning.
 const MOST_SHOWN: usize = 5;
 
-/// How a file's coordinates become those of a prototype.
+/// Conversion of a file's coordinates to those of a prototype.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
-    /// Which axis of the file points up.
+    /// Axis of the file that points up.
     pub up: Axis,
     /// Length of the file's unit, m.
     pub unit_m: f64,
-    /// What becomes the origin.
+    /// Point of the file that becomes the origin.
     pub origin: Origin,
 }
 
 impl Import {
-    /// A point of the file in metres, z up: a rotation and a scale, never a mirror.
+    /// Converts a point of the file to metres, z up: a rotation and a scale, never a mirror.
     #[must_use]
     pub fn point(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
         self.unit_m
@@ -56,7 +56,7 @@ impl Import {
     }
 }
 
-/// Collects triangles of a file in metres, z up, and makes a mesh of them.
+/// Triangles of a file in metres, z up, from which a mesh is made.
 pub(super) struct Collector {
     pub(super) file: PathBuf,
     pub(super) vertices: Vec<DVec3>,
@@ -64,7 +64,7 @@ pub(super) struct Collector {
     /// Part of each triangle, in the caller's numbers.
     parts: Vec<u32>,
     pub(super) warnings: Vec<String>,
-    /// Parts, in the caller's numbers, that their material makes transparent, and how.
+    /// Parts, in the caller's numbers, that are transparent in their file, each with the statement that says so.
     pub(super) transparent: BTreeMap<u32, String>,
 }
 
@@ -80,7 +80,7 @@ impl Collector {
         }
     }
 
-    /// The place of the next vertex, if so many more may come.
+    /// Returns the index of the next vertex if the mesh has room for `count` more.
     pub(super) fn reserve(&self, count: usize) -> Result<u32, AssetError> {
         let first = self.vertices.len();
         if count > MOST_VERTICES - first {
@@ -89,7 +89,7 @@ impl Collector {
         Ok(first as u32)
     }
 
-    /// Adds a vertex unless it lies beyond what f32 can hold; gives back the offending coordinate.
+    /// Adds a vertex, or returns its coordinate that f32 cannot hold.
     pub(super) fn add_vertex(&mut self, vertex: DVec3) -> Result<(), f64> {
         if let Some(value) = too_far(vertex) {
             return Err(value);
@@ -115,7 +115,7 @@ impl Collector {
         self.warnings.push(format!("{}: {what}", self.file.display()));
     }
 
-    /// The mesh; `names` has the name of each of the caller's parts, and equal names are one part.
+    /// Makes the mesh; `names` has the name of each of the caller's parts, and equal names are one part.
     pub(super) fn finish(
         mut self,
         names: &[String],
@@ -188,7 +188,7 @@ impl Collector {
         self.parts.truncate(kept);
     }
 
-    /// The new origin, of corners alone: vertices that no triangle uses do not count.
+    /// Returns the new origin, from corners of triangles alone: other vertices do not count.
     fn origin(&self, import: &Import) -> DVec3 {
         if import.origin == Origin::File {
             return DVec3::ZERO;
@@ -199,7 +199,7 @@ impl Collector {
         (0.5 * (low + high)).with_z(low.z)
     }
 
-    /// Sorts the triangles by part, parts by first appearance, and leaves out unused vertices.
+    /// Makes a mesh of the triangles, sorted by part, without unused vertices; parts are in order of appearance.
     fn mesh(&mut self, vertices: &[Vec3], names: &[String]) -> Mesh {
         let mut merged: IndexMap<&str, u32> = IndexMap::new();
         let part_of: Vec<usize> =
@@ -249,7 +249,7 @@ impl Collector {
     }
 }
 
-/// A warning for a mesh so far from its origin that f32 keeps less than 0.1 mm.
+/// Returns a warning for a mesh so far from its origin that f32 keeps less than 0.1 mm.
 pub(super) fn coarse(file: &Path, mesh: &Mesh, origin: &Origin) -> Option<String> {
     let (low, high) = mesh.bounds()?;
     let far = low.abs().max(high.abs()).max_element();
@@ -265,7 +265,7 @@ pub(super) fn coarse(file: &Path, mesh: &Mesh, origin: &Origin) -> Option<String
     })
 }
 
-/// The first coordinate beyond what f32 can hold.
+/// Returns the first coordinate that f32 cannot hold.
 pub(super) fn too_far(vertex: DVec3) -> Option<f64> {
     // A quarter of the range, so that differences and sums of two stay inside it.
     let far = f64::from(f32::MAX) / 4.0;

@@ -9,7 +9,7 @@ use super::AssetError;
 use super::table::{Column, Content, Table, known_columns, missing};
 use crate::document::{INSTANCE_COLUMNS, meant_column};
 
-/// Where one instance stands and how large it is, as its row says.
+/// Position, orientation and size of one instance, from a row of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Position, m.
@@ -18,7 +18,7 @@ pub struct Row {
     pub yaw: f64,
     /// Lean from the vertical, rad.
     pub tilt: f64,
-    /// Where it leans to, clockwise from north, rad.
+    /// Azimuth of the lean, clockwise from north, rad.
     pub tilt_azimuth: f64,
     /// Horizontal scale.
     pub scale_horizontal: f64,
@@ -34,7 +34,7 @@ pub struct Row {
     pub line: usize,
 }
 
-/// What a table of instances holds.
+/// Content of a table of instances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StemTable {
     /// Rows in file order.
@@ -153,7 +153,7 @@ fn names(table: &mut Table, columns: Option<&[String]>) -> Result<Vec<String>, A
 /// Place of `scale` among the columns, which `scale_vertical` follows.
 const SCALE: usize = 7;
 
-/// What each column holds, and the names of those that mean nothing here.
+/// Returns the content of each column, and the names of columns that are not read.
 fn contents(
     names: &[String],
     path: &Path,

@@ -1,4 +1,4 @@
-//! What is read from files or generated: path in, value out.
+//! Assets: values that are read from files or generated; each function takes a path and returns a value.
 //!
 //! | function | from | to |
 //! |---|---|---|
@@ -17,7 +17,6 @@ pub(crate) mod crs;
 mod discs;
 mod error;
 mod faces;
-mod foreign;
 mod format;
 mod gltf;
 mod import;
@@ -26,6 +25,7 @@ mod numbers;
 mod obj;
 mod polygon;
 mod raster;
+mod signatures;
 mod spectrum;
 mod table;
 mod text;
@@ -44,10 +44,10 @@ pub(crate) use raster::companions;
 pub use raster::{Assumed, Extent, Place, Projection, Raster, RasterError, read_raster};
 pub use spectrum::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
 
-/// What was read, and what about it the author of the scene should know.
+/// Value from a file, with warnings for the author of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded<T> {
-    /// What was read.
+    /// Value.
     pub value: T,
     /// Each a sentence that names the file.
     pub warnings: Vec<String>,

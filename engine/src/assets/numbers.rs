@@ -1,15 +1,15 @@
-//! Numbers as people and programs write them into tables.
+//! Numbers in tables: decimal points and commas, separators of thousands, marks of missing values.
 
 use super::text::finite;
 
-/// What stands between two fields.
+/// Separator of two fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
     Character(char),
     WhiteSpace,
 }
 
-/// How the fractions of a table's numbers are written, as far as its rows have shown.
+/// Decimal marks that the rows of a table have had so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Decimals {
     /// First line with a decimal point.
@@ -18,10 +18,10 @@ pub(super) struct Decimals {
     comma: Option<usize>,
 }
 
-/// Why a field is no number.
+/// Error of a field that is no number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct NotANumber {
-    /// What to write instead, where that can be known.
+    /// Text to write instead, if it can be known.
     pub(super) advice: Option<String>,
 }
 

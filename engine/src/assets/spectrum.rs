@@ -155,7 +155,7 @@ fn says_percent(text: &str) -> bool {
     ["%", "percent", "per cent", "pct"].iter().any(|word| lower.contains(word))
 }
 
-/// What each column holds, and the header of the values.
+/// Returns the content of each column, and the header of the values.
 fn find_columns(
     table: &Table,
     columns: &SpectrumColumns<'_>,

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use super::AssetError;
+use super::format::{self, FileReader};
 use super::numbers::{Decimals, NotANumber, Separator, is_missing, looks_like_number};
 use super::text::Lines;
-use super::{AssetError, foreign};
 
 /// Most title lines that are kept.
 const MOST_TITLES: usize = 100;
 
-/// What the field of a column holds.
+/// Content of the fields of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     /// Nothing that is asked for.
@@ -45,7 +46,7 @@ impl Table {
     /// Opens a table and looks at its first row; that row is read again as the first row of numbers
     /// unless the caller skips it.
     pub(super) fn open(path: &Path) -> Result<Self, AssetError> {
-        foreign::check(path, foreign::Reader::Table)?;
+        format::check(path, FileReader::Table)?;
         let mut lines = Lines::open(path)?;
         let Some((first_line, line)) = lines.next()? else {
             return Err(AssetError::NoRows { file: path.to_owned() });
@@ -94,7 +95,7 @@ impl Table {
         self.lines.file()
     }
 
-    /// Whether the first row is one of numbers.
+    /// Returns whether the first row names columns.
     pub(super) fn has_header(&self) -> bool {
         !is_row_of_numbers(&self.first)
     }
@@ -113,8 +114,9 @@ impl Table {
         self.read_mixed_row(columns, numbers, &mut [])
     }
 
-    /// The same of a table that holds texts too. Rows of which all fields are empty, as spreadsheets
-    /// leave them, are skipped.
+    /// Reads the next row of a table that holds texts too.
+    ///
+    /// Rows in which all fields are empty are skipped: spreadsheets leave them behind.
     pub(super) fn read_mixed_row(
         &mut self,
         columns: &[Column],

@@ -11,7 +11,7 @@ use crate::files;
 /// Longest line, bytes: what a file without line ends may cost in memory.
 const LONGEST_LINE: usize = 1 << 20;
 
-/// The lines of a text file that are neither blank nor comments (`#`).
+/// Reader of the lines of a text file that are neither blank nor comments (`#`).
 pub(super) struct Lines {
     reader: BufReader<File>,
     file: PathBuf,
@@ -22,7 +22,7 @@ pub(super) struct Lines {
     is_after_return: bool,
 }
 
-/// A regular file, open for reading.
+/// Opens a regular file.
 pub(super) fn open(path: &Path) -> Result<File, AssetError> {
     let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     // Asked before it is opened: opening a pipe would wait for its writer.
@@ -32,13 +32,13 @@ pub(super) fn open(path: &Path) -> Result<File, AssetError> {
     files::open(path).map_err(unreadable)
 }
 
-/// Bytes of a file.
+/// Size of a file, bytes.
 pub(super) fn size(path: &Path) -> Result<u64, AssetError> {
     let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     Ok(fs::metadata(path).map_err(unreadable)?.len())
 }
 
-/// The whole content of a regular file.
+/// Reads a whole regular file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, AssetError> {
     let mut bytes = Vec::new();
     open(path)?
@@ -47,12 +47,12 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, AssetError> {
     Ok(bytes)
 }
 
-/// A finite number.
+/// Returns the finite number that a text is.
 pub(super) fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-/// The finite number that a text says, or the error that it says none.
+/// Returns the finite number that a text is, or an error that names the quantity `what`.
 pub(super) fn number(text: &str, what: &str, file: &Path, line: usize) -> Result<f64, AssetError> {
     finite(text).ok_or_else(|| AssetError::BadNumber {
         file: file.to_owned(),
@@ -159,7 +159,7 @@ impl Lines {
     }
 }
 
-/// The text that bytes are in UTF-8.
+/// Decodes bytes as UTF-8.
 pub(super) fn decode<'b>(bytes: &'b [u8], file: &Path, line: usize) -> Result<&'b str, AssetError> {
     let not_text =
         || AssetError::NotText { file: file.to_owned(), line, guess: guess_encoding(bytes) };
@@ -170,7 +170,7 @@ pub(super) fn decode<'b>(bytes: &'b [u8], file: &Path, line: usize) -> Result<&'
     std::str::from_utf8(bytes).map_err(|_invalid| not_text())
 }
 
-/// What bytes that are not UTF-8 look like, and how to convert them.
+/// Returns the likely encoding of bytes that are not UTF-8, and a command that converts it.
 fn guess_encoding(bytes: &[u8]) -> &'static str {
     if bytes.contains(&0) || bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return "a binary file, or UTF-16: `iconv -f UTF-16 -t UTF-8`";

@@ -1,20 +1,20 @@
-//! What is wrong with a scene, where, and what to write instead.
+//! Diagnostics of a scene: errors and warnings with their place and advice.
 
 use super::ron_text::Span;
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// The scene cannot be run.
+    /// The scene cannot run.
     Error,
-    /// It can, but its author should know.
+    /// The scene can run, but may be wrong.
     Warning,
 }
 
-/// Where in the text something stands.
+/// Place in the text of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// File, as the reader was given it.
+    /// Name of the file, as it was given to the reader.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
@@ -24,25 +24,25 @@ pub struct Place {
     pub span: Span,
 }
 
-/// What is wrong, where, and what to write instead.
+/// Error or warning, with its place and advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Error or warning.
     pub severity: Severity,
     /// Path in the document: `sensors.nadir.size_px`, `instances[3].of`; empty for all of it.
     pub path: String,
-    /// What is wrong.
+    /// Description of the problem.
     pub message: String,
-    /// What to write instead.
+    /// Advice: text to write instead.
     pub help: Option<String>,
     /// True if the key at the end of the path is wrong, not its value.
     pub is_of_key: bool,
-    /// Where; if absent, where [`super::Source::place`] finds `path`.
+    /// Place in the text; if absent, [`super::Source::place`] finds it from `path`.
     pub place: Option<Place>,
 }
 
 impl Diagnostic {
-    /// An error at a path in the document.
+    /// Creates an error at a path in the document.
     pub fn error(path: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -54,31 +54,31 @@ impl Diagnostic {
         }
     }
 
-    /// A warning at a path in the document.
+    /// Creates a warning at a path in the document.
     pub fn warning(path: impl Into<String>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(path, message) }
     }
 
-    /// The same with advice.
+    /// Returns the diagnostic with advice.
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 
-    /// The same with a place.
+    /// Returns the diagnostic with a place.
     #[must_use]
     pub(super) fn at(self, place: Place) -> Self {
         Self { place: Some(place), ..self }
     }
 
-    /// Whether the scene cannot be run because of it.
+    /// Returns whether the diagnostic is an error, not a warning.
     #[must_use]
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
 }
 
-/// The known name that an author may have meant; none if all are far from it.
+/// Returns the known name that is most like a wrong one, unless all differ too much.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = wrong.to_lowercase();
     let scored = known.into_iter().filter(|name| *name != wrong).map(|name| {
@@ -96,7 +96,7 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     scored.filter(|&(plausible, ..)| plausible).min_by_key(|&(_, edits, _)| edits).map(|s| s.2)
 }
 
-/// ``no material `laef`; did you mean `leaf`? this scene defines: leaf, bark``.
+/// Creates the error of an unknown name: ``no material `laef`; did you mean `leaf`? this scene defines: leaf, bark``.
 pub fn unknown_name<'a>(
     path: impl Into<String>,
     kind: &str,
@@ -114,7 +114,7 @@ pub fn unknown_name<'a>(
     Diagnostic { is_of_key, ..error }
 }
 
-/// ``did you mean `leaf`? this scene defines: leaf, bark``.
+/// Returns advice for an unknown name: ``did you mean `leaf`? this scene defines: leaf, bark``.
 pub(crate) fn suggestion(wrong: &str, known: &[&str], introduction: &str) -> String {
     const SHOWN: usize = 20;
     let list = known.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");

@@ -1,4 +1,4 @@
-//! Texts of diagnostics on one line each, whatever names they quote.
+//! Texts of diagnostics that fit on one line, although they quote names of any length and content.
 
 use std::borrow::Cow;
 
@@ -12,7 +12,7 @@ const LIST: usize = 4000;
 const START: usize = 200;
 const END: usize = 60;
 
-/// A text without line breaks and other control characters, in which names between backticks are shortened.
+/// Returns a text without line breaks and other control characters, with shortened names between backticks.
 ///
 /// A scene may define a name of a million characters, or one with line breaks or terminal sequences in it.
 pub(crate) fn legible(text: &str) -> Cow<'_, str> {
@@ -38,7 +38,7 @@ pub(crate) fn legible(text: &str) -> Cow<'_, str> {
     Cow::Owned(parts.join("`"))
 }
 
-/// A text of at most `most` characters: start and end of a longer one.
+/// Returns a text of at most `most` characters, or the start and end of a longer one.
 pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     let count = text.chars().count();
     if count <= most {

@@ -20,7 +20,7 @@ const FIRST_CONE_DEG: f64 = 40.0;
 /// Depth of the continued fraction of E₁: at 1 it leaves 1e-16, further out far less.
 const E1_DEPTH: u32 = 160;
 
-/// What a leaf is made of.
+/// Composition of a leaf.
 ///
 /// PROSPECT-D has `dry_matter`, PROSPECT-PRO has `protein` and `carbon` in its place; all that is
 /// given absorbs.

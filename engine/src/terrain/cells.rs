@@ -5,9 +5,9 @@ use crate::geometry::Rectangle;
 /// A rectangle of cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells<T> {
-    /// From west to east.
+    /// Number of columns, counted from west to east.
     pub columns: usize,
-    /// From north to south.
+    /// Number of rows, counted from north to south.
     pub rows: usize,
     /// Shape `[rows, columns]`, row 0 in the north.
     pub values: Vec<T>,

@@ -1,6 +1,6 @@
 use glam::DVec2;
 
-/// What the ground is made of, by cells of a rectilinear grid over its rectangle.
+/// Material of the ground, by cells of a rectilinear grid over its rectangle.
 #[derive(Clone, Debug)]
 pub(super) struct Cover {
     /// Borders of cells from west to east, m from the corner; the first and last are its sides.

@@ -4,16 +4,16 @@ use glam::DVec2;
 /// its rectangle, where the slope of the outermost cells goes on for half a cell.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
-    /// From west to east, m from the corner; the first is 0.
+    /// Positions from west to east, m from the corner; the first is 0.
     pub(super) xs: Vec<f64>,
-    /// From south to north.
+    /// Positions from south to north, m from the corner.
     pub(super) ys: Vec<f64>,
     /// Heights, m, shape `[ys, xs]`; NaN where there is no data.
     pub(super) heights: Vec<f64>,
 }
 
 impl Grid {
-    /// From heights of cells, shape `[rows, columns]` with row 0 in the north, over a rectangle.
+    /// Creates the grid from heights of cells, shape `[rows, columns]` with row 0 in the north, over a rectangle.
     pub(super) fn of_cells(columns: usize, rows: usize, cells: &[f64], size: DVec2) -> Self {
         let points = |count: usize, size: f64| -> Vec<f64> {
             let inner = (0..count).map(|cell| (cell as f64 + 0.5) / count as f64 * size);

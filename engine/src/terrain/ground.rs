@@ -14,7 +14,7 @@ pub struct Ground {
     triangles: Box<[[DVec3; 3]]>,
     base: f64,
     cells: UVec2,
-    /// Where the triangles of each cell start in `held`, and where those of the last one end.
+    /// First entry of `held` for each cell, and the number of entries at the end.
     starts: Box<[u32]>,
     held: Box<[u32]>,
 }
@@ -22,11 +22,11 @@ pub struct Ground {
 /// Cells that hold a triangle, on average at most: one that lies like those of a raster is in four or so.
 const MOST_HELD: u64 = 32;
 
-/// How far beside its edges a triangle still counts, in units of the rectangle: the corners are f32.
+/// Tolerance beside the edges of a triangle, in units of the rectangle: the corners are f32.
 const EDGE: f64 = 1e-7;
 
 impl Ground {
-    /// Of a terrain.
+    /// Creates the ground of a terrain.
     #[must_use]
     pub fn of(patch: &TerrainPatch) -> Self {
         let up = DVec3::new(1.0, 1.0, patch.unit);

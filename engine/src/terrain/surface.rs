@@ -20,7 +20,7 @@ pub(super) struct Surface {
 pub type Parts = Vec<(String, MaterialId)>;
 
 impl Surface {
-    /// From corners relative to a rectangle's corner, m; those that no triangle has are left out.
+    /// Creates the surface from corners relative to a rectangle's corner, m, without those that no triangle has.
     pub(super) fn new(
         corner: DVec2,
         size: DVec2,

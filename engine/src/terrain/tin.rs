@@ -41,7 +41,7 @@ struct Candidate {
     error: u64,
     node: std::cmp::Reverse<usize>,
     face: usize,
-    /// How often the face had changed when this was found.
+    /// Number of changes of the face before this point was found.
     age: u32,
     /// A corner of the face: where to start looking for it.
     hint: usize,
@@ -70,7 +70,7 @@ struct Insertion<'a> {
     tolerance: f64,
     delaunay: Delaunay,
     is_corner: Vec<bool>,
-    /// How often each face has changed.
+    /// Number of changes of each face.
     ages: Vec<u32>,
     queue: BinaryHeap<Candidate>,
 }
@@ -235,7 +235,7 @@ impl<'a> Insertion<'a> {
     }
 }
 
-/// Where a triangle begins and ends at a y of its own.
+/// Returns the range of x of a triangle at a height y.
 fn span(corners: &[DVec3; 3], y: f64) -> Option<(f64, f64)> {
     let mut range: Option<(f64, f64)> = None;
     let mut add = |x: f64| {

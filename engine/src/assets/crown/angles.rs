@@ -1,4 +1,4 @@
-//! How leaves lean.
+//! Distributions of leaf angles.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -20,7 +20,7 @@ const EXPONENTS: [f64; 2] = [0.1, 100.0];
 /// A distribution of leaf normals, ready to be drawn from.
 #[derive(Clone, Debug)]
 pub(super) enum Normals {
-    /// By density of the angle.
+    /// Density of the zenith angle.
     Plain(LeafAngle),
     /// Axis ratio.
     Ellipsoidal(f64),

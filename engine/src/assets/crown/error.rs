@@ -1,6 +1,6 @@
 use crate::memory::Lack;
 
-/// Why a crown cannot grow.
+/// Error of a crown that cannot be generated.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]

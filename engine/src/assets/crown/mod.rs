@@ -49,7 +49,7 @@ pub struct CrownSpec {
     pub base_m: f64,
     /// One-sided area of all leaves, m².
     pub leaf_area_m2: f64,
-    /// How leaf area changes with height.
+    /// Profile of leaf area over height.
     pub leaf_profile: LeafProfile,
     /// Clumps that leaves are gathered in, if any.
     pub clumps: Option<Clumps>,

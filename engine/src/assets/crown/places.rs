@@ -1,4 +1,4 @@
-//! Where leaves are.
+//! Positions of leaves.
 
 use glam::DVec3;
 

@@ -29,7 +29,7 @@ pub(super) fn lengths(shape: &CrownShape) -> Vec<(&'static str, f64)> {
     }
 }
 
-/// From the lowest to the highest point, m.
+/// Distance from the lowest to the highest point, m.
 pub(super) fn height(shape: &CrownShape) -> f64 {
     match *shape {
         CrownShape::Ellipsoid { height_m, .. }
@@ -71,7 +71,7 @@ pub(super) fn radius(shape: &CrownShape, z: f64) -> f64 {
     }
 }
 
-/// Whether a point is inside the outline or on it.
+/// Returns whether a point is inside the outline or on it.
 pub(super) fn contains(shape: &CrownShape, point: DVec3) -> bool {
     let across = match *shape {
         CrownShape::Box { size_m: (x, y, _) } => {
@@ -96,7 +96,7 @@ fn on_circle(radius: f64, turn: f64) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, 0.0)
 }
 
-/// Whether [`point`] knows the outline's volume in closed form.
+/// Returns whether [`point`] has the outline's volume in closed form.
 pub(super) fn is_simple(shape: &CrownShape) -> bool {
     !matches!(shape, CrownShape::AsymmetricGaussian { .. })
 }

@@ -1,7 +1,7 @@
 //! Random numbers of one leaf, from nothing but the crown's seed, their purpose and the leaf's
 //! place: leaves can be made in any order, and a change to one kind of number moves no other.
 
-/// What numbers are for.
+/// Purpose of random numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
     Position = 1,

@@ -14,7 +14,7 @@ const TRUNK_SIDES: u32 = 12;
 /// Sides of a branch's prism.
 const BRANCH_SIDES: u32 = 8;
 
-/// How far branches reach, as a share of the way from the trunk's axis to the outline.
+/// Length of branches, as a fraction of the distance from the trunk's axis to the outline.
 const REACH: f64 = 0.9;
 
 /// Thickness of a branch's tip as a share of its foot.
@@ -33,7 +33,7 @@ pub(super) fn grow(crown: &CrownSpec, mesh: &mut Mesh) {
 
 /// A branch.
 pub(super) struct Branch {
-    /// Where it leaves the trunk's axis, m.
+    /// Point where it leaves the trunk's axis, m.
     pub(super) start: DVec3,
     /// Its tip, m.
     pub(super) end: DVec3,

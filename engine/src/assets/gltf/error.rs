@@ -2,7 +2,7 @@ use std::io;
 
 use ::gltf::binary;
 
-/// Why a file is not glTF that can be used.
+/// Error of a file that is no glTF or none that can be used.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]

@@ -127,7 +127,7 @@ pub(super) fn is_hidden(node: &Node<'_>) -> bool {
     visible.and_then(Value::as_bool) == Some(false)
 }
 
-/// Where the mesh of a node stands, relative to the node.
+/// Returns the transforms of a node's mesh, relative to the node.
 pub(super) fn instances(
     node: &Node<'_>,
     document: &Document,

@@ -20,7 +20,7 @@ use glam::{DMat4, DVec3};
 use indexmap::IndexSet;
 
 use self::buffers::Buffers;
-use super::format::{self, Reader};
+use super::format::{self, FileReader};
 use super::import::{Collector, Import};
 use super::{AssetError, Loaded, text};
 use crate::components::Mesh;
@@ -39,7 +39,7 @@ use crate::components::Mesh;
 /// that reach beyond their data, a mesh without area.
 pub fn read_gltf(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetError> {
     import.check(path)?;
-    format::check(path, Reader::Gltf)?;
+    format::check(path, FileReader::Gltf)?;
     let bytes = text::read(path)?;
     let wrong = |problem| AssetError::Gltf { file: path.to_owned(), problem };
     let (Gltf { document, blob }, unread) = parse(&bytes).map_err(wrong)?;
@@ -267,7 +267,7 @@ fn part_name(primitive: &Primitive<'_>) -> String {
     }
 }
 
-/// Whether a transform turns right hands into left hands.
+/// Returns whether a transform mirrors.
 fn is_mirror(transform: DMat4) -> bool {
     let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| transform.transform_vector3(axis));
     x.cross(y).dot(z) < 0.0

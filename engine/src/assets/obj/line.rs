@@ -1,4 +1,4 @@
-//! Comments behind the words of a line.
+//! Comments at the end of a line.
 
 /// Keywords that a name follows: in it, `#` starts a comment behind a space only, as in `g leaf#3 # crown`.
 const NAMES: [&[u8]; 6] = [b"g", b"o", b"usemtl", b"mtllib", b"usemap", b"maplib"];
@@ -9,7 +9,7 @@ pub(super) fn is_name(line: &[u8]) -> bool {
     NAMES.contains(&&line[..end])
 }
 
-/// Where the comment of a line starts, else the line's length.
+/// Returns the byte where the comment of a line starts, or else the line's length.
 pub(super) fn comment(line: &[u8], is_name: bool) -> usize {
     let is_start = |place: usize| {
         line[place] == b'#' && (!is_name || place == 0 || line[place - 1].is_ascii_whitespace())
@@ -17,7 +17,7 @@ pub(super) fn comment(line: &[u8], is_name: bool) -> usize {
     (0..line.len()).find(|&place| is_start(place)).unwrap_or(line.len())
 }
 
-/// A line without its comment and the white space before that.
+/// Returns a line without its comment and the white space before it.
 pub(super) fn without_comment(line: &[u8]) -> &[u8] {
     // Most lines have none.
     if !line.contains(&b'#') {

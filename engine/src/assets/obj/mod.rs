@@ -19,7 +19,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use self::line::{comment, is_name, without_comment};
 use super::error::excerpt;
-use super::format::{self, Reader};
+use super::format::{self, FileReader};
 use super::import::{Collector, Import};
 use super::polygon::{Pieces, Tangled, triangulate};
 use super::text::{Lines, decode, number};
@@ -30,13 +30,13 @@ use crate::document::PartsBy;
 /// Most corners of a face: cutting a concave polygon takes the square of them.
 const MOST_CORNERS: usize = 2048;
 
-/// Most unknown keywords to speak of.
+/// Most unknown keywords in warnings.
 const MOST_UNKNOWN: usize = 5;
 
-/// Most material libraries to look into.
+/// Most material libraries that are read.
 const MOST_LIBRARIES: usize = 64;
 
-/// Keywords that say nothing about the shape, or nothing that light can meet.
+/// Keywords that are skipped: they do not concern surfaces.
 const IGNORED: [&[u8]; 14] = [
     b"vt",
     b"vn",
@@ -54,7 +54,7 @@ const IGNORED: [&[u8]; 14] = [
     b"trace_obj",
 ];
 
-/// A mesh from a Wavefront OBJ file.
+/// Reads a mesh from a Wavefront OBJ file.
 ///
 /// By [`PartsBy::Group`], a part is a group (`g` or `o`, the later one counts) and within it a material
 /// (`usemtl`). It is called after its group if the group has one material or the material has the same
@@ -77,7 +77,7 @@ pub fn read_obj(
     parts_by: &PartsBy,
 ) -> Result<Loaded<Mesh>, AssetError> {
     import.check(path)?;
-    format::check(path, Reader::Obj)?;
+    format::check(path, FileReader::Obj)?;
     let mut lines = Lines::open(path)?;
     let mut model = Model::new(path, import, parts_by);
     let mut joined = Vec::new();
@@ -110,27 +110,27 @@ struct Deferred {
     corners: Vec<i64>,
 }
 
-/// What was read so far.
+/// Mesh and state of the reader after some lines.
 struct Model<'a> {
     import: &'a Import,
     parts_by: &'a PartsBy,
     mesh: Collector,
-    /// (group, material) of each part, in first-appearance order; an empty name is none.
+    /// Group and material of each part, in order of appearance; an empty name is none.
     parts: IndexSet<(String, String)>,
     group: String,
     material: String,
     /// Part of the next face; `None` after a change of group or material.
     part: Option<u32>,
     deferred: Vec<Deferred>,
-    /// True once all vertices of the file are read: more may then follow them.
+    /// True once all vertices of the file are read; new ones may then be added behind them.
     is_read: bool,
     /// Number of faces that cross themselves, and the first one's line.
     crossed: (usize, usize),
-    /// What follows `mtllib`.
+    /// Names that follow `mtllib`.
     libraries: IndexSet<String>,
     /// First line of each unknown keyword.
     unknown: IndexMap<String, usize>,
-    // Kept from face to face, for their memory.
+    // Buffers that are reused from face to face.
     corners: Vec<i64>,
     polygon: Vec<u32>,
     points: Vec<DVec3>,
@@ -334,7 +334,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// Vertex index of a face's corner: `7`, `7/1`, `7//3` or `7/1/3`.
+/// Returns the vertex index of a face's corner: `7`, `7/1`, `7//3` or `7/1/3`.
 fn corner(text: &str) -> Option<i64> {
     let mut indices = text.split('/');
     let vertex = indices.next()?.parse().ok()?;
@@ -343,7 +343,7 @@ fn corner(text: &str) -> Option<i64> {
     (lawful && indices.next().is_none()).then_some(vertex)
 }
 
-/// A name with single spaces.
+/// Returns a name with single spaces.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -54,7 +54,7 @@ impl<R: BufRead> Words<R> {
     }
 }
 
-/// What the header says.
+/// Values of the header.
 #[derive(Default)]
 struct Header {
     numbers: [Option<f64>; KEYS.len()],

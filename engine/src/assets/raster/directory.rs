@@ -48,9 +48,9 @@ pub(super) struct Directory {
     compression: u64,
     tile_width: u64,
     tile_height: u64,
-    /// What the picture is to others in the file, in bits.
+    /// Flags of the picture's relation to others in the file.
     subfile: u64,
-    /// How values are shown, and the byte of the file where that is written.
+    /// Photometric interpretation, and the byte of the file where it is written.
     pub(super) photometric: Option<Written>,
     next: u64,
 }

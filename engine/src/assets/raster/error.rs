@@ -2,7 +2,7 @@ use glam::DVec2;
 
 use super::Extent;
 
-/// Why a file is not a raster that can be used, and what to do about it. Lines count from 1.
+/// Error of a file that is no raster or none that can be used, with advice; lines count from 1.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]

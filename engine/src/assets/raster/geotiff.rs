@@ -103,7 +103,7 @@ fn hide(values: &mut [f64], mask: &[f64]) {
     }
 }
 
-/// What is said about the first band.
+/// Reads the metadata of the first band.
 fn band(tiff: &mut Tiff) -> Result<Band, RasterError> {
     // GDAL's own description of bands.
     const METADATA: Tag = Tag::Unknown(42112);
@@ -119,7 +119,7 @@ fn band(tiff: &mut Tiff) -> Result<Band, RasterError> {
     Ok(Band { no_data: no_data.transpose()?, ..band })
 }
 
-/// How the samples of a picture lie in its strips or tiles.
+/// Layout of the samples of a picture in its strips or tiles.
 struct Picture {
     bits: u16,
     samples: u16,

@@ -1,10 +1,10 @@
-//! What GDAL writes about a band: scale, offset, unit and value for no data, in tag 42112 of a
-//! `GeoTIFF` and in the `.aux.xml` beside a file. Source: GDAL's documentation of `GTiff` and PAM.
+//! GDAL's metadata of a band: scale, offset, unit and value for no data, in tag 42112 of a `GeoTIFF` and in
+//! the `.aux.xml` beside a file. Source: GDAL's documentation of `GTiff` and PAM.
 
 use super::super::crs::{Crs, Heights, Length, from_wkt};
 use super::{Assumed, RasterError, is_no_data, is_usual_no_data, parse_no_data};
 
-/// What is said about the first band.
+/// Metadata of the first band.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Band {
     pub(super) no_data: Option<f64>,
@@ -15,7 +15,7 @@ pub(super) struct Band {
 }
 
 impl Band {
-    /// From the text of tag 42112.
+    /// Reads the text of tag 42112.
     pub(super) fn from_tag(text: &str) -> Result<Self, RasterError> {
         let mut band = Self::default();
         for item in text.split("<Item ").skip(1) {
@@ -35,7 +35,7 @@ impl Band {
         Ok(band)
     }
 
-    /// From the text of an `.aux.xml`, with the system that it names.
+    /// Reads the text of an `.aux.xml`, with the coordinate reference system that it names.
     pub(super) fn from_auxiliary(text: &str) -> Result<(Self, Option<Crs>), RasterError> {
         let first = text.split("<PAMRasterBand").skip(1).find(|band| {
             let attributes = band.split('>').next().unwrap_or_default();

@@ -20,9 +20,10 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use super::AssetError;
 use super::crs::{Axes, Crs, Heights};
+use super::format::{self, FileReader};
 use super::text::open;
-use super::{AssetError, foreign};
 
 pub use error::RasterError;
 pub(crate) use sidecar::companions;
@@ -43,7 +44,7 @@ pub struct Raster {
     /// Values with the file's scale and offset applied, shape `[rows, columns]`, row 0 in the north;
     /// NaN where there is no data.
     pub values: Vec<f64>,
-    /// Where it lies, if the file says so.
+    /// Georeference, if the file has one.
     pub place: Option<Place>,
     /// Names of classes by their value, if it is an ENVI classification; else empty.
     pub class_names: Vec<String>,
@@ -62,7 +63,7 @@ pub struct Assumed {
     pub count: usize,
 }
 
-/// Where a raster lies, in the units of its coordinates.
+/// Georeference of a raster, in the units of its coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// South-west corner of the south-westernmost cell (its corner, not its centre).
@@ -76,7 +77,7 @@ pub struct Place {
 }
 
 impl Raster {
-    /// Whether its coordinates are, or must be taken for, degrees: cells of a twentieth and less
+    /// Returns whether its coordinates are degrees, or must be taken for degrees: cells of a twentieth and less
     /// within the globe's range and not at its origin.
     #[must_use]
     pub fn is_in_degrees(&self) -> bool {
@@ -148,7 +149,7 @@ pub fn read_raster(path: &Path, extent: Option<&Extent>) -> Result<Raster, Asset
     } else if let Some(header) = esri::header_of(path) {
         esri::read(path, &header, extent)
     } else {
-        foreign::check(path, foreign::Reader::Raster)?;
+        format::check(path, FileReader::Raster)?;
         if !strange::is_binary(&start) {
             return ascii::read(path, extent);
         }
@@ -170,7 +171,7 @@ fn cells(columns: u64, rows: u64) -> Result<usize, RasterError> {
     }
 }
 
-/// Whether a value stands for no data: programs round the largest numbers when they write them.
+/// Returns whether a value stands for no data; programs round the largest numbers when they write them.
 #[expect(clippy::float_cmp, reason = "an infinite value for no data is equal or is not")]
 fn is_no_data(value: f64, no_data: Option<f64>) -> bool {
     value.is_nan()

@@ -15,7 +15,7 @@ pub(super) enum Interleave {
     Pixels,
 }
 
-/// What a value is.
+/// Type of a value.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     Unsigned,
@@ -23,7 +23,7 @@ pub(super) enum Kind {
     Real,
 }
 
-/// How values lie in a file.
+/// Layout of the values in a file.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) columns: u64,

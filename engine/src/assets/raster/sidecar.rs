@@ -79,7 +79,7 @@ fn arc_info(content: &str) -> Option<Crs> {
     Some(crs)
 }
 
-/// What the `.aux.xml` beside a file says.
+/// Reads the `.aux.xml` beside a file.
 pub(super) fn auxiliary(path: &Path) -> Result<(Band, Option<Crs>), RasterError> {
     match appended(path, "aux.xml").and_then(|file| text(&file)) {
         Some(text) => Band::from_auxiliary(&text),
@@ -92,7 +92,7 @@ pub(super) fn mask(path: &Path) -> Option<PathBuf> {
     appended(path, "msk")
 }
 
-/// Where a picture lies by its world file: `dem.tfw`, `dem.tifw` or `dem.wld`.
+/// Reads the georeference of a picture from its world file: `dem.tfw`, `dem.tifw` or `dem.wld`.
 pub(super) fn world(path: &Path, rows: f64) -> Result<Option<Place>, RasterError> {
     let found = ["tfw", "tifw", "tiffw", "wld"].into_iter().find_map(|ending| beside(path, ending));
     let Some(file) = found else { return Ok(None) };
