@@ -57,7 +57,7 @@ pub fn read_geojson(path: &Path) -> Result<Areas, AssetError> {
     }
     let read = GeoJson::from_reader(bytes)
         .map_err(|error| AssetError::NotGeoJson { file: file(), reason: error.to_string() })?;
-    let mut found = Found { path, polygons: Vec::new() };
+    let mut found = PolygonCollector { path, polygons: Vec::new() };
     let crs = match read {
         GeoJson::Geometry(geometry) => {
             found.geometry(&geometry)?;
@@ -87,12 +87,12 @@ fn crs(members: Option<&JsonObject>) -> Option<String> {
     name.map(str::to_owned).or(code).or_else(|| crs.as_str().map(str::to_owned))
 }
 
-struct Found<'a> {
+struct PolygonCollector<'a> {
     path: &'a Path,
     polygons: Vec<Polygon>,
 }
 
-impl Found<'_> {
+impl PolygonCollector<'_> {
     fn feature(&mut self, feature: &Feature) -> Result<(), AssetError> {
         feature.geometry.as_ref().map_or(Ok(()), |geometry| self.geometry(geometry))
     }

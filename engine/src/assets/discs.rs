@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::format::{self, FileReader};
 use super::import::coarse;
-use super::table::{Column, Content, Table, known_columns, missing};
+use super::table::{Column, ColumnContent, Table, known_columns, missing};
 use super::{AssetError, Loaded};
 use crate::components::{Disc, Mesh, Part};
 use crate::document::Origin;
@@ -57,11 +57,13 @@ fn columns(table: &mut Table) -> Result<Vec<Column>, AssetError> {
         table.skip_header()?;
         return Ok(columns);
     }
-    let layer = || Column { name: "layer".to_owned(), content: Content::Ignored };
+    let layer = || Column { name: "layer".to_owned(), content: ColumnContent::Ignored };
     let layer = (count == COLUMNS.len() + 1).then(layer);
     let named = COLUMNS.iter().enumerate();
-    let named =
-        named.map(|(slot, &name)| Column { name: name.to_owned(), content: Content::Number(slot) });
+    let named = named.map(|(slot, &name)| Column {
+        name: name.to_owned(),
+        content: ColumnContent::Number(slot),
+    });
     Ok(layer.into_iter().chain(named).collect())
 }
 

@@ -22,7 +22,7 @@ pub(super) enum FileReader {
 
 /// Kind of content: files with the same have the same advice for each reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Content {
+pub(super) enum FileContent {
     Obj,
     Gltf,
     DiscTable,
@@ -47,7 +47,7 @@ pub(super) enum Content {
     Document,
 }
 
-impl Content {
+impl FileContent {
     /// Returns whether only readers of meshes look for this content.
     fn is_of_mesh(self) -> bool {
         matches!(
@@ -62,7 +62,7 @@ impl Content {
 pub(super) struct FileFormat {
     /// Name with its article, as in `a PLY file`.
     pub(super) name: &'static str,
-    pub(super) content: Content,
+    pub(super) content: FileContent,
 }
 
 impl FileReader {
@@ -92,77 +92,77 @@ impl FileReader {
         matches!(self, Self::Obj | Self::Gltf | Self::Discs)
     }
 
-    fn reads(self, content: Content) -> bool {
+    fn reads(self, content: FileContent) -> bool {
         matches!(
             (self, content),
-            (Self::Obj, Content::Obj)
-                | (Self::Gltf, Content::Gltf)
-                | (Self::Discs, Content::DiscTable)
-                | (Self::Raster, Content::Cells)
+            (Self::Obj, FileContent::Obj)
+                | (Self::Gltf, FileContent::Gltf)
+                | (Self::Discs, FileContent::DiscTable)
+                | (Self::Raster, FileContent::Cells)
         )
     }
 
     /// Advice for a file with other content, which has this name.
-    fn advice(self, content: Content, file: &str) -> String {
+    fn advice(self, content: FileContent, file: &str) -> String {
         let text = match (content, self) {
-            (Content::Obj, _) => "write `Obj` in place of what reads it now",
-            (Content::Gltf, _) => "write `Gltf` in place of what reads it now",
-            (Content::DiscTable, _) => "write `Discs` in place of what reads it now",
-            (Content::MaterialLibrary, _) => "name the OBJ file that it belongs to",
-            (Content::PointCloud, Self::Obj | Self::Gltf | Self::Discs) => {
+            (FileContent::Obj, _) => "write `Obj` in place of what reads it now",
+            (FileContent::Gltf, _) => "write `Gltf` in place of what reads it now",
+            (FileContent::DiscTable, _) => "write `Discs` in place of what reads it now",
+            (FileContent::MaterialLibrary, _) => "name the OBJ file that it belongs to",
+            (FileContent::PointCloud, Self::Obj | Self::Gltf | Self::Discs) => {
                 "convert the points to a mesh (OBJ or glTF), or to a table of discs for `Discs`"
             }
-            (Content::Archive, Self::Obj | Self::Gltf | Self::Discs) => {
+            (FileContent::Archive, Self::Obj | Self::Gltf | Self::Discs) => {
                 "unpack it and name the mesh file in it"
             }
-            (Content::Document, _) => "get the file itself",
-            (Content::Mesh, _)
+            (FileContent::Document, _) => "get the file itself",
+            (FileContent::Mesh, _)
             | (
-                Content::Drawing | Content::Features | Content::Numbers,
+                FileContent::Drawing | FileContent::Features | FileContent::Numbers,
                 Self::Obj | Self::Gltf | Self::Discs,
             ) => "convert it to OBJ or glTF, with Blender or MeshLab, for example",
             (_, Self::Obj | Self::Gltf | Self::Discs) => "name the file of the mesh",
-            (Content::Features | Content::Drawing, Self::GeoJson) => {
+            (FileContent::Features | FileContent::Drawing, Self::GeoJson) => {
                 return format!("convert it: `ogr2ogr polygons.geojson {file}`");
             }
-            (Content::Features | Content::Drawing, Self::Table) => {
+            (FileContent::Features | FileContent::Drawing, Self::Table) => {
                 return format!(
                     "convert points to CSV: `ogr2ogr -f CSV -lco GEOMETRY=AS_XY points.csv {file}`; polygons \
                      to GeoJSON, for `GeoJson(file: ..)`: `ogr2ogr polygons.geojson {file}`"
                 );
             }
-            (Content::Features | Content::Drawing, Self::Raster) => {
+            (FileContent::Features | FileContent::Drawing, Self::Raster) => {
                 "make a raster of it, with `gdal_rasterize`"
             }
-            (Content::Attributes, Self::Table) => {
+            (FileContent::Attributes, Self::Table) => {
                 return format!(
                     "export it as CSV: `ogr2ogr -f CSV table.csv {file}`; places are in the `.shp` beside it"
                 );
             }
-            (Content::Attributes, _) => {
+            (FileContent::Attributes, _) => {
                 "name the file of features beside it, converted by `ogr2ogr`"
             }
-            (Content::Spreadsheet, Self::Table) => {
+            (FileContent::Spreadsheet, Self::Table) => {
                 "save it as CSV (UTF-8) in the spreadsheet program, and name that"
             }
-            (Content::Spreadsheet, Self::GeoJson) => {
+            (FileContent::Spreadsheet, Self::GeoJson) => {
                 "save its corners as CSV (UTF-8), for `Table(file: ..)` in place of `GeoJson`"
             }
-            (Content::Spreadsheet | Content::Numbers, Self::Raster) => {
+            (FileContent::Spreadsheet | FileContent::Numbers, Self::Raster) => {
                 "export its cells as an ESRI ASCII grid or a GeoTIFF"
             }
-            (Content::PointCloud, Self::Raster) => {
+            (FileContent::PointCloud, Self::Raster) => {
                 "make a raster of its points, with `pdal` (`writers.gdal`) or LAStools"
             }
-            (Content::PointCloud, _) => {
+            (FileContent::PointCloud, _) => {
                 "a table or an area holds trees or corners: export those as CSV or GeoJSON; a canopy height \
                  model of it is read by `CanopyHeights`"
             }
-            (Content::Cells, _) => {
+            (FileContent::Cells, _) => {
                 "it is a raster: areas are polygons (`gdal_polygonize.py`), tables are text"
             }
-            (Content::Archive, _) => "unpack it and name the file in it",
-            (Content::Numbers, _) => "export it as a text table (CSV), in UTF-8",
+            (FileContent::Archive, _) => "unpack it and name the file in it",
+            (FileContent::Numbers, _) => "export it as a text table (CSV), in UTF-8",
         };
         text.to_owned()
     }

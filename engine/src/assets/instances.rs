@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::AssetError;
-use super::table::{Column, Content, Table, known_columns, missing};
+use super::table::{Column, ColumnContent, Table, known_columns, missing};
 use crate::document::{INSTANCE_COLUMNS, meant_column};
 
 /// Position, orientation and size of one instance, from a row of a table.
@@ -166,11 +166,11 @@ fn contents(
     let fields = names.iter().map(|name| {
         if !is_known(&name) {
             left_out.extend((!name.is_empty()).then(|| name.clone()));
-            return Column { name: name.clone(), content: Content::Ignored };
+            return Column { name: name.clone(), content: ColumnContent::Ignored };
         }
         match known.next() {
             Some(column) if column.name != "species" => column,
-            _ => Column { name: name.clone(), content: Content::Text(0) },
+            _ => Column { name: name.clone(), content: ColumnContent::Text(0) },
         }
     });
     Ok((fields.collect(), left_out))

@@ -2,87 +2,87 @@
 
 use std::path::Path;
 
-use super::format::{Content, FileFormat, FileReader};
+use super::format::{FileContent, FileFormat, FileReader};
 
 /// Keywords that the first line of an OBJ file may begin with.
 const OBJ_KEYWORDS: [&str; 11] =
     ["v", "vt", "vn", "vp", "f", "g", "o", "s", "usemtl", "mtllib", "l"];
 
-type Signature = (&'static [u8], &'static str, Content);
+type Signature = (&'static [u8], &'static str, FileContent);
 
 /// First bytes that text tables and GeoJSON do not have.
 const SIGNATURES: [Signature; 32] = [
-    (b"\x00\x00\x27\x0a", "an Esri shapefile", Content::Features),
-    (b"SQLite format 3\0", "a GeoPackage or another SQLite database", Content::Features),
-    (b"fgb\x03", "a FlatGeobuf file", Content::Features),
-    (b"\xd0\xcf\x11\xe0", "an Excel workbook", Content::Spreadsheet),
-    (b"LASF", "a LAS or LAZ point cloud", Content::PointCloud),
-    (b"ASTM-E57", "an E57 point cloud", Content::PointCloud),
-    (b"# .PCD", "a PCD point cloud", Content::PointCloud),
-    (b"II*\0", "a TIFF image", Content::Cells),
-    (b"MM\0*", "a TIFF image", Content::Cells),
-    (b"II+\0", "a TIFF image", Content::Cells),
-    (b"MM\0+", "a TIFF image", Content::Cells),
-    (b"\x89PNG", "a PNG image", Content::Cells),
-    (b"\xff\xd8\xff", "a JPEG image", Content::Cells),
-    (b"CDF\x01", "a netCDF file", Content::Cells),
-    (b"CDF\x02", "a netCDF file", Content::Cells),
-    (b"\x89HDF", "an HDF5 or netCDF file", Content::Cells),
-    (b"PAR1", "a Parquet file", Content::Numbers),
-    (b"MATLAB", "a MATLAB file", Content::Numbers),
-    (b"\x93NUMPY", "a NumPy file", Content::Numbers),
-    (b"\x1f\x8b", "a gzip archive", Content::Archive),
-    (b"7z\xbc\xaf", "a 7z archive", Content::Archive),
-    (b"Rar!", "a RAR archive", Content::Archive),
-    (b"BZh", "a bzip2 archive", Content::Archive),
-    (b"\xfd7zXZ", "an xz archive", Content::Archive),
-    (b"\x28\xb5\x2f\xfd", "a Zstandard archive", Content::Archive),
-    (b"%PDF", "a PDF file", Content::Document),
-    (b"<!DOCTYPE html", "a web page", Content::Document),
-    (b"<html", "a web page", Content::Document),
-    (b"<HTML", "a web page", Content::Document),
-    (b"version https://git-lfs", "a Git LFS pointer, not the file itself", Content::Document),
-    (b"ply\n", "a PLY file", Content::PointCloud),
-    (b"ply\r", "a PLY file", Content::PointCloud),
+    (b"\x00\x00\x27\x0a", "an Esri shapefile", FileContent::Features),
+    (b"SQLite format 3\0", "a GeoPackage or another SQLite database", FileContent::Features),
+    (b"fgb\x03", "a FlatGeobuf file", FileContent::Features),
+    (b"\xd0\xcf\x11\xe0", "an Excel workbook", FileContent::Spreadsheet),
+    (b"LASF", "a LAS or LAZ point cloud", FileContent::PointCloud),
+    (b"ASTM-E57", "an E57 point cloud", FileContent::PointCloud),
+    (b"# .PCD", "a PCD point cloud", FileContent::PointCloud),
+    (b"II*\0", "a TIFF image", FileContent::Cells),
+    (b"MM\0*", "a TIFF image", FileContent::Cells),
+    (b"II+\0", "a TIFF image", FileContent::Cells),
+    (b"MM\0+", "a TIFF image", FileContent::Cells),
+    (b"\x89PNG", "a PNG image", FileContent::Cells),
+    (b"\xff\xd8\xff", "a JPEG image", FileContent::Cells),
+    (b"CDF\x01", "a netCDF file", FileContent::Cells),
+    (b"CDF\x02", "a netCDF file", FileContent::Cells),
+    (b"\x89HDF", "an HDF5 or netCDF file", FileContent::Cells),
+    (b"PAR1", "a Parquet file", FileContent::Numbers),
+    (b"MATLAB", "a MATLAB file", FileContent::Numbers),
+    (b"\x93NUMPY", "a NumPy file", FileContent::Numbers),
+    (b"\x1f\x8b", "a gzip archive", FileContent::Archive),
+    (b"7z\xbc\xaf", "a 7z archive", FileContent::Archive),
+    (b"Rar!", "a RAR archive", FileContent::Archive),
+    (b"BZh", "a bzip2 archive", FileContent::Archive),
+    (b"\xfd7zXZ", "an xz archive", FileContent::Archive),
+    (b"\x28\xb5\x2f\xfd", "a Zstandard archive", FileContent::Archive),
+    (b"%PDF", "a PDF file", FileContent::Document),
+    (b"<!DOCTYPE html", "a web page", FileContent::Document),
+    (b"<html", "a web page", FileContent::Document),
+    (b"<HTML", "a web page", FileContent::Document),
+    (b"version https://git-lfs", "a Git LFS pointer, not the file itself", FileContent::Document),
+    (b"ply\n", "a PLY file", FileContent::PointCloud),
+    (b"ply\r", "a PLY file", FileContent::PointCloud),
 ];
 
 /// First bytes of meshes, which a text table may have too.
 const MESH_SIGNATURES: [Signature; 18] = [
-    (b"ply\n", "a PLY file", Content::Mesh),
-    (b"ply\r", "a PLY file", Content::Mesh),
-    (b"Kaydara FBX", "an FBX file", Content::Mesh),
-    (b"; FBX", "an FBX file", Content::Mesh),
-    (b"glTF", "a GLB file", Content::Gltf),
-    (b"BLENDER", "a Blender file", Content::Mesh),
-    (b"#usda", "a USD file", Content::Mesh),
-    (b"PXR-USDC", "a USD file", Content::Mesh),
-    (b"Ogawa", "an Alembic file", Content::Mesh),
-    (b"#VRML", "a VRML file", Content::Mesh),
-    (b"#X3D", "an X3D file", Content::Mesh),
-    (b"OFF\n", "an OFF file", Content::Mesh),
-    (b"OFF\r", "an OFF file", Content::Mesh),
-    (b"COFF", "an OFF file", Content::Mesh),
-    (b"DRACO", "a Draco file", Content::Mesh),
-    (b"ISO-10303-21", "a STEP or IFC file", Content::Mesh),
-    (b"AC10", "a DWG file", Content::Drawing),
-    (b"newmtl", "a material library of an OBJ file", Content::MaterialLibrary),
+    (b"ply\n", "a PLY file", FileContent::Mesh),
+    (b"ply\r", "a PLY file", FileContent::Mesh),
+    (b"Kaydara FBX", "an FBX file", FileContent::Mesh),
+    (b"; FBX", "an FBX file", FileContent::Mesh),
+    (b"glTF", "a GLB file", FileContent::Gltf),
+    (b"BLENDER", "a Blender file", FileContent::Mesh),
+    (b"#usda", "a USD file", FileContent::Mesh),
+    (b"PXR-USDC", "a USD file", FileContent::Mesh),
+    (b"Ogawa", "an Alembic file", FileContent::Mesh),
+    (b"#VRML", "a VRML file", FileContent::Mesh),
+    (b"#X3D", "an X3D file", FileContent::Mesh),
+    (b"OFF\n", "an OFF file", FileContent::Mesh),
+    (b"OFF\r", "an OFF file", FileContent::Mesh),
+    (b"COFF", "an OFF file", FileContent::Mesh),
+    (b"DRACO", "a Draco file", FileContent::Mesh),
+    (b"ISO-10303-21", "a STEP or IFC file", FileContent::Mesh),
+    (b"AC10", "a DWG file", FileContent::Drawing),
+    (b"newmtl", "a material library of an OBJ file", FileContent::MaterialLibrary),
 ];
 
 /// Words within the first bytes of files that begin with `<`.
 const MARKUP: [Signature; 6] = [
-    (b"<COLLADA", "a COLLADA file", Content::Mesh),
-    (b"<X3D", "an X3D file", Content::Mesh),
-    (b"<kml", "a KML file", Content::Features),
-    (b"gml", "a GML file", Content::Features),
+    (b"<COLLADA", "a COLLADA file", FileContent::Mesh),
+    (b"<X3D", "an X3D file", FileContent::Mesh),
+    (b"<kml", "a KML file", FileContent::Features),
+    (b"gml", "a GML file", FileContent::Features),
     (
         b"urn:schemas-microsoft-com:office:spreadsheet",
         "an Excel workbook in XML",
-        Content::Spreadsheet,
+        FileContent::Spreadsheet,
     ),
-    (b"<html", "a web page", Content::Document),
+    (b"<html", "a web page", FileContent::Document),
 ];
 
-fn format(name: &'static str, content: Content) -> Option<FileFormat> {
+fn format(name: &'static str, content: FileContent) -> Option<FileFormat> {
     Some(FileFormat { name, content })
 }
 
@@ -110,7 +110,7 @@ pub(super) fn by_content(
         let markup = MARKUP.iter().find(|signature| holds(head, signature.0));
         match markup {
             Some(&(_, name, content)) => format(name, content),
-            None if text.starts_with(b"<?xml") => format("an XML file", Content::Mesh),
+            None if text.starts_with(b"<?xml") => format("an XML file", FileContent::Mesh),
             None => None,
         }
     } else if reader.reads_mesh() {
@@ -122,15 +122,15 @@ pub(super) fn by_content(
 
 /// Returns the format of a ZIP archive.
 fn packed_format(head: &[u8], path: &Path) -> Option<FileFormat> {
-    let packed = [Content::Spreadsheet, Content::Features, Content::Numbers];
+    let packed = [FileContent::Spreadsheet, FileContent::Features, FileContent::Numbers];
     match by_extension(path) {
         Some(format) if packed.contains(&format.content) => Some(format),
-        _ if holds(head, b"xl/") => format("an Excel workbook", Content::Spreadsheet),
+        _ if holds(head, b"xl/") => format("an Excel workbook", FileContent::Spreadsheet),
         _ if holds(head, b"opendocument.spreadsheet") => {
-            format("an OpenDocument spreadsheet", Content::Spreadsheet)
+            format("an OpenDocument spreadsheet", FileContent::Spreadsheet)
         }
-        _ if holds(head, b".kml") => format("a KMZ file", Content::Features),
-        _ => format("a ZIP archive", Content::Archive),
+        _ if holds(head, b".kml") => format("a KMZ file", FileContent::Features),
+        _ => format("a ZIP archive", FileContent::Archive),
     }
 }
 
@@ -145,17 +145,17 @@ fn mesh_format(head: &[u8], length: u64) -> Option<FileFormat> {
             == u32::try_from(length).ok();
     let text = head.trim_ascii_start();
     if is_binary_stl || (text.starts_with(b"solid") && holds(head, b"facet")) {
-        format("an STL file", Content::Mesh)
+        format("an STL file", FileContent::Mesh)
     } else if is_3ds {
-        format("a 3DS file", Content::Mesh)
+        format("a 3DS file", FileContent::Mesh)
     } else if text.starts_with(b"{") && holds(head, b"\"asset\"") {
-        format("a glTF file", Content::Gltf)
+        format("a glTF file", FileContent::Gltf)
     } else if text.starts_with(b"{") {
-        format("a JSON file", Content::Mesh)
+        format("a JSON file", FileContent::Mesh)
     } else if text.starts_with(b"0") && holds(head, b"SECTION") {
-        format("a DXF file", Content::Drawing)
+        format("a DXF file", FileContent::Drawing)
     } else if is_obj(head) {
-        format("a Wavefront OBJ file", Content::Obj)
+        format("a Wavefront OBJ file", FileContent::Obj)
     } else {
         None
     }
@@ -188,46 +188,46 @@ pub(super) fn is_obj(head: &[u8]) -> bool {
 pub(super) fn by_extension(path: &Path) -> Option<FileFormat> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     let (name, content) = match extension.as_str() {
-        "ply" => ("a PLY file", Content::Mesh),
-        "stl" => ("an STL file", Content::Mesh),
-        "fbx" => ("an FBX file", Content::Mesh),
-        "dae" => ("a COLLADA file", Content::Mesh),
-        "3ds" => ("a 3DS file", Content::Mesh),
-        "max" => ("a 3ds Max file", Content::Mesh),
-        "c4d" => ("a Cinema 4D file", Content::Mesh),
-        "blend" => ("a Blender file", Content::Mesh),
-        "skp" => ("a SketchUp file", Content::Mesh),
-        "spm" | "srt" => ("a SpeedTree file", Content::Mesh),
-        "usd" | "usda" | "usdc" | "usdz" => ("a USD file", Content::Mesh),
-        "x3d" => ("an X3D file", Content::Mesh),
-        "wrl" => ("a VRML file", Content::Mesh),
-        "off" => ("an OFF file", Content::Mesh),
-        "dxf" => ("a DXF file", Content::Drawing),
-        "dwg" => ("a DWG file", Content::Drawing),
-        "obj" => ("a Wavefront OBJ file", Content::Obj),
-        "mtl" => ("a material library of an OBJ file", Content::MaterialLibrary),
-        "gltf" | "glb" => ("a glTF file", Content::Gltf),
-        "csv" | "def" => ("a table of discs", Content::DiscTable),
-        "las" | "laz" => ("a LAS or LAZ point cloud", Content::PointCloud),
-        "e57" => ("an E57 point cloud", Content::PointCloud),
-        "pcd" => ("a PCD point cloud", Content::PointCloud),
-        "xyz" => ("a point cloud", Content::PointCloud),
-        "shp" => ("an Esri shapefile", Content::Features),
-        "shx" => ("the index of an Esri shapefile", Content::Attributes),
-        "dbf" => ("a dBASE table", Content::Attributes),
-        "gpkg" => ("a GeoPackage", Content::Features),
-        "kmz" => ("a KMZ file", Content::Features),
-        "kml" => ("a KML file", Content::Features),
-        "tab" | "mif" | "map" => ("a MapInfo file", Content::Features),
-        "xlsx" | "xlsm" | "xlsb" | "xls" => ("an Excel workbook", Content::Spreadsheet),
-        "ods" => ("an OpenDocument spreadsheet", Content::Spreadsheet),
-        "numbers" => ("a Numbers spreadsheet", Content::Spreadsheet),
-        "mat" => ("a MATLAB file", Content::Numbers),
-        "rds" | "rdata" | "sav" | "npz" => ("a file of a statistics program", Content::Numbers),
-        "gz" => ("a gzip archive", Content::Archive),
-        "zip" => ("a ZIP archive", Content::Archive),
-        "7z" => ("a 7z archive", Content::Archive),
-        "rar" => ("a RAR archive", Content::Archive),
+        "ply" => ("a PLY file", FileContent::Mesh),
+        "stl" => ("an STL file", FileContent::Mesh),
+        "fbx" => ("an FBX file", FileContent::Mesh),
+        "dae" => ("a COLLADA file", FileContent::Mesh),
+        "3ds" => ("a 3DS file", FileContent::Mesh),
+        "max" => ("a 3ds Max file", FileContent::Mesh),
+        "c4d" => ("a Cinema 4D file", FileContent::Mesh),
+        "blend" => ("a Blender file", FileContent::Mesh),
+        "skp" => ("a SketchUp file", FileContent::Mesh),
+        "spm" | "srt" => ("a SpeedTree file", FileContent::Mesh),
+        "usd" | "usda" | "usdc" | "usdz" => ("a USD file", FileContent::Mesh),
+        "x3d" => ("an X3D file", FileContent::Mesh),
+        "wrl" => ("a VRML file", FileContent::Mesh),
+        "off" => ("an OFF file", FileContent::Mesh),
+        "dxf" => ("a DXF file", FileContent::Drawing),
+        "dwg" => ("a DWG file", FileContent::Drawing),
+        "obj" => ("a Wavefront OBJ file", FileContent::Obj),
+        "mtl" => ("a material library of an OBJ file", FileContent::MaterialLibrary),
+        "gltf" | "glb" => ("a glTF file", FileContent::Gltf),
+        "csv" | "def" => ("a table of discs", FileContent::DiscTable),
+        "las" | "laz" => ("a LAS or LAZ point cloud", FileContent::PointCloud),
+        "e57" => ("an E57 point cloud", FileContent::PointCloud),
+        "pcd" => ("a PCD point cloud", FileContent::PointCloud),
+        "xyz" => ("a point cloud", FileContent::PointCloud),
+        "shp" => ("an Esri shapefile", FileContent::Features),
+        "shx" => ("the index of an Esri shapefile", FileContent::Attributes),
+        "dbf" => ("a dBASE table", FileContent::Attributes),
+        "gpkg" => ("a GeoPackage", FileContent::Features),
+        "kmz" => ("a KMZ file", FileContent::Features),
+        "kml" => ("a KML file", FileContent::Features),
+        "tab" | "mif" | "map" => ("a MapInfo file", FileContent::Features),
+        "xlsx" | "xlsm" | "xlsb" | "xls" => ("an Excel workbook", FileContent::Spreadsheet),
+        "ods" => ("an OpenDocument spreadsheet", FileContent::Spreadsheet),
+        "numbers" => ("a Numbers spreadsheet", FileContent::Spreadsheet),
+        "mat" => ("a MATLAB file", FileContent::Numbers),
+        "rds" | "rdata" | "sav" | "npz" => ("a file of a statistics program", FileContent::Numbers),
+        "gz" => ("a gzip archive", FileContent::Archive),
+        "zip" => ("a ZIP archive", FileContent::Archive),
+        "7z" => ("a 7z archive", FileContent::Archive),
+        "rar" => ("a RAR archive", FileContent::Archive),
         _ => return None,
     };
     format(name, content)

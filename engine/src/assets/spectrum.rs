@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::AssetError;
-use super::table::{Column, Content, Table, missing, nearest};
+use super::table::{Column, ColumnContent, Table, missing, nearest};
 use crate::document::WavelengthUnit;
 
 /// Columns of a spectrum, and what their header and the titles above it say of their units.
@@ -214,9 +214,9 @@ fn find_columns(
         return Err(AssetError::RepeatedColumn { file, line, first: name.clone(), second: name });
     }
     let content = |place| match place {
-        _ if place == abscissa => Content::Number(0),
-        _ if place == ordinate => Content::NumberOrMissing(1),
-        _ => Content::Ignored,
+        _ if place == abscissa => ColumnContent::Number(0),
+        _ if place == ordinate => ColumnContent::NumberOrMissing(1),
+        _ => ColumnContent::Ignored,
     };
     let column =
         |(place, name): (usize, &String)| Column { name: name.clone(), content: content(place) };

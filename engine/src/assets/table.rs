@@ -5,14 +5,14 @@ use std::path::Path;
 use super::AssetError;
 use super::format::{self, FileReader};
 use super::numbers::{Decimals, NotANumber, Separator, is_missing, looks_like_number};
-use super::text::Lines;
+use super::text::TextLines;
 
 /// Most title lines that are kept.
 const MOST_TITLES: usize = 100;
 
 /// Content of the fields of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Content {
+pub(super) enum ColumnContent {
     /// Nothing that is asked for.
     Ignored,
     /// A number for this place in the caller's row.
@@ -26,12 +26,12 @@ pub(super) enum Content {
 /// A column: its name and what it holds.
 pub(super) struct Column {
     pub(super) name: String,
-    pub(super) content: Content,
+    pub(super) content: ColumnContent,
 }
 
 /// A text table, open for reading.
 pub(super) struct Table {
-    lines: Lines,
+    lines: TextLines,
     separator: Separator,
     decimals: Decimals,
     /// Fields of the first row, be it a header or not.
@@ -47,7 +47,7 @@ impl Table {
     /// unless the caller skips it.
     pub(super) fn open(path: &Path) -> Result<Self, AssetError> {
         format::check(path, FileReader::Table)?;
-        let mut lines = Lines::open(path)?;
+        let mut lines = TextLines::open(path)?;
         let Some((first_line, line)) = lines.next()? else {
             return Err(AssetError::NoRows { file: path.to_owned() });
         };
@@ -127,14 +127,14 @@ impl Table {
         let separator = *separator;
         let (line, text) = loop {
             let Some((line, text)) = lines.next()? else { return Ok(None) };
-            let is_empty = Fields::new(text, separator).all(str::is_empty);
+            let is_empty = RowFields::new(text, separator).all(str::is_empty);
             if !is_empty || columns.len() < 2 {
                 break (line, text);
             }
         };
         let mut bad = None;
         let mut found = 0;
-        for field in Fields::new(text, separator) {
+        for field in RowFields::new(text, separator) {
             let column = columns.get(found);
             if column.is_none() && field.is_empty() {
                 continue;
@@ -142,10 +142,12 @@ impl Table {
             found += 1;
             let Some(Column { name, content }) = column else { continue };
             match *content {
-                Content::Ignored => {}
-                Content::Text(place) => field.clone_into(&mut texts[place]),
-                Content::NumberOrMissing(place) if is_missing(field) => numbers[place] = f64::NAN,
-                Content::Number(place) | Content::NumberOrMissing(place) => {
+                ColumnContent::Ignored => {}
+                ColumnContent::Text(place) => field.clone_into(&mut texts[place]),
+                ColumnContent::NumberOrMissing(place) if is_missing(field) => {
+                    numbers[place] = f64::NAN
+                }
+                ColumnContent::Number(place) | ColumnContent::NumberOrMissing(place) => {
                     match decimals.read(field, separator, line) {
                         Ok(value) => numbers[place] = value,
                         Err(error) => bad = bad.or_else(|| Some((name, field.to_owned(), error))),
@@ -186,7 +188,7 @@ fn is_row_of_numbers(fields: &[String]) -> bool {
 fn names(line: &str) -> (Separator, Vec<String>) {
     let separator = [';', '\t', ','].into_iter().find(|&c| line.contains(c));
     let separator = separator.map_or(Separator::WhiteSpace, Separator::Character);
-    let mut names: Vec<String> = Fields::new(line, separator).map(str::to_owned).collect();
+    let mut names: Vec<String> = RowFields::new(line, separator).map(str::to_owned).collect();
     // Spreadsheets fill up short rows with separators.
     while names.last().is_some_and(String::is_empty) {
         names.pop();
@@ -195,18 +197,18 @@ fn names(line: &str) -> (Separator, Vec<String>) {
 }
 
 /// Splits a line; quoted fields may hold the separator, and lose their quotes.
-struct Fields<'a> {
+struct RowFields<'a> {
     rest: Option<&'a str>,
     separator: Separator,
 }
 
-impl<'a> Fields<'a> {
+impl<'a> RowFields<'a> {
     fn new(line: &'a str, separator: Separator) -> Self {
         Self { rest: Some(line), separator }
     }
 }
 
-impl<'a> Iterator for Fields<'a> {
+impl<'a> Iterator for RowFields<'a> {
     type Item = &'a str;
 
     fn next(&mut self) -> Option<&'a str> {
@@ -249,11 +251,11 @@ pub(super) fn known_columns(
                 known: known.iter().map(|&name| name.to_owned()).collect(),
             });
         };
-        if columns.iter().any(|column| column.content == Content::Number(slot)) {
+        if columns.iter().any(|column| column.content == ColumnContent::Number(slot)) {
             let (first, second) = (name.clone(), name.clone());
             return Err(AssetError::RepeatedColumn { file: file.to_owned(), line, first, second });
         }
-        columns.push(Column { name: name.clone(), content: Content::Number(slot) });
+        columns.push(Column { name: name.clone(), content: ColumnContent::Number(slot) });
     }
     Ok(columns)
 }
@@ -281,7 +283,7 @@ mod tests {
 
     #[test]
     fn fields_are_split_at_their_separator_only() {
-        let split = |line, separator| Fields::new(line, separator).collect::<Vec<_>>();
+        let split = |line, separator| RowFields::new(line, separator).collect::<Vec<_>>();
         let comma = Separator::Character(',');
         assert_eq!(split("1, 2 ,3", comma), ["1", "2", "3"]);
         assert_eq!(split("\"a, b\" , \"c\",", comma), ["a, b", "c", ""]);

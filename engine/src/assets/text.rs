@@ -12,7 +12,7 @@ use crate::files;
 const LONGEST_LINE: usize = 1 << 20;
 
 /// Reader of the lines of a text file that are neither blank nor comments (`#`).
-pub(super) struct Lines {
+pub(super) struct TextLines {
     reader: BufReader<File>,
     file: PathBuf,
     bytes: Vec<u8>,
@@ -62,7 +62,7 @@ pub(super) fn number(text: &str, what: &str, file: &Path, line: usize) -> Result
     })
 }
 
-impl Lines {
+impl TextLines {
     pub(super) fn open(path: &Path) -> Result<Self, AssetError> {
         Ok(Self {
             reader: BufReader::with_capacity(1 << 16, open(path)?),
@@ -92,7 +92,7 @@ impl Lines {
         decode(self.bytes.trim_ascii(), &self.file, number).map(|text| Some((number, text.trim())))
     }
 
-    /// The next line as [`Lines::next`] returns it, in whatever encoding it is.
+    /// The next line as [`TextLines::next`] returns it, in whatever encoding it is.
     pub(super) fn next_bytes(&mut self) -> Result<Option<(usize, &[u8])>, AssetError> {
         Ok(if self.advance()? { Some((self.number, self.bytes.trim_ascii())) } else { None })
     }

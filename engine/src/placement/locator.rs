@@ -16,7 +16,7 @@ const MARGIN: f64 = 1e-6;
 
 /// Overlap of a cell of the grid with the region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Coverage {
+enum CellOverlap {
     Outside,
     /// The region holds the whole cell.
     Inside,
@@ -30,7 +30,7 @@ pub(super) struct Locator {
     bounds: Rectangle,
     columns: usize,
     rows: usize,
-    coverage: Vec<Coverage>,
+    coverage: Vec<CellOverlap>,
     /// First entry of `entries` for each cell, and their number at the end.
     starts: Vec<u32>,
     /// Indices of triangles, cell by cell, for cells that the outline crosses.
@@ -49,21 +49,21 @@ impl Locator {
             bounds,
             columns,
             rows,
-            coverage: vec![Coverage::Outside; columns * rows],
+            coverage: vec![CellOverlap::Outside; columns * rows],
             starts: Vec::new(),
             entries: Vec::new(),
         };
         let mut coverage = std::mem::take(&mut locator.coverage);
         for triangle in triangles {
-            locator.for_each_cell(triangle, |cell| coverage[cell] = Coverage::Inside);
+            locator.for_each_cell(triangle, |cell| coverage[cell] = CellOverlap::Inside);
         }
         for side in outline {
-            locator.for_each_cell(side, |cell| coverage[cell] = Coverage::Crossed);
+            locator.for_each_cell(side, |cell| coverage[cell] = CellOverlap::Crossed);
         }
         let mut next = vec![0_u32; columns * rows + 1];
         for triangle in triangles {
             locator.for_each_cell(triangle, |cell| {
-                next[cell + 1] += u32::from(coverage[cell] == Coverage::Crossed);
+                next[cell + 1] += u32::from(coverage[cell] == CellOverlap::Crossed);
             });
         }
         for cell in 0..columns * rows {
@@ -73,7 +73,7 @@ impl Locator {
         let mut entries = vec![0; next[columns * rows] as usize];
         for (index, triangle) in triangles.iter().enumerate() {
             locator.for_each_cell(triangle, |cell| {
-                if coverage[cell] == Coverage::Crossed {
+                if coverage[cell] == CellOverlap::Crossed {
                     entries[next[cell] as usize] = index as u32;
                     next[cell] += 1;
                 }
@@ -138,9 +138,9 @@ impl Locator {
         }
         let cell = self.row(point.y) * self.columns + self.column(point.x);
         match self.coverage[cell] {
-            Coverage::Outside => false,
-            Coverage::Inside => true,
-            Coverage::Crossed => {
+            CellOverlap::Outside => false,
+            CellOverlap::Inside => true,
+            CellOverlap::Crossed => {
                 self.entries(cell).iter().any(|&index| holds(&triangles[index as usize], point))
             }
         }
@@ -157,9 +157,9 @@ impl Locator {
                 let cell = row * self.columns + column;
                 let overlaps = |&index: &u32| overlaps(&triangles[index as usize], rectangle);
                 match self.coverage[cell] {
-                    Coverage::Outside => false,
-                    Coverage::Inside => true,
-                    Coverage::Crossed => self.entries(cell).iter().any(overlaps),
+                    CellOverlap::Outside => false,
+                    CellOverlap::Inside => true,
+                    CellOverlap::Crossed => self.entries(cell).iter().any(overlaps),
                 }
             })
         })

@@ -36,7 +36,7 @@ use crate::sampling::Key;
 use crate::terrain::Cells;
 
 use poisson_disc::poisson_disc;
-use rows::Rows;
+use rows::StemRows;
 use uniform::uniform;
 
 pub use error::PlacementError;
@@ -104,7 +104,8 @@ pub fn places(
         }
         Rule::Grid { spacing_m, row_azimuth_deg, jitter_m } => {
             let spacing = DVec2::from(spacing_m);
-            let rows = Rows { spacing, azimuth: row_azimuth_deg.to_radians(), jitter: jitter_m };
+            let rows =
+                StemRows { spacing, azimuth: row_azimuth_deg.to_radians(), jitter: jitter_m };
             rows.places(region, terrain.min, stream)
         }
     }

@@ -51,7 +51,7 @@ pub(super) fn poisson_disc(
     let expected = wanted.map_or(at_random, |wanted| wanted as f64).max(1.0);
     let mut buckets =
         Buckets::new(tile.unwrap_or(bounds), tile.is_some(), distance, expected as usize);
-    let mut cells = Cells::new(bounds, distance, expected);
+    let mut cells = OpenCells::new(bounds, distance, expected);
     cells.active.retain(|&cell| region.may_overlap(cells.grid.rectangle(cell)));
     let mut draws = 0..;
     let mut next = || stream.uniform(draws.next().unwrap_or(0));
@@ -100,12 +100,12 @@ fn tightest(region: &Region, tile: Option<Rectangle>, distance: f64) -> f64 {
 }
 
 /// Grid of cells of one size.
-struct Grid {
+struct CellGrid {
     corner: DVec2,
     side: DVec2,
 }
 
-impl Grid {
+impl CellGrid {
     fn rectangle(&self, [column, row]: [u32; 2]) -> Rectangle {
         let at = |column: u32, row: u32| {
             self.corner + self.side * DVec2::new(f64::from(column), f64::from(row))
@@ -115,12 +115,12 @@ impl Grid {
 }
 
 /// Cells where there may be room.
-struct Cells {
-    grid: Grid,
+struct OpenCells {
+    grid: CellGrid,
     active: Vec<[u32; 2]>,
 }
 
-impl Cells {
+impl OpenCells {
     /// Creates cells so small that a stem inside covers them, or larger ones if few stems are expected.
     fn new(bounds: Rectangle, distance: f64, expected: f64) -> Self {
         let size = bounds.size();
@@ -128,7 +128,7 @@ impl Cells {
         let count = (size / side).ceil().clamp(DVec2::ONE, DVec2::splat(f64::from(1_u32 << 15)));
         let (columns, rows) = (count.x as u32, count.y as u32);
         let active = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
-        Self { active: active.collect(), grid: Grid { corner: bounds.min, side: size / count } }
+        Self { active: active.collect(), grid: CellGrid { corner: bounds.min, side: size / count } }
     }
 
     /// Cuts each into four and keeps some of these.

@@ -7,7 +7,7 @@ use super::{MOST_STEMS, PlacementError, Region};
 use crate::sampling::Key;
 
 /// Stems in rows.
-pub(super) struct Rows {
+pub(super) struct StemRows {
     /// Across and along the rows, m.
     pub(super) spacing: DVec2,
     /// Azimuth along the rows, rad.
@@ -16,7 +16,7 @@ pub(super) struct Rows {
     pub(super) jitter: f64,
 }
 
-impl Rows {
+impl StemRows {
     /// Returns the places in a region; the first lies half a spacing from the corner.
     pub(super) fn places(
         &self,

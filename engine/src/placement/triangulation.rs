@@ -58,7 +58,7 @@ pub(super) fn triangulate(
     }
     let outlines = |polygons| Vec::from_iter(outlines_near(rectangle, polygons));
     let (is_bounded, inside, outside) = (!inside.is_empty(), outlines(inside), outlines(outside));
-    Ground { rectangle, is_bounded, inside, outside }.triangulate()
+    RegionOutlines { rectangle, is_bounded, inside, outside }.triangulate()
 }
 
 /// Refuses a polygon with edges that cross; edges that only touch are allowed.
@@ -174,7 +174,7 @@ fn outlines_near(rectangle: Rectangle, polygons: &[Polygon]) -> impl Iterator<It
 }
 
 /// Rectangle with the polygons that say which of its points belong to a region.
-struct Ground<'a> {
+struct RegionOutlines<'a> {
     rectangle: Rectangle,
     /// True if points have to lie in a polygon of `inside`.
     is_bounded: bool,
@@ -182,7 +182,7 @@ struct Ground<'a> {
     outside: Vec<Outline<'a>>,
 }
 
-impl Ground<'_> {
+impl RegionOutlines<'_> {
     fn triangulate(&self) -> Result<Triangles, PlacementError> {
         let mut delaunay = Delaunay::new();
         let frame = Polygon::from(self.rectangle);

@@ -3,7 +3,7 @@ use glam::DVec2;
 /// Heights at the points of a rectilinear grid: the centres of a raster's cells, and the edges of
 /// its rectangle, where the slope of the outermost cells goes on for half a cell.
 #[derive(Clone, Debug)]
-pub(super) struct Grid {
+pub(super) struct HeightGrid {
     /// Positions from west to east, m from the corner; the first is 0.
     pub(super) xs: Vec<f64>,
     /// Positions from south to north, m from the corner.
@@ -12,7 +12,7 @@ pub(super) struct Grid {
     pub(super) heights: Vec<f64>,
 }
 
-impl Grid {
+impl HeightGrid {
     /// Creates the grid from heights of cells, shape `[rows, columns]` with row 0 in the north, over a rectangle.
     pub(super) fn of_cells(columns: usize, rows: usize, cells: &[f64], size: DVec2) -> Self {
         let points = |count: usize, size: f64| -> Vec<f64> {
@@ -94,7 +94,7 @@ mod tests {
             .flat_map(|row| (0..4).map(move |column| (column, row)))
             .map(|(column, row)| height(f64::from(column) * 5.0 + 2.5, 5.0 - 2.0 * f64::from(row)))
             .collect();
-        let grid = Grid::of_cells(4, 3, &cells, DVec2::new(20.0, 6.0));
+        let grid = HeightGrid::of_cells(4, 3, &cells, DVec2::new(20.0, 6.0));
         for (node, &found) in grid.heights.iter().enumerate() {
             let at = grid.point(node);
             assert!((found - height(at.x, at.y)).abs() < 1e-12, "{at}: {found}");
@@ -105,13 +105,13 @@ mod tests {
 
     #[test]
     fn a_single_cell_is_level() {
-        let grid = Grid::of_cells(1, 1, &[3.0], DVec2::ONE);
+        let grid = HeightGrid::of_cells(1, 1, &[3.0], DVec2::ONE);
         assert_eq!(grid.heights, [3.0; 9]);
     }
 
     #[test]
     fn no_height_is_made_of_no_data() {
-        let grid = Grid::of_cells(3, 1, &[1.0, f64::NAN, 5.0], DVec2::new(3.0, 1.0));
+        let grid = HeightGrid::of_cells(3, 1, &[1.0, f64::NAN, 5.0], DVec2::new(3.0, 1.0));
         assert_eq!(grid.height(DVec2::new(1.5, 0.5)), None);
         assert_eq!(grid.height(DVec2::new(1.0, 0.5)), Some(1.0));
         assert_eq!(grid.range(), Some((1.0, 5.0)));

@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use super::surface::{Parts, Surface};
+use super::surface::{Parts, TerrainSurface};
 use crate::components::{Mesh, TerrainPatch};
 
 /// The ground of a mesh that lies at `at`, m: its rectangle is the one around the mesh.
@@ -26,6 +26,6 @@ pub fn mesh(mesh: &Mesh, at: DVec3, parts: Parts, is_periodic: bool) -> Option<T
     });
     let relative: Vec<DVec3> = corners.iter().map(|v| *v - low.extend(-at.z)).collect();
     let corner = low + at.truncate();
-    let surface = Surface::new(corner, size, &relative, triangles.collect());
+    let surface = TerrainSurface::new(corner, size, &relative, triangles.collect());
     Some(surface.finish(parts, is_periodic))
 }

@@ -1,7 +1,7 @@
 use super::Cells;
-use super::cover::{Cover, HOLE};
-use super::grid::Grid;
-use super::surface::{Parts, Surface};
+use super::cover::{HOLE, LandCover};
+use super::grid::HeightGrid;
+use super::surface::{Parts, TerrainSurface};
 use super::tin::triangulate;
 use crate::components::TerrainPatch;
 
@@ -23,9 +23,10 @@ pub fn raster(
     is_periodic: bool,
 ) -> Option<TerrainPatch> {
     let (corner, size) = (heights.corner, heights.size);
-    let grid = Grid::of_cells(heights.columns, heights.rows, &heights.values, size);
+    let grid = HeightGrid::of_cells(heights.columns, heights.rows, &heights.values, size);
     let (low, high) = grid.range()?;
-    let mut parts_of_cells = cover.map_or_else(|| Cover::whole(size), |cover| of(cover, heights));
+    let mut parts_of_cells =
+        cover.map_or_else(|| LandCover::whole(size), |cover| of(cover, heights));
     if heights.values.iter().any(|height| height.is_nan()) {
         let holes = heights.values.iter().map(|h| if h.is_nan() { HOLE } else { 0 }).collect();
         let holes = Cells { values: holes, ..heights.with(Vec::new()) };
@@ -34,12 +35,12 @@ pub fn raster(
     let rounding = (high - low).max(low.abs().max(high.abs()) * f64::from(f32::EPSILON))
         * f64::from(f32::EPSILON);
     let tin = triangulate(&grid, &parts_of_cells, tolerance.max(rounding));
-    let surface = Surface::new(corner, size, &tin.corners, tin.triangles);
+    let surface = TerrainSurface::new(corner, size, &tin.corners, tin.triangles);
     Some(surface.finish(parts, is_periodic))
 }
 
 /// A cover over the rectangle of the heights, clipped to it.
-fn of(cover: &Cells<u16>, heights: &Cells<f64>) -> Cover {
+fn of(cover: &Cells<u16>, heights: &Cells<f64>) -> LandCover {
     let shift = cover.corner - heights.corner;
     let lines = |count: usize, axis: usize| -> (Vec<f64>, std::ops::Range<usize>) {
         let line = |i: usize| shift[axis] + cover.size[axis] * i as f64 / count as f64;
@@ -57,5 +58,5 @@ fn of(cover: &Cells<u16>, heights: &Cells<f64>) -> Cover {
     let (ys, rows) = lines(cover.rows, 1);
     let row = |y: usize| (cover.rows - 1 - y) * cover.columns;
     let parts = rows.flat_map(|y| &cover.values[row(y)..][columns.clone()]).copied().collect();
-    Cover { xs, ys, parts }
+    LandCover { xs, ys, parts }
 }

@@ -4,7 +4,7 @@ use crate::components::{MaterialId, Mesh, Part, PartMaterials, TerrainPatch};
 
 /// Triangles of the ground over its rectangle, before they are a terrain.
 #[derive(Clone, Debug)]
-pub(super) struct Surface {
+pub(super) struct TerrainSurface {
     pub(super) corner: DVec2,
     pub(super) size: DVec2,
     /// Height of zero, m, and length of the unit of height, m.
@@ -19,7 +19,7 @@ pub(super) struct Surface {
 /// Name and material of each part of the ground.
 pub type Parts = Vec<(String, MaterialId)>;
 
-impl Surface {
+impl TerrainSurface {
     /// Creates the surface from corners relative to a rectangle's corner, m, without those that no triangle has.
     pub(super) fn new(
         corner: DVec2,

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::cover::{Cover, HOLE};
-use super::grid::Grid;
+use super::cover::{HOLE, LandCover};
+use super::grid::HeightGrid;
 
 /// A corner of triangles, m.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ struct Candidate {
 ///
 /// Source: Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields,
 /// CMU-CS-95-181, algorithm III, over a constrained Delaunay triangulation.
-pub(super) fn triangulate(grid: &Grid, cover: &Cover, tolerance: f64) -> Tin {
+pub(super) fn triangulate(grid: &HeightGrid, cover: &LandCover, tolerance: f64) -> Tin {
     let mut tin = Insertion::new(grid, tolerance);
     tin.add_sides();
     for border in cover.borders() {
@@ -66,7 +66,7 @@ pub(super) fn triangulate(grid: &Grid, cover: &Cover, tolerance: f64) -> Tin {
 }
 
 struct Insertion<'a> {
-    grid: &'a Grid,
+    grid: &'a HeightGrid,
     tolerance: f64,
     delaunay: Delaunay,
     is_corner: Vec<bool>,
@@ -76,7 +76,7 @@ struct Insertion<'a> {
 }
 
 impl<'a> Insertion<'a> {
-    fn new(grid: &'a Grid, tolerance: f64) -> Self {
+    fn new(grid: &'a HeightGrid, tolerance: f64) -> Self {
         Self {
             grid,
             tolerance,
@@ -219,7 +219,7 @@ impl<'a> Insertion<'a> {
         }
     }
 
-    fn finish(self, cover: &Cover) -> Tin {
+    fn finish(self, cover: &LandCover) -> Tin {
         let corners: Vec<DVec3> = self
             .delaunay
             .vertices()

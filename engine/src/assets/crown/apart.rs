@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::grid::{Grid, Located};
+use super::grid::{LeafGrid, Located};
 use super::stream::{Purpose, Stream};
 use super::{CrownError, CrownSpec, Places};
 use crate::components::Disc;
@@ -126,9 +126,9 @@ impl<F: Flat> Located for F {
 
 /// Leaves that have their place.
 struct Settled<F> {
-    pieces: Grid<F>,
+    pieces: LeafGrid<F>,
     /// Centres, if they keep a minimum distance.
-    centers: Option<Grid<DVec3>>,
+    centers: Option<LeafGrid<DVec3>>,
 }
 
 impl<F: Flat> Settled<F> {
@@ -137,8 +137,8 @@ impl<F: Flat> Settled<F> {
         let reach = MARGIN * leaf.iter().map(Flat::reach).fold(0.0, f64::max);
         let distance = crown.min_distance_m;
         Self {
-            pieces: Grid::new(2.0 * reach, leaves * leaf.len()),
-            centers: (distance > 0.0).then(|| Grid::new(distance, leaves)),
+            pieces: LeafGrid::new(2.0 * reach, leaves * leaf.len()),
+            centers: (distance > 0.0).then(|| LeafGrid::new(distance, leaves)),
         }
     }
 

@@ -15,7 +15,7 @@ impl Located for DVec3 {
 }
 
 /// Items in a hashed grid: lists of those whose cells share a bucket.
-pub(super) struct Grid<T> {
+pub(super) struct LeafGrid<T> {
     /// Side of a cell: items within this distance are in the same cell or in neighbours.
     cell: f64,
     /// First item of each bucket's list.
@@ -28,7 +28,7 @@ pub(super) struct Grid<T> {
 /// Ends a list.
 const NONE: u32 = u32::MAX;
 
-impl<T: Located> Grid<T> {
+impl<T: Located> LeafGrid<T> {
     /// A grid for `count` items that finds those within `reach`.
     pub(super) fn new(reach: f64, count: usize) -> Self {
         Self {

@@ -9,7 +9,7 @@ use crate::document::{CrownShape, LeafProfile};
 const SLICES: f64 = 1024.0;
 
 /// A distribution of heights above the crown's base.
-pub(super) struct Heights(Vec<Slice>);
+pub(super) struct HeightDistribution(Vec<Slice>);
 
 /// Heights within which the density is linear.
 struct Slice {
@@ -21,7 +21,7 @@ struct Slice {
     up_to: f64,
 }
 
-impl Heights {
+impl HeightDistribution {
     /// The heights of a crown's leaves; none where [`shape::point`] knows them.
     pub(super) fn new(
         outline: &CrownShape,

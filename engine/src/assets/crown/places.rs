@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::heights::Heights;
+use super::heights::HeightDistribution;
 use super::stream::{Purpose, Stream};
 use super::{CrownError, CrownSpec, shape, wood};
 use crate::document::Clumps;
@@ -13,13 +13,13 @@ const ATTEMPTS: u32 = 64;
 /// Middles of leaves, above the crown's base.
 pub(super) struct Places<'a> {
     crown: &'a CrownSpec,
-    heights: Option<Heights>,
+    heights: Option<HeightDistribution>,
     clumps: Option<(&'a Clumps, Vec<DVec3>)>,
 }
 
 impl<'a> Places<'a> {
     pub(super) fn new(crown: &'a CrownSpec) -> Result<Self, CrownError> {
-        let heights = Heights::new(&crown.shape, &crown.leaf_profile, crown.base_m)?;
+        let heights = HeightDistribution::new(&crown.shape, &crown.leaf_profile, crown.base_m)?;
         let mut places = Self { crown, heights, clumps: None };
         if let Some(clumps) = &crown.clumps {
             places.clumps = Some((clumps, places.middles(clumps)));

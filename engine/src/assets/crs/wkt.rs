@@ -12,14 +12,14 @@ const DEEPEST: usize = 32;
 
 /// `NAME[value, value, OTHER[..]]`.
 #[derive(Debug, Default)]
-struct Node {
+struct WktNode {
     name: String,
     /// Texts and numbers in order.
     values: Vec<String>,
     children: Vec<Self>,
 }
 
-impl Node {
+impl WktNode {
     fn child(&self, names: &[&str]) -> Option<&Self> {
         self.children.iter().find(|child| names.contains(&child.name.as_str()))
     }
@@ -65,7 +65,7 @@ pub(crate) fn from_wkt(text: &str) -> Option<Crs> {
     Some(Crs { wkt: Some(text.trim().to_owned()), ..crs })
 }
 
-fn system(node: &Node) -> Option<Crs> {
+fn system(node: &WktNode) -> Option<Crs> {
     let known = node.code().and_then(from_code);
     let named = Crs { code: node.code(), ..Crs::named(node.text()) };
     Some(match node.name.as_str() {
@@ -85,7 +85,7 @@ fn system(node: &Node) -> Option<Crs> {
         "BOUNDCRS" => system(node.child(&["SOURCECRS"])?.children.first()?)?,
         "VERT_CS" | "VERTCS" | "VERTCRS" | "VERTICALCRS" => {
             let of_code = known.and_then(|crs| crs.heights);
-            let axis = |node: &Node| node.values.get(1).map(|text| text.to_ascii_uppercase());
+            let axis = |node: &WktNode| node.values.get(1).map(|text| text.to_ascii_uppercase());
             let is_down = node.child(&["AXIS"]).and_then(axis).as_deref() == Some("DOWN");
             let is_depth = is_down || of_code.as_ref().is_some_and(|heights| heights.is_depth);
             let unit = node.unit().or(of_code.map(|heights| heights.unit));
@@ -104,10 +104,10 @@ fn axes_of(unit: Length) -> Axes {
     if unit.is_metre() { Axes::Metres } else { Axes::Length(unit) }
 }
 
-fn projected(node: &Node, known: Option<Crs>, named: Crs) -> Crs {
+fn projected(node: &WktNode, known: Option<Crs>, named: Crs) -> Crs {
     const METHODS: [&str; 2] = ["PROJECTION", "METHOD"];
     let base = node.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS", "GEOGCRS"]);
-    let datum = base.and_then(|base| base.child(&["DATUM", "ENSEMBLE"])).map(Node::text);
+    let datum = base.and_then(|base| base.child(&["DATUM", "ENSEMBLE"])).map(WktNode::text);
     let conversion = node.child(&["CONVERSION"]).unwrap_or(node);
     let method = conversion.child(&METHODS).map(|method| plain(method.text()));
     let method = method.unwrap_or_default();
@@ -144,7 +144,7 @@ fn projected(node: &Node, known: Option<Crs>, named: Crs) -> Crs {
 }
 
 /// Zone of UTM, by the numbers of the projection.
-fn zone_of(conversion: &Node, method: &str, metres: f64) -> Option<UtmZone> {
+fn zone_of(conversion: &WktNode, method: &str, metres: f64) -> Option<UtmZone> {
     if !method.starts_with("transversemercator") && method != "gausskruger" {
         return None;
     }
@@ -165,12 +165,12 @@ fn zone_of(conversion: &Node, method: &str, metres: f64) -> Option<UtmZone> {
     is_utm.then(|| UtmZone { number: number.round() as u8, is_south: near(north, 1e7) })
 }
 
-fn parse(text: &str) -> Option<Node> {
+fn parse(text: &str) -> Option<WktNode> {
     if text.len() > LONGEST {
         return None;
     }
     let text = text.trim_start_matches('\u{feff}').trim();
-    let mut stack: Vec<Node> = Vec::new();
+    let mut stack: Vec<WktNode> = Vec::new();
     let mut word = String::new();
     let mut letters = text.chars().peekable();
     let mut is_quoted = false;
@@ -187,7 +187,7 @@ fn parse(text: &str) -> Option<Node> {
                     return None;
                 }
                 let name = std::mem::take(&mut word).trim().to_ascii_uppercase();
-                stack.push(Node { name, ..Node::default() });
+                stack.push(WktNode { name, ..WktNode::default() });
             }
             ',' | ']' | ')' => {
                 let value = std::mem::take(&mut word);

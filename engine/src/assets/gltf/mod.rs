@@ -45,7 +45,7 @@ pub fn read_gltf(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetErro
     let (Gltf { document, blob }, unread) = parse(&bytes).map_err(wrong)?;
     drop(bytes);
     let buffers = Buffers::load(&document, blob, path).map_err(wrong)?;
-    let mut model = Model {
+    let mut model = GltfImporter {
         import,
         buffers,
         mesh: Collector::new(path),
@@ -120,7 +120,7 @@ fn other_version(json: &[u8]) -> Option<String> {
     (!is_two(&version)).then_some(version)
 }
 
-struct Model<'a> {
+struct GltfImporter<'a> {
     import: &'a Import,
     buffers: Buffers,
     mesh: Collector,
@@ -129,7 +129,7 @@ struct Model<'a> {
     left_out: IndexSet<&'static str>,
 }
 
-impl Model<'_> {
+impl GltfImporter<'_> {
     fn wrong(&self, problem: GltfError) -> AssetError {
         AssetError::Gltf { file: self.mesh.file.clone(), problem }
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use indexmap::{IndexMap, IndexSet};
 
 use super::super::error::excerpt;
-use super::super::text::{self, Lines, finite};
+use super::super::text::{self, TextLines, finite};
 use super::words;
 
 /// Size of the largest library that is read, bytes.
@@ -52,7 +52,7 @@ fn library_paths(obj: &Path, names: &str) -> Vec<PathBuf> {
 /// `map_d` is followed by the whole statement, which may be that of another keyword with this meaning.
 fn transparency_statements(library: &Path) -> String {
     let mut statements = String::new();
-    let Ok(mut lines) = Lines::open(library) else { return statements };
+    let Ok(mut lines) = TextLines::open(library) else { return statements };
     if text::size(library).is_ok_and(|size| size > LARGEST) {
         return statements;
     }

@@ -22,7 +22,7 @@ use super::error::excerpt;
 use super::format::{self, FileReader};
 use super::import::{Collector, Import};
 use super::polygon::{Pieces, Tangled, triangulate};
-use super::text::{Lines, decode, number};
+use super::text::{TextLines, decode, number};
 use super::{AssetError, Loaded};
 use crate::components::Mesh;
 use crate::document::PartsBy;
@@ -78,8 +78,8 @@ pub fn read_obj(
 ) -> Result<Loaded<Mesh>, AssetError> {
     import.check(path)?;
     format::check(path, FileReader::Obj)?;
-    let mut lines = Lines::open(path)?;
-    let mut model = Model::new(path, import, parts_by);
+    let mut lines = TextLines::open(path)?;
+    let mut model = ObjImporter::new(path, import, parts_by);
     let mut joined = Vec::new();
     while let Some((number, line)) = lines.next_bytes()? {
         let line = without_comment(line);
@@ -111,7 +111,7 @@ struct Deferred {
 }
 
 /// Mesh and state of the reader after some lines.
-struct Model<'a> {
+struct ObjImporter<'a> {
     import: &'a Import,
     parts_by: &'a PartsBy,
     mesh: Collector,
@@ -137,7 +137,7 @@ struct Model<'a> {
     pieces: Pieces,
 }
 
-impl<'a> Model<'a> {
+impl<'a> ObjImporter<'a> {
     fn new(path: &Path, import: &'a Import, parts_by: &'a PartsBy) -> Self {
         Self {
             import,

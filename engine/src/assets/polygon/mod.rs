@@ -95,7 +95,7 @@ fn rounding(flat: &[DVec2]) -> f64 {
 }
 
 fn clip_ears(flat: &[DVec2], out: &mut Vec<[usize; 3]>) {
-    let mut ring = Ring::new(flat);
+    let mut ring = OutlineRing::new(flat);
     for _ in 3..flat.len() {
         let [before, ear, after] = ring.neighbours(ring.ear());
         out.push([before, ear, after]);
@@ -113,7 +113,7 @@ fn turn([a, b, c]: [DVec2; 3]) -> f64 {
 ///
 /// Cutting an ear changes only whether its two neighbours are ears (`O'Rourke` 1998, Computational
 /// Geometry in C, 1.6.5), so that all cuts together take the square of the number of corners.
-struct Ring<'a> {
+struct OutlineRing<'a> {
     flat: &'a [DVec2],
     before: Vec<usize>,
     after: Vec<usize>,
@@ -121,7 +121,7 @@ struct Ring<'a> {
     first: usize,
 }
 
-impl<'a> Ring<'a> {
+impl<'a> OutlineRing<'a> {
     fn new(flat: &'a [DVec2]) -> Self {
         let count = flat.len();
         let before = (0..count).map(|at| (at + count - 1) % count).collect();

@@ -10,8 +10,8 @@ use super::super::AssetError;
 use super::super::crs::Crs;
 use super::super::error::excerpt;
 use super::super::text::open;
-use super::metadata::Band;
-use super::window::Window;
+use super::metadata::BandMetadata;
+use super::window::CellWindow;
 use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
 
 /// Stands for no data where a grid does not say what does. Source: Esri, "ESRI ASCII raster format".
@@ -21,13 +21,13 @@ const DEFAULT_NO_DATA: f64 = -9999.0;
 const LONGEST_WORD: usize = 64;
 
 /// Words of a text, wherever its lines end.
-struct Words<R> {
+struct WordReader<R> {
     reader: R,
     line: usize,
     word: Vec<u8>,
 }
 
-impl<R: BufRead> Words<R> {
+impl<R: BufRead> WordReader<R> {
     /// The next word and its line.
     fn next(&mut self) -> std::io::Result<Option<(usize, &str)>> {
         self.word.clear();
@@ -56,7 +56,7 @@ impl<R: BufRead> Words<R> {
 
 /// Values of the header.
 #[derive(Default)]
-struct Header {
+struct AsciiHeader {
     numbers: [Option<f64>; KEYS.len()],
 }
 
@@ -74,7 +74,7 @@ const KEYS: [(&str, &str); 10] = [
     ("nodata_value", "a number"),
 ];
 
-impl Header {
+impl AsciiHeader {
     fn get(&self, key: &str) -> Option<f64> {
         KEYS.iter().position(|(name, _)| *name == key).and_then(|index| self.numbers[index])
     }
@@ -127,12 +127,12 @@ impl Header {
 
 /// The header and the first value, if there is any.
 fn read_header(
-    words: &mut Words<BufReader<File>>,
+    words: &mut WordReader<BufReader<File>>,
     path: &Path,
-) -> Result<(Header, Option<String>), AssetError> {
+) -> Result<(AsciiHeader, Option<String>), AssetError> {
     let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
-    let mut header = Header::default();
+    let mut header = AsciiHeader::default();
     while let Some((line, word)) = words.next().map_err(unreadable)? {
         if is_number(word) {
             return Ok((header, Some(word.to_owned())));
@@ -159,7 +159,7 @@ pub(super) fn read(path: &Path, extent: Option<&Extent>) -> Result<Raster, Asset
     let file = open(path)?;
     let bytes = length(&file);
     let mut words =
-        Words { reader: BufReader::with_capacity(1 << 16, file), line: 1, word: Vec::new() };
+        WordReader { reader: BufReader::with_capacity(1 << 16, file), line: 1, word: Vec::new() };
     let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
     let (header, first) = read_header(&mut words, path)?;
@@ -172,7 +172,7 @@ pub(super) fn read(path: &Path, extent: Option<&Extent>) -> Result<Raster, Asset
     let crs = sidecar::projection(path).map_err(wrong)?.or(of_auxiliary);
     let crs = crs.unwrap_or_else(|| Crs::named(""));
     let place = Place { corner, cell, crs, projection: None };
-    let (window, place) = Window::new(columns, rows, Some(&place), extent).map_err(wrong)?;
+    let (window, place) = CellWindow::new(columns, rows, Some(&place), extent).map_err(wrong)?;
     let count = columns.saturating_mul(rows);
     if count > MOST_CELLS * MOST_CELLS {
         return Err(wrong(RasterError::TooMany { columns, rows, most: MOST_CELLS }));
@@ -184,9 +184,9 @@ pub(super) fn read(path: &Path, extent: Option<&Extent>) -> Result<Raster, Asset
         return Err(wrong(problem));
     }
     let no_data = header.get("nodata_value");
-    let band = Band { no_data, ..Band::default() }.or(auxiliary);
+    let band = BandMetadata { no_data, ..BandMetadata::default() }.or(auxiliary);
     let no_data = band.no_data.or(Some(DEFAULT_NO_DATA));
-    let band = Band { no_data, ..band };
+    let band = BandMetadata { no_data, ..band };
     let count = count as usize;
     let (columns, rows) = (columns as usize, rows as usize);
     let mut values = Vec::with_capacity(window.len());

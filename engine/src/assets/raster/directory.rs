@@ -51,13 +51,13 @@ pub(super) struct Directory {
     /// Flags of the picture's relation to others in the file.
     subfile: u64,
     /// Photometric interpretation, and the byte of the file where it is written.
-    pub(super) photometric: Option<Written>,
+    pub(super) photometric: Option<TagValue>,
     next: u64,
 }
 
 /// A number of 16 bits in a file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Written {
+pub(super) struct TagValue {
     pub(super) value: u64,
     pub(super) at: u64,
 }
@@ -178,7 +178,7 @@ fn directory(
             TILE_WIDTH => &mut found.tile_width,
             TILE_HEIGHT => &mut found.tile_height,
             PHOTOMETRIC if is_here && size == 2 => {
-                found.photometric = Some(Written { value, at });
+                found.photometric = Some(TagValue { value, at });
                 continue;
             }
             _ => continue,
@@ -195,13 +195,13 @@ fn directory(
 ///
 /// The library inverts values whose photometric interpretation is "white is zero", and decodes no
 /// palettes and masks; what is stored are numbers all the same, so all are read as "black is zero".
-pub(super) struct Shown<R> {
+pub(super) struct PhotometricPatch<R> {
     inner: R,
     /// Bytes that are read as others.
     bytes: Vec<(u64, u8)>,
 }
 
-impl<R: Read + Seek> Shown<R> {
+impl<R: Read + Seek> PhotometricPatch<R> {
     /// Reads the photometric interpretation of numbers, palettes and masks as "black is zero".
     pub(super) fn new(mut inner: R, directories: &[Directory]) -> io::Result<Self> {
         const WHITE_IS_ZERO: u64 = 0;
@@ -217,7 +217,7 @@ impl<R: Read + Seek> Shown<R> {
             .iter()
             .filter_map(|directory| directory.photometric)
             .filter(|written| matches!(written.value, WHITE_IS_ZERO | PALETTE | MASK))
-            .flat_map(|Written { at, .. }| {
+            .flat_map(|TagValue { at, .. }| {
                 let low = u64::from(is_big);
                 [(at + low, BLACK_IS_ZERO), (at + 1 - low, 0)]
             })
@@ -226,7 +226,7 @@ impl<R: Read + Seek> Shown<R> {
     }
 }
 
-impl<R: Read + Seek> Read for Shown<R> {
+impl<R: Read + Seek> Read for PhotometricPatch<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let start = self.inner.stream_position()?;
         let count = self.inner.read(buffer)?;
@@ -239,7 +239,7 @@ impl<R: Read + Seek> Read for Shown<R> {
     }
 }
 
-impl<R: Seek> Seek for Shown<R> {
+impl<R: Seek> Seek for PhotometricPatch<R> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.inner.seek(to)
     }

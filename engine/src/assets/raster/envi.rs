@@ -7,10 +7,10 @@ use glam::DVec2;
 
 use super::super::crs::{Axes, Crs, Length, UtmZone, from_wkt};
 use super::super::error::excerpt;
-use super::metadata::Band;
+use super::metadata::BandMetadata;
 use super::names::{headers, values};
-use super::raw::{Interleave, Kind, Layout};
-use super::window::Window;
+use super::raw::{Interleave, SampleLayout, SampleType};
+use super::window::CellWindow;
 use super::{Extent, Place, Projection, Raster, RasterError, parse_no_data, sidecar};
 use crate::files;
 
@@ -51,12 +51,12 @@ pub(super) fn values_of(header: &Path) -> Result<PathBuf, RasterError> {
 }
 
 /// `key = value` entries of a header; values in braces may go over several lines.
-struct Header {
+struct EnviHeader {
     name: String,
     entries: Vec<(String, String)>,
 }
 
-impl Header {
+impl EnviHeader {
     fn read(path: &Path) -> Result<Self, RasterError> {
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let mut bytes = Vec::new();
@@ -187,7 +187,7 @@ pub(super) fn read(
     header_path: &Path,
     extent: Option<&Extent>,
 ) -> Result<Raster, RasterError> {
-    let header = Header::read(header_path)?;
+    let header = EnviHeader::read(header_path)?;
     let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
     let layout = header.layout()?;
     let place = header.place(layout.rows)?;
@@ -197,7 +197,7 @@ pub(super) fn read(
         _ => place,
     });
     let band = header.band()?.or(auxiliary);
-    let (window, place) = Window::new(layout.columns, layout.rows, place.as_ref(), extent)?;
+    let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
     let mut values = layout.read(&file, &window)?;
     let assumed = band.apply(&mut values);
     let class_names = header.get("class names").map_or_else(Vec::new, |names| {
@@ -208,19 +208,19 @@ pub(super) fn read(
     Ok(Raster { columns, rows, values, place, class_names, heights, assumed })
 }
 
-impl Header {
-    fn layout(&self) -> Result<Layout, RasterError> {
+impl EnviHeader {
+    fn layout(&self) -> Result<SampleLayout, RasterError> {
         let (columns, rows) = (self.whole("samples", None)?, self.whole("lines", None)?);
         let (kind, size) = match self.whole("data type", None)? {
-            1 => (Kind::Unsigned, 1),
-            2 => (Kind::Signed, 2),
-            3 => (Kind::Signed, 4),
-            4 => (Kind::Real, 4),
-            5 => (Kind::Real, 8),
-            12 => (Kind::Unsigned, 2),
-            13 => (Kind::Unsigned, 4),
-            14 => (Kind::Signed, 8),
-            15 => (Kind::Unsigned, 8),
+            1 => (SampleType::Unsigned, 1),
+            2 => (SampleType::Signed, 2),
+            3 => (SampleType::Signed, 4),
+            4 => (SampleType::Real, 4),
+            5 => (SampleType::Real, 8),
+            12 => (SampleType::Unsigned, 2),
+            13 => (SampleType::Unsigned, 4),
+            14 => (SampleType::Signed, 8),
+            15 => (SampleType::Unsigned, 8),
             other => {
                 return Err(self.error(format!(
                     "says `data type = {other}`; use 1 to 5 or 12 to 15, whole or real numbers"
@@ -248,7 +248,7 @@ impl Header {
                            (gdal_translate -of ENVI)";
             return Err(self.error(problem.to_owned()));
         }
-        Ok(Layout {
+        Ok(SampleLayout {
             columns,
             rows,
             bands: self.whole("bands", Some(1))?.max(1),
@@ -261,7 +261,7 @@ impl Header {
     }
 
     /// Scale, offset and value for no data of the first band.
-    fn band(&self) -> Result<Band, RasterError> {
+    fn band(&self) -> Result<BandMetadata, RasterError> {
         let wrong = |key: &str, text: &str| {
             let found = excerpt(text);
             self.error(format!("says `{key} = {found}`; write a number"))
@@ -281,6 +281,6 @@ impl Header {
         };
         let (scale, offset) = (first("data gain values")?, first("data offset values")?);
         let unit = self.get("data units").or_else(|| self.get("z units")).map(str::to_owned);
-        Ok(Band { no_data, scale, offset, unit })
+        Ok(BandMetadata { no_data, scale, offset, unit })
     }
 }

@@ -9,10 +9,10 @@ use glam::DVec2;
 use super::super::crs::Crs;
 use super::super::error::excerpt;
 use super::envi::values_of;
-use super::metadata::Band;
+use super::metadata::BandMetadata;
 use super::names::{headers, split, without};
-use super::raw::{Interleave, Kind, Layout};
-use super::window::Window;
+use super::raw::{Interleave, SampleLayout, SampleType};
+use super::window::CellWindow;
 use super::{Extent, Place, Raster, RasterError, parse_no_data, sidecar};
 use crate::files;
 
@@ -20,7 +20,7 @@ use crate::files;
 const LONGEST_HEADER: u64 = 1 << 16;
 
 /// Entries of a header: the key in lower case, and its value.
-struct Header {
+struct EsriHeader {
     name: String,
     entries: Vec<(String, String)>,
 }
@@ -30,12 +30,12 @@ pub(super) fn header_of(path: &Path) -> Option<PathBuf> {
     let is_header = without(&split(path).1, "hdr").is_some();
     let itself = is_header.then(|| path.to_owned());
     itself.into_iter().chain(headers(path)).find(|header| {
-        Header::read(header)
+        EsriHeader::read(header)
             .is_some_and(|header| header.get("nrows").is_some() && header.get("ncols").is_some())
     })
 }
 
-impl Header {
+impl EsriHeader {
     fn read(path: &Path) -> Option<Self> {
         let mut bytes = Vec::new();
         files::open(path).ok()?.take(LONGEST_HEADER).read_to_end(&mut bytes).ok()?;
@@ -76,16 +76,16 @@ impl Header {
         number.map(Some).ok_or_else(|| self.wrong(key, text, "a number"))
     }
 
-    fn layout(&self, values: &Path) -> Result<Layout, RasterError> {
+    fn layout(&self, values: &Path) -> Result<SampleLayout, RasterError> {
         let is_float = without(&split(values).1, "flt").is_some();
         let bits = self.whole("nbits", Some(if is_float { 32 } else { 8 }))?;
         let pixel = self.get("pixeltype").unwrap_or(if is_float { "FLOAT" } else { "UNSIGNEDINT" });
         let kind = match (pixel.to_uppercase().as_str(), bits) {
-            ("FLOAT", 32 | 64) => Kind::Real,
+            ("FLOAT", 32 | 64) => SampleType::Real,
             // Whole numbers of 16 bits and more are signed unless the header says otherwise.
-            ("SIGNEDINT", 8 | 16 | 32 | 64) => Kind::Signed,
-            ("UNSIGNEDINT", 16 | 32) if self.get("pixeltype").is_none() => Kind::Signed,
-            ("UNSIGNEDINT", 8 | 16 | 32 | 64) => Kind::Unsigned,
+            ("SIGNEDINT", 8 | 16 | 32 | 64) => SampleType::Signed,
+            ("UNSIGNEDINT", 16 | 32) if self.get("pixeltype").is_none() => SampleType::Signed,
+            ("UNSIGNEDINT", 8 | 16 | 32 | 64) => SampleType::Unsigned,
             _ => {
                 let found = format!("{pixel}` with `nbits {bits}");
                 let wanted = "SIGNEDINT, UNSIGNEDINT or FLOAT of 8 to 64 bits";
@@ -120,7 +120,7 @@ impl Header {
                 ));
             }
         }
-        Ok(Layout {
+        Ok(SampleLayout {
             columns,
             rows: self.whole("nrows", None)?,
             bands,
@@ -167,7 +167,7 @@ pub(super) fn read(
 ) -> Result<Raster, RasterError> {
     let file = if path == header_path { values_of(header_path)? } else { path.to_owned() };
     let unreadable = || RasterError::NoHeader(split(header_path).1);
-    let header = Header::read(header_path).ok_or_else(unreadable)?;
+    let header = EsriHeader::read(header_path).ok_or_else(unreadable)?;
     let layout = header.layout(&file)?;
     let (auxiliary, crs) = sidecar::auxiliary(&file)?;
     let crs = sidecar::projection(&file)?.or(crs);
@@ -175,9 +175,10 @@ pub(super) fn read(
         .get("nodata")
         .or_else(|| header.get("nodata_value"))
         .map(|text| parse_no_data(text).ok_or_else(|| header.wrong("nodata", text, "a number")));
-    let band = Band { no_data: no_data.transpose()?, ..Band::default() }.or(auxiliary);
+    let band =
+        BandMetadata { no_data: no_data.transpose()?, ..BandMetadata::default() }.or(auxiliary);
     let place = header.place(layout.rows, crs)?;
-    let (window, place) = Window::new(layout.columns, layout.rows, place.as_ref(), extent)?;
+    let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
     let mut values = layout.read(&file, &window)?;
     let assumed = band.apply(&mut values);
     let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;

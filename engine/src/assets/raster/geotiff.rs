@@ -9,14 +9,14 @@ use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{PlanarConfiguration, Tag};
 
-use super::directory::{self, Shown};
+use super::directory::{self, PhotometricPatch};
 use super::geokeys::GeoKeys;
-use super::metadata::Band;
-use super::window::Window;
+use super::metadata::BandMetadata;
+use super::window::CellWindow;
 use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
 use crate::files;
 
-type Tiff = Decoder<BufReader<Shown<File>>>;
+type Tiff = Decoder<BufReader<PhotometricPatch<File>>>;
 
 /// Samples beside those that are shown: 1 and 2 are opacities.
 const EXTRA_SAMPLES: Tag = Tag::ExtraSamples;
@@ -42,7 +42,7 @@ fn open(mut file: File) -> Result<Opened, RasterError> {
     file.rewind().map_err(unreadable)?;
     let first = directories[0];
     let mask = directories.iter().position(|directory| directory.is_mask_of(&first));
-    let shown = Shown::new(file, &directories).map_err(unreadable)?;
+    let shown = PhotometricPatch::new(file, &directories).map_err(unreadable)?;
     let mut limits = Limits::default();
     limits.decoding_buffer_size = 8 * MOST_CELLS as usize;
     let tiff = Tiff::new(BufReader::new(shown)).map_err(wrong)?.with_limits(limits);
@@ -57,7 +57,7 @@ pub(super) fn read(
     let Opened { mut tiff, length, mask } = open(file)?;
     let (columns, rows) = tiff.dimensions().map_err(wrong)?;
     let (columns, rows) = (u64::from(columns), u64::from(rows));
-    let picture = Picture::new(&mut tiff)?;
+    let picture = TiffPicture::new(&mut tiff)?;
     let is_masked = picture.check()?;
     claimed_bytes(&mut tiff, columns, rows, length)?;
     let place = match place(&mut tiff, columns as f64, rows as f64)? {
@@ -70,7 +70,7 @@ pub(super) fn read(
         _ => place,
     });
     let band = band(&mut tiff)?.or(auxiliary);
-    let (window, place) = Window::new(columns, rows, place.as_ref(), extent)?;
+    let (window, place) = CellWindow::new(columns, rows, place.as_ref(), extent)?;
     let mut values = picture.read(&mut tiff, &window, 0)?;
     let assumed = band.apply(&mut values);
     if is_masked {
@@ -78,7 +78,7 @@ pub(super) fn read(
     }
     if let Some(index) = mask {
         tiff.seek_to_image(index).map_err(wrong)?;
-        hide(&mut values, &Picture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
+        hide(&mut values, &TiffPicture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
     }
     if let Some(file) = sidecar::mask(path) {
         let bad = || RasterError::BadMask { columns, rows };
@@ -87,7 +87,7 @@ pub(super) fn read(
         if (u64::from(width), u64::from(height)) != (columns, rows) {
             return Err(bad());
         }
-        hide(&mut values, &Picture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
+        hide(&mut values, &TiffPicture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
     }
     let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
     let (columns, rows) = (window.columns.len(), window.rows.len());
@@ -104,23 +104,23 @@ fn hide(values: &mut [f64], mask: &[f64]) {
 }
 
 /// Reads the metadata of the first band.
-fn band(tiff: &mut Tiff) -> Result<Band, RasterError> {
+fn band(tiff: &mut Tiff) -> Result<BandMetadata, RasterError> {
     // GDAL's own description of bands.
     const METADATA: Tag = Tag::Unknown(42112);
     let mut text = |tag: Tag| {
         let value = tiff.find_tag(tag).map_err(wrong)?;
         Ok::<_, RasterError>(value.and_then(|value| value.into_string().ok()))
     };
-    let band = Band::from_tag(&text(METADATA)?.unwrap_or_default())?;
+    let band = BandMetadata::from_tag(&text(METADATA)?.unwrap_or_default())?;
     let no_data = text(Tag::GdalNodata)?.filter(|text| !text.trim_matches(['\0', ' ']).is_empty());
     let no_data = no_data.map(|text| {
         parse_no_data(&text).ok_or(RasterError::BadMetadata { what: "NODATA", found: text })
     });
-    Ok(Band { no_data: no_data.transpose()?, ..band })
+    Ok(BandMetadata { no_data: no_data.transpose()?, ..band })
 }
 
 /// Layout of the samples of a picture in its strips or tiles.
-struct Picture {
+struct TiffPicture {
     bits: u16,
     samples: u16,
     is_planar: bool,
@@ -131,7 +131,7 @@ struct Picture {
     columns: usize,
 }
 
-impl Picture {
+impl TiffPicture {
     fn new(tiff: &mut Tiff) -> Result<Self, RasterError> {
         let mut number = |tag: Tag, default: u16| {
             let value = tiff.find_tag_unsigned_vec::<u16>(tag).map_err(wrong)?;
@@ -170,7 +170,7 @@ impl Picture {
     fn read(
         &self,
         tiff: &mut Tiff,
-        window: &Window,
+        window: &CellWindow,
         sample: usize,
     ) -> Result<Vec<f64>, RasterError> {
         let (width, height) = self.chunk;

@@ -6,7 +6,7 @@ use super::{Assumed, RasterError, is_no_data, is_usual_no_data, parse_no_data};
 
 /// Metadata of the first band.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Band {
+pub(super) struct BandMetadata {
     pub(super) no_data: Option<f64>,
     pub(super) scale: Option<f64>,
     pub(super) offset: Option<f64>,
@@ -14,7 +14,7 @@ pub(super) struct Band {
     pub(super) unit: Option<String>,
 }
 
-impl Band {
+impl BandMetadata {
     /// Reads the text of tag 42112.
     pub(super) fn from_tag(text: &str) -> Result<Self, RasterError> {
         let mut band = Self::default();

@@ -3,7 +3,7 @@
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::window::Window;
+use super::window::CellWindow;
 use super::{RasterError, length};
 use crate::files;
 
@@ -17,7 +17,7 @@ pub(super) enum Interleave {
 
 /// Type of a value.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
+pub(super) enum SampleType {
     Unsigned,
     Signed,
     Real,
@@ -25,21 +25,21 @@ pub(super) enum Kind {
 
 /// Layout of the values in a file.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
+pub(super) struct SampleLayout {
     pub(super) columns: u64,
     pub(super) rows: u64,
     pub(super) bands: u64,
     pub(super) offset: u64,
     pub(super) interleave: Interleave,
-    pub(super) kind: Kind,
+    pub(super) kind: SampleType,
     /// Bytes of a value.
     pub(super) size: u64,
     pub(super) is_big: bool,
 }
 
-impl Layout {
+impl SampleLayout {
     /// Values of the cells of a window in the first band.
-    pub(super) fn read(&self, path: &Path, window: &Window) -> Result<Vec<f64>, RasterError> {
+    pub(super) fn read(&self, path: &Path, window: &CellWindow) -> Result<Vec<f64>, RasterError> {
         let Self { columns, rows, bands, offset, size, .. } = *self;
         let mut file = files::open(path)
             .map_err(|_unreadable| RasterError::NoValues(path.display().to_string()))?;
@@ -83,10 +83,10 @@ impl Layout {
         let whole = u64::from_le_bytes(bytes);
         let unused = 64 - 8 * raw.len() as u32;
         match self.kind {
-            Kind::Unsigned => whole as f64,
-            Kind::Signed => ((whole << unused) as i64 >> unused) as f64,
-            Kind::Real if raw.len() == 4 => f64::from(f32::from_bits(whole as u32)),
-            Kind::Real => f64::from_bits(whole),
+            SampleType::Unsigned => whole as f64,
+            SampleType::Signed => ((whole << unused) as i64 >> unused) as f64,
+            SampleType::Real if raw.len() == 4 => f64::from(f32::from_bits(whole as u32)),
+            SampleType::Real => f64::from_bits(whole),
         }
     }
 }

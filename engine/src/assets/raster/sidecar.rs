@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use super::super::crs::{Crs, from_name};
-use super::metadata::Band;
+use super::metadata::BandMetadata;
 use super::names::{VALUES, headers, named, split, values, without};
 use super::{Place, RasterError};
 use crate::files;
@@ -80,10 +80,10 @@ fn arc_info(content: &str) -> Option<Crs> {
 }
 
 /// Reads the `.aux.xml` beside a file.
-pub(super) fn auxiliary(path: &Path) -> Result<(Band, Option<Crs>), RasterError> {
+pub(super) fn auxiliary(path: &Path) -> Result<(BandMetadata, Option<Crs>), RasterError> {
     match appended(path, "aux.xml").and_then(|file| text(&file)) {
-        Some(text) => Band::from_auxiliary(&text),
-        None => Ok((Band::default(), None)),
+        Some(text) => BandMetadata::from_auxiliary(&text),
+        None => Ok((BandMetadata::default(), None)),
     }
 }
 

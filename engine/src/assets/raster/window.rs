@@ -17,12 +17,12 @@ pub struct Extent {
 
 /// Cells that are read.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Window {
+pub(super) struct CellWindow {
     pub(super) columns: Range<usize>,
     pub(super) rows: Range<usize>,
 }
 
-impl Window {
+impl CellWindow {
     /// Cells that an extent reaches, and where they lie; all of them without an extent.
     pub(super) fn new(
         columns: u64,
