@@ -1,4 +1,11 @@
-//! The text of a scene: finding paths in it, and showing them.
+//! Text of a scene: places of its paths, and diagnostics with their line of the text.
+//!
+//! Diagnostics are rendered here and not by `annotate-snippets` 0.12 or `codespan-reporting` 0.13. Both were tried on
+//! thirteen diagnostics: long lines, wide characters, tabs, control characters, spans over several lines, at and
+//! beyond the end of the text and inside of a character. `annotate-snippets` panics on the last two; both have no
+//! room for the path in the document beside the place; `codespan-reporting` shows lines of any length whole and sends
+//! control characters to the terminal. `annotate-snippets` is better in one thing: its carets count the columns of
+//! wide characters, those here count characters.
 
 use std::fmt::Write as _;
 
