@@ -1,6 +1,8 @@
 //! Triangles of the ground inside some polygons and outside others.
 
-use glam::DVec2;
+use std::collections::HashMap;
+
+use glam::{DVec2, I64Vec2};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, mitigate_underflow};
 
@@ -16,9 +18,9 @@ const FARTHEST: f64 = 1e9;
 /// Most crossings of different polygons.
 const MOST_CROSSINGS: usize = 1 << 20;
 
-/// A crossing is at the end of an edge if their distance is at most this fraction of the coordinates: some ten
-/// times their rounding.
-const CLOSE: f64 = 2e-15;
+/// Corners and crossings that are closer than this fraction of the largest coordinate are one vertex: some fifty times
+/// the rounding of a crossing.
+const CLOSE: f64 = 1e-14;
 
 /// Most comparisons of an edge with a point, of which each takes about a nanosecond.
 const MOST_COMPARISONS: usize = 1 << 33;
@@ -64,7 +66,7 @@ pub(super) fn triangulate(
 /// Refuses a polygon with edges that cross; edges that only touch are allowed.
 fn refuse_crossings(polygon: &Polygon, number: u32) -> Result<(), PlacementError> {
     let mut delaunay = Delaunay::new();
-    for [start, end] in insert_rings(&mut delaunay, &[polygon])? {
+    for [start, end] in insert_rings(&mut delaunay, &[polygon])?.ends {
         if let Some(other) = delaunay.get_conflicting_edges_between_vertices(start, end).next() {
             let ends = [start, end].map(|vertex| position(&delaunay, vertex));
             let other = other.vertices().map(|vertex| position(&delaunay, vertex.fix()));
@@ -95,37 +97,50 @@ fn insert(delaunay: &mut Delaunay, at: DVec2) -> FixedVertexHandle {
     delaunay.insert(point).expect("corners are finite and near, and crossings lie between them")
 }
 
-/// Inserts the corners of polygons and returns the two vertices of each edge.
-fn insert_rings(
-    delaunay: &mut Delaunay,
-    polygons: &[&Polygon],
-) -> Result<Vec<[FixedVertexHandle; 2]>, PlacementError> {
-    let mut edges = Vec::new();
-    for ring in polygons.iter().flat_map(|polygon| &polygon.rings) {
-        let start = edges.len();
-        for corner in ring {
-            let is_near = corner.abs().cmple(DVec2::splat(FARTHEST)).all();
-            let vertex = is_near.then(|| insert(delaunay, *corner));
-            let vertex = vertex.ok_or(PlacementError::FarCorner { at: *corner, most: FARTHEST })?;
-            edges.push([vertex; 2]);
-        }
-        let count = edges.len() - start;
-        for index in 0..count {
-            edges[start + index][1] = edges[start + (index + 1) % count][0];
-        }
+/// Edges between vertices of a triangulation.
+struct Edges {
+    /// Start and end of each edge.
+    ends: Vec<[FixedVertexHandle; 2]>,
+    /// Distance at which two points are one vertex, m.
+    close: f64,
+}
+
+/// Inserts the corners of polygons and returns their edges.
+fn insert_rings(delaunay: &mut Delaunay, polygons: &[&Polygon]) -> Result<Edges, PlacementError> {
+    let corners = || polygons.iter().flat_map(|polygon| &polygon.rings).flatten();
+    let is_far = |corner: &&DVec2| !corner.abs().cmple(DVec2::splat(FARTHEST)).all();
+    if let Some(&at) = corners().find(is_far) {
+        return Err(PlacementError::FarCorner { at, most: FARTHEST });
     }
-    edges.retain(|[start, end]| start != end);
-    Ok(edges)
+    let largest = corners().map(|corner| corner.abs().max_element()).fold(1e-9, f64::max);
+    let close = CLOSE * largest;
+    let mut vertices = HashMap::new();
+    let mut vertex = |corner: DVec2| {
+        let cell = (corner / close).round().as_i64vec2();
+        let around = (-1..=1).flat_map(|x| (-1..=1).map(move |y| cell + I64Vec2::new(x, y)));
+        let mut known = around.filter_map(|cell| vertices.get(&cell).copied());
+        let known = known.find(|&known| position(delaunay, known).distance(corner) <= close);
+        known.unwrap_or_else(|| {
+            let vertex = insert(delaunay, corner);
+            vertices.insert(cell, vertex);
+            vertex
+        })
+    };
+    let mut ends = Vec::new();
+    for ring in polygons.iter().flat_map(|polygon| &polygon.rings) {
+        let ring: Vec<FixedVertexHandle> = ring.iter().map(|&corner| vertex(corner)).collect();
+        let next = ring.iter().cycle().skip(1);
+        ends.extend(ring.iter().zip(next).filter(|(a, b)| a != b).map(|(&a, &b)| [a, b]));
+    }
+    Ok(Edges { ends, close })
 }
 
 /// Makes constraints of edges; those that cross are split where they do.
 ///
 /// The point of a crossing is rounded and then an ordinary vertex, so that parts which cross others for that are
 /// split again. `add_constraint_and_split` of `spade` panics for borders that differ by rounding alone.
-fn add_constraints(
-    delaunay: &mut Delaunay,
-    mut edges: Vec<[FixedVertexHandle; 2]>,
-) -> Result<(), PlacementError> {
+fn add_constraints(delaunay: &mut Delaunay, edges: Edges) -> Result<(), PlacementError> {
+    let Edges { ends: mut edges, close } = edges;
     let mut crossings = 0;
     while let Some([start, end]) = edges.pop() {
         if start == end {
@@ -148,8 +163,7 @@ fn add_constraints(
         let at = crossing([a, b], [c, d]);
         let distance = |vertex: &FixedVertexHandle| position(delaunay, *vertex).distance(at);
         let nearest = ends.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let scale = a.abs().max(b.abs()).max_element();
-        let middle = match nearest.filter(|vertex| distance(vertex) <= CLOSE * scale) {
+        let middle = match nearest.filter(|vertex| distance(vertex) <= close) {
             Some(vertex) => vertex,
             None => insert(delaunay, at),
         };
