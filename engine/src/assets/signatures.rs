@@ -82,8 +82,10 @@ const MARKUP: [Signature; 6] = [
     (b"<html", "a web page", FileContent::Document),
 ];
 
-fn format(name: &'static str, content: FileContent) -> Option<FileFormat> {
-    Some(FileFormat { name, content })
+impl FileFormat {
+    const fn new(name: &'static str, content: FileContent) -> Self {
+        Self { name, content }
+    }
 }
 
 /// Returns whether bytes hold some words.
@@ -101,16 +103,18 @@ pub(super) fn by_content(
     let starts = |signature: &&Signature| head.starts_with(signature.0);
     let mesh = MESH_SIGNATURES.iter().filter(|_| reader.reads_mesh()).find(starts);
     if let Some(&(_, name, content)) = mesh.or_else(|| SIGNATURES.iter().find(starts)) {
-        return format(name, content);
+        return Some(FileFormat::new(name, content));
     }
     let text = head.trim_ascii_start();
     if head.starts_with(b"PK\x03\x04") {
-        packed_format(head, path)
+        Some(packed_format(head, path))
     } else if text.starts_with(b"<") {
         let markup = MARKUP.iter().find(|signature| holds(head, signature.0));
         match markup {
-            Some(&(_, name, content)) => format(name, content),
-            None if text.starts_with(b"<?xml") => format("an XML file", FileContent::Mesh),
+            Some(&(_, name, content)) => Some(FileFormat::new(name, content)),
+            None if text.starts_with(b"<?xml") => {
+                Some(FileFormat::new("an XML file", FileContent::Mesh))
+            }
             None => None,
         }
     } else if reader.reads_mesh() {
@@ -121,16 +125,16 @@ pub(super) fn by_content(
 }
 
 /// Returns the format of a ZIP archive.
-fn packed_format(head: &[u8], path: &Path) -> Option<FileFormat> {
+fn packed_format(head: &[u8], path: &Path) -> FileFormat {
     let packed = [FileContent::Spreadsheet, FileContent::Features, FileContent::Numbers];
     match by_extension(path) {
-        Some(format) if packed.contains(&format.content) => Some(format),
-        _ if holds(head, b"xl/") => format("an Excel workbook", FileContent::Spreadsheet),
+        Some(format) if packed.contains(&format.content) => format,
+        _ if holds(head, b"xl/") => FileFormat::new("an Excel workbook", FileContent::Spreadsheet),
         _ if holds(head, b"opendocument.spreadsheet") => {
-            format("an OpenDocument spreadsheet", FileContent::Spreadsheet)
+            FileFormat::new("an OpenDocument spreadsheet", FileContent::Spreadsheet)
         }
-        _ if holds(head, b".kml") => format("a KMZ file", FileContent::Features),
-        _ => format("a ZIP archive", FileContent::Archive),
+        _ if holds(head, b".kml") => FileFormat::new("a KMZ file", FileContent::Features),
+        _ => FileFormat::new("a ZIP archive", FileContent::Archive),
     }
 }
 
@@ -145,17 +149,17 @@ fn mesh_format(head: &[u8], length: u64) -> Option<FileFormat> {
             == u32::try_from(length).ok();
     let text = head.trim_ascii_start();
     if is_binary_stl || (text.starts_with(b"solid") && holds(head, b"facet")) {
-        format("an STL file", FileContent::Mesh)
+        Some(FileFormat::new("an STL file", FileContent::Mesh))
     } else if is_3ds {
-        format("a 3DS file", FileContent::Mesh)
+        Some(FileFormat::new("a 3DS file", FileContent::Mesh))
     } else if text.starts_with(b"{") && holds(head, b"\"asset\"") {
-        format("a glTF file", FileContent::Gltf)
+        Some(FileFormat::new("a glTF file", FileContent::Gltf))
     } else if text.starts_with(b"{") {
-        format("a JSON file", FileContent::Mesh)
+        Some(FileFormat::new("a JSON file", FileContent::Mesh))
     } else if text.starts_with(b"0") && holds(head, b"SECTION") {
-        format("a DXF file", FileContent::Drawing)
+        Some(FileFormat::new("a DXF file", FileContent::Drawing))
     } else if is_obj(head) {
-        format("a Wavefront OBJ file", FileContent::Obj)
+        Some(FileFormat::new("a Wavefront OBJ file", FileContent::Obj))
     } else {
         None
     }
@@ -230,5 +234,5 @@ pub(super) fn by_extension(path: &Path) -> Option<FileFormat> {
         "rar" => ("a RAR archive", FileContent::Archive),
         _ => return None,
     };
-    format(name, content)
+    Some(FileFormat::new(name, content))
 }

@@ -145,7 +145,7 @@ impl Table {
                 ColumnContent::Ignored => {}
                 ColumnContent::Text(place) => field.clone_into(&mut texts[place]),
                 ColumnContent::NumberOrMissing(place) if is_missing(field) => {
-                    numbers[place] = f64::NAN
+                    numbers[place] = f64::NAN;
                 }
                 ColumnContent::Number(place) | ColumnContent::NumberOrMissing(place) => {
                     match decimals.read(field, separator, line) {

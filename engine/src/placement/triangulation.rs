@@ -58,7 +58,7 @@ pub(super) fn triangulate(
     for (number, polygon) in (0..).zip(polygons()) {
         refuse_crossings(polygon, number)?;
     }
-    let outlines = |polygons| Vec::from_iter(outlines_near(rectangle, polygons));
+    let outlines = |polygons| -> Vec<_> { outlines_near(rectangle, polygons).collect() };
     let (is_bounded, inside, outside) = (!inside.is_empty(), outlines(inside), outlines(outside));
     RegionOutlines { rectangle, is_bounded, inside, outside }.triangulate()
 }
@@ -83,8 +83,9 @@ fn refuse_crossings(polygon: &Polygon, number: u32) -> Result<(), PlacementError
 /// Returns where two line segments that cross do so.
 fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> DVec2 {
     let fraction = (c - a).perp_dot(d - c) / (b - a).perp_dot(d - c);
-    // Without a number for nearly parallel segments, it is an end.
-    a + (b - a) * fraction.max(0.0).min(1.0)
+    // `max` takes 0 for NaN, of nearly parallel segments: an end.
+    let fraction = fraction.max(0.0);
+    a + (b - a) * fraction.min(1.0)
 }
 
 fn position(delaunay: &Delaunay, vertex: FixedVertexHandle) -> DVec2 {
@@ -244,7 +245,9 @@ impl RegionOutlines<'_> {
             let largest = face.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
             let center = largest.expect("a face has a triangle").center();
             if self.contains(DVec2::new(center.x, center.y), &mut comparisons) {
-                face.iter().for_each(|triangle| is_inside[triangle.fix().index()] = true);
+                for triangle in &face {
+                    is_inside[triangle.fix().index()] = true;
+                }
             }
             if comparisons > MOST_COMPARISONS {
                 return Err(PlacementError::TooIntricate);
