@@ -182,8 +182,8 @@ fn films_hold_what_they_say() {
 }
 
 /// Memory of the threshold of Russian roulette of virtual photons, which a pilot run finds before the first
-/// packet: a spectrum of one group of lanes, and what decisions look at, bytes.
-const THRESHOLD: u64 = 2 * 8 * 4;
+/// packet: representative bands of one group of lanes, bytes.
+const THRESHOLD: u64 = 8 * 4;
 
 fn check_bytes(name: &str, film: &mut dyn Film, share: Partition) {
     film.restrict(share);
