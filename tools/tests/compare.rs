@@ -192,5 +192,8 @@ fn what_cannot_be_compared_is_said() {
         ["--systems", "forward", "--quality", "0.05", "--sensor", "eye", "--sensor", "photons"];
     let (code, _, stderr) = outcome(folder.path(), &arguments);
     assert_eq!(code, 0);
-    assert_eq!(stderr, "warning: sensors.eye: none of forward can measure it; backward can\n");
+    assert_eq!(
+        stderr,
+        "warning: sensors.eye: none of forward can measure it; backward, reference can\n"
+    );
 }
