@@ -5,7 +5,7 @@
 //! settings of the scene, entities by name, and messages.
 //!
 //! [`spawn`](crate::spawn::spawn) writes raw components and settings and returns which kinds have changed.
-//! [`run_schedule`] then runs the systems of the [`schedule`] in order, each only if a kind that it reads has changed; the
+//! [`run_schedule`] then runs the systems of the `schedule` in order, each only if a kind that it reads has changed; the
 //! kinds that it writes count as changed from then on. So a changed sun or leaf spectrum leaves meshes, ground and
 //! instances as they are.
 //!

@@ -7,7 +7,7 @@ use crate::film::Sums;
 use crate::scattering::{LANES, Lobe, SurfaceModels, with_simd};
 use crate::transport::paths::blocks;
 
-/// Contributions of packets to cells. A packet weighs one of [`SpectrumProducts`] times a number; contributions
+/// Contributions of packets to cells. A packet weighs one of `SpectrumProducts` times a number; contributions
 /// of several packets to a cell by the same product are added before any band is evaluated. Bands are then
 /// evaluated block by block, so that a block of the products stays in the cache.
 #[derive(Clone, Debug)]
