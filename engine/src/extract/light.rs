@@ -5,7 +5,7 @@ use hecs::World;
 
 use crate::components::{Sky, Sun};
 use crate::sampling::{Sampler, concentric_disc};
-use crate::scattering::{SpectrumId, SpectrumTable};
+use crate::scattering::{SceneSpectra, SpectrumId};
 
 /// What lights a stage, in units of the total irradiance on the horizontal plane, band by band.
 ///
@@ -90,7 +90,7 @@ pub struct Dome {
 
 impl Light {
     /// Light of the sun and sky entities. Adds their spectra to the table.
-    pub(super) fn from_world(world: &World, spectra: &mut SpectrumTable) -> Self {
+    pub(super) fn from_world(world: &World, spectra: &mut SceneSpectra) -> Self {
         let bands = spectra.bands();
         let sun = world.query::<&Sun>().iter().next().cloned();
         let sky = world.query::<&Sky>().iter().next().cloned();

@@ -4,7 +4,7 @@ use super::Stage;
 use crate::accel::Hit;
 use crate::components::{BlackBody, Emission, MaterialId, SceneId};
 use crate::sampling::Sampler;
-use crate::scattering::{SpectrumId, SpectrumTable};
+use crate::scattering::{SceneSpectra, SpectrumId};
 
 /// Radiance that surfaces and the sky emit.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ impl Thermal {
     pub(super) fn from_world(
         world: &World,
         materials: &[MaterialId],
-        spectra: &mut SpectrumTable,
+        spectra: &mut SceneSpectra,
     ) -> Option<Self> {
         let emission = world.query::<&Emission>().iter().next().cloned()?;
         let mut add = |values: &[f64]| spectra.add(values.iter().map(|&value| value as f32));

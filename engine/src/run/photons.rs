@@ -104,7 +104,7 @@ impl Measurement for PhotonRun<'_> {
             }
             extents
         };
-        let rows = (EnergyCounter::ABSORBED + stage.models.len()) as u64;
+        let rows = (EnergyCounter::ABSORBED + stage.models.surface_count()) as u64;
         let energy = vec![Extent::Table { rows, axes: 1, bands }; films.len()];
         kinds.iter().enumerate().flat_map(of).chain(energy).collect()
     }

@@ -7,4 +7,4 @@ mod warp;
 
 pub use sobol::sobol4;
 pub use stream::{Key, Sampler};
-pub use warp::{concentric_disc, cosine_hemisphere};
+pub use warp::{concentric_disc, cosine_direction, cosine_hemisphere};

@@ -2,6 +2,8 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
+use crate::geometry::basis;
+
 /// Uniform point of the unit disc, by Shirley and Chiu's concentric map: neighbours in the square
 /// stay neighbours in the disc, so stratified numbers give stratified points.
 ///
@@ -54,6 +56,14 @@ pub fn cosine_hemisphere(u: f64, v: f64) -> DVec3 {
     let disc = concentric_disc(u, v);
     // At the rim rounding would give a horizontal direction, which never leaves a flat scene.
     disc.extend((1.0 - disc.length_squared()).max(1e-14).sqrt())
+}
+
+/// Direction of the hemisphere about a unit normal with density cos θ / π per steradian.
+#[must_use]
+pub fn cosine_direction(normal: DVec3, u: f64, v: f64) -> DVec3 {
+    let (tangent, bitangent) = basis(normal);
+    let local = cosine_hemisphere(u, v);
+    tangent * local.x + bitangent * local.y + normal * local.z
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::directional::cosine_direction;
-use super::{BsdfSample, Importance, Interaction, Lobe, SpectrumId, SpectrumTable};
+use super::{BsdfSample, Importance, Interaction, Lobe, SceneSpectra, SpectrumId};
 use crate::components::LambertianOptics;
+use crate::sampling::cosine_direction;
 
 /// Lambertian reflection of each side and Lambertian transmission: `f = ρ/π` where `wi` and `wo`
 /// lie on the same side and `τ/π` where they do not.
@@ -32,7 +32,7 @@ struct Side {
 impl BiLambertian {
     /// The model of these optics.
     #[must_use]
-    pub fn new(optics: &LambertianOptics, spectra: &mut SpectrumTable) -> Self {
+    pub fn new(optics: &LambertianOptics, spectra: &mut SceneSpectra) -> Self {
         let tau = optics.transmittance();
         let mut side = |rho: &[f32]| {
             // ρ + τ = 1 may round to an ulp above 1, which would absorb less than nothing.

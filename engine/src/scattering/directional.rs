@@ -7,9 +7,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::spectrum::group_size;
-use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SpectrumId, SpectrumTable};
-use crate::geometry::basis;
-use crate::sampling::cosine_hemisphere;
+use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SceneSpectra, SpectrumId};
+use crate::sampling::cosine_direction;
 
 /// Reflection in one band, alike on both sides of a surface, `f(wi, wo) = f(wo, wi)`.
 pub trait BandModel: Copy + Sync {
@@ -27,7 +26,7 @@ pub struct Directional<B> {
 impl<B: BandModel> Directional<B> {
     /// The model with these parameters, shape `[bands]`. Adds its fractions to the table.
     #[must_use]
-    pub fn new(bands: &[B], spectra: &mut SpectrumTable) -> Self {
+    pub fn new(bands: &[B], spectra: &mut SceneSpectra) -> Self {
         Self { bands: bands.to_vec(), fractions: FractionTable::new(bands, spectra) }
     }
 
@@ -54,7 +53,7 @@ impl<B: BandModel> Directional<B> {
         {
             let [first, middle, last] =
                 [0, group.len() / 2, group.len() - 1].map(|band| group[band].f(angles));
-            *value = middle.max(SpectrumTable::LEAST * first.max(last));
+            *value = middle.max(SceneSpectra::LEAST * first.max(last));
         }
     }
 }
@@ -79,13 +78,6 @@ pub(super) fn pdf(at: &Interaction<'_>, wi: DVec3) -> f64 {
     if at.is_same_side(wi) { at.normal.dot(wi).abs() / PI } else { 0.0 }
 }
 
-/// Direction about a normal with the density `cos θ / π`, from two uniform numbers.
-pub(super) fn cosine_direction(normal: DVec3, u: f64, v: f64) -> DVec3 {
-    let (tangent, bitangent) = basis(normal);
-    let local = cosine_hemisphere(u, v);
-    tangent * local.x + bitangent * local.y + normal * local.z
-}
-
 /// Scattered and absorbed fraction of light by the cosine of its zenith angle. Nodes are even in the square
 /// root of the cosine, denser towards grazing directions; values between nodes are interpolated.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +90,7 @@ struct FractionTable {
 const INTERVALS: usize = 64;
 
 impl FractionTable {
-    fn new(bands: &[impl BandModel], spectra: &mut SpectrumTable) -> Self {
+    fn new(bands: &[impl BandModel], spectra: &mut SceneSpectra) -> Self {
         // Above 1 by the error of the quadrature at most: `check` refuses models that gain energy.
         let nodes: Vec<Vec<f32>> = (0..=INTERVALS)
             .into_par_iter()

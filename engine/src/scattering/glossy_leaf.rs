@@ -3,10 +3,10 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::bilambertian::BiLambertian;
-use super::directional::cosine_direction;
-use super::{BsdfSample, Importance, Interaction, Lobe, LobeSpectrum, SpectrumId, SpectrumTable};
+use super::{BsdfSample, Importance, Interaction, Lobe, LobeSpectrum, SceneSpectra, SpectrumId};
 use crate::components::{GlossyOptics, LeafCoating};
 use crate::geometry::basis;
+use crate::sampling::cosine_direction;
 
 /// A rough dielectric coating over a diffuse leaf, alike on both sides.
 ///
@@ -36,7 +36,7 @@ const INTERVALS: usize = 128;
 impl GlossyLeaf {
     /// The model of these optics.
     #[must_use]
-    pub fn new(optics: &GlossyOptics, spectra: &mut SpectrumTable) -> Self {
+    pub fn new(optics: &GlossyOptics, spectra: &mut SceneSpectra) -> Self {
         let coating = optics.coating;
         let reflected: Vec<f64> = (0..=INTERVALS)
             .map(|node| coating_reflectance(coating, node as f64 / INTERVALS as f64))
@@ -87,8 +87,8 @@ impl GlossyLeaf {
         let cos_h = at.normal.dot(half).abs();
         let cos_d = wi.dot(half).abs();
         let fresnel = dielectric(cos_d, self.coating.refractive_index);
-        let masking = (2.0 * cos_h * cos_o.min(cos_i) / cos_d).min(1.0);
-        fresnel * beckmann(cos_h, self.coating.roughness) * masking / (4.0 * cos_i * cos_o)
+        fresnel * beckmann(cos_h, self.coating.roughness) * masking(cos_h, cos_o.min(cos_i), cos_d)
+            / (4.0 * cos_i * cos_o)
     }
 
     /// Probabilities of the specular lobe, diffuse reflection and transmission.
@@ -189,6 +189,12 @@ fn beckmann(cosine: f64, roughness: f64) -> f64 {
     if cos2 <= 0.0 { 0.0 } else { ((cos2 - 1.0) / (cos2 * m2)).exp() / (PI * m2 * cos2 * cos2) }
 }
 
+/// Fraction of facets that others do not hide, V grooves: `min(1, 2 cos θh cos θ / cos d)` with the larger of the two
+/// angles from the surface's normal.
+fn masking(cos_h: f64, least_cosine: f64, cos_d: f64) -> f64 {
+    (2.0 * cos_h * least_cosine / cos_d).min(1.0)
+}
+
 /// Fresnel's reflectance of unpolarised light for a dielectric.
 fn dielectric(cosine: f64, refractive_index: f64) -> f64 {
     let n2 = refractive_index * refractive_index;
@@ -219,9 +225,8 @@ fn coating_reflectance(coating: LeafCoating, cosine: f64) -> f64 {
             if cos_d <= 0.0 || wi.z <= 0.0 {
                 continue;
             }
-            let masking = (2.0 * cos_h * cosine.min(wi.z) / cos_d).min(1.0);
             let fresnel = dielectric(cos_d, coating.refractive_index);
-            sum += fresnel * masking * cos_d / (cosine * cos_h);
+            sum += fresnel * masking(cos_h, cosine.min(wi.z), cos_d) * cos_d / (cosine * cos_h);
         }
     }
     (sum / f64::from(POINTS * POINTS)).clamp(0.0, 1.0)

@@ -24,7 +24,7 @@ pub use glossy_leaf::GlossyLeaf;
 pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, with_simd};
 pub use lobe::{Angles, Lobe, LobeSpectrum, SurfaceId};
 pub(crate) use spectrum::representatives_of;
-pub use spectrum::{SpectrumId, SpectrumTable};
+pub use spectrum::{SceneSpectra, SpectrumId};
 
 use crate::components::{RpvParameters, SoilspectParameters, SurfaceOptics};
 
@@ -48,7 +48,7 @@ pub enum Bsdf {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceModels {
     /// Spectra of surfaces and of light.
-    pub spectra: SpectrumTable,
+    pub spectra: SceneSpectra,
     bsdfs: Vec<Bsdf>,
 }
 
@@ -83,7 +83,7 @@ impl SurfaceModels {
     /// No surfaces yet, and no spectra but 0 and 1.
     #[must_use]
     pub fn new(bands: usize) -> Self {
-        Self { spectra: SpectrumTable::new(bands), bsdfs: Vec::new() }
+        Self { spectra: SceneSpectra::new(bands), bsdfs: Vec::new() }
     }
 
     /// Adds a surface; ids count from 0.
@@ -102,14 +102,8 @@ impl SurfaceModels {
 
     /// Number of surfaces.
     #[must_use]
-    pub const fn len(&self) -> usize {
+    pub const fn surface_count(&self) -> usize {
         self.bsdfs.len()
-    }
-
-    /// Returns whether there is no surface.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.bsdfs.is_empty()
     }
 
     fn bsdf(&self, surface: SurfaceId) -> &Bsdf {
@@ -139,6 +133,11 @@ impl<'m> Interaction<'m> {
     /// Models and spectra of the scene.
     pub(crate) const fn models(&self) -> &'m SurfaceModels {
         self.models
+    }
+
+    /// Unit vector to where the path came from.
+    pub(crate) const fn wo(&self) -> DVec3 {
+        self.wo
     }
 
     fn bsdf(&self) -> &Bsdf {

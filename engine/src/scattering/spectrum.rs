@@ -2,7 +2,7 @@
 
 use super::{LANES, padded};
 
-/// Identifies a spectrum of a [`SpectrumTable`].
+/// Identifies a spectrum of a [`SceneSpectra`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SpectrumId(u32);
 
@@ -25,7 +25,7 @@ impl SpectrumId {
 /// largest band: it is zero only if all its bands are. With no more bands than groups, the representative
 /// bands are the spectrum.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SpectrumTable {
+pub struct SceneSpectra {
     bands: usize,
     /// Length of a row of `values`.
     lanes: usize,
@@ -39,7 +39,7 @@ pub struct SpectrumTable {
     largest: Vec<f32>,
 }
 
-impl SpectrumTable {
+impl SceneSpectra {
     /// Maximum number of representative bands.
     pub const REPRESENTATIVES: usize = 128;
 
@@ -127,7 +127,7 @@ impl SpectrumTable {
 
 /// Number of bands that one representative band stands for.
 pub(super) const fn group_size(bands: usize) -> usize {
-    let size = bands.div_ceil(SpectrumTable::REPRESENTATIVES);
+    let size = bands.div_ceil(SceneSpectra::REPRESENTATIVES);
     if size == 0 { 1 } else { size }
 }
 
@@ -135,7 +135,7 @@ pub(super) const fn group_size(bands: usize) -> usize {
 pub(crate) fn representatives_of(values: &[f32]) -> Box<[f32]> {
     padded(values.chunks(group_size(values.len())).map(|group| {
         let largest = group.iter().copied().fold(0.0, f32::max);
-        group[group.len() / 2].max(SpectrumTable::LEAST * largest)
+        group[group.len() / 2].max(SceneSpectra::LEAST * largest)
     }))
 }
 
@@ -146,17 +146,17 @@ mod tests {
     #[test]
     fn representative_bands_rule_no_band_out_and_are_the_spectrum_if_bands_are_few() {
         for bands in [0, 1, 7, 64, 127, 128, 129, 256, 257, 2100] {
-            let mut table = SpectrumTable::new(bands);
+            let mut table = SceneSpectra::new(bands);
             for only in 0..bands.min(70) {
                 let value = |band: usize| if band == only { 0.7 } else { 0.0 };
                 let id = table.add((0..bands).map(value));
                 let representatives = table.representatives(id);
-                assert_eq!(representatives.len(), SpectrumTable::representatives_len(bands));
-                assert!(representatives.len() <= SpectrumTable::REPRESENTATIVES);
-                let group = SpectrumTable::representative_of(only, bands);
+                assert_eq!(representatives.len(), SceneSpectra::representatives_len(bands));
+                assert!(representatives.len() <= SceneSpectra::REPRESENTATIVES);
+                let group = SceneSpectra::representative_of(only, bands);
                 assert!(representatives[group] >= 0.7 / 16.0, "{bands}: {only}");
                 let is_whole = representatives == table.lanes(id);
-                assert!(bands > SpectrumTable::REPRESENTATIVES || is_whole, "{bands}: {only}");
+                assert!(bands > SceneSpectra::REPRESENTATIVES || is_whole, "{bands}: {only}");
             }
         }
     }
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn every_table_holds_zero_and_one() {
         for bands in [0, 1, 9, 300] {
-            let table = SpectrumTable::new(bands);
+            let table = SceneSpectra::new(bands);
             assert!(table.is_zero(SpectrumId::ZERO));
             let (ones, padding) = table.lanes(SpectrumId::ONE).split_at(bands);
             assert_eq!(ones, vec![1.0; bands]);

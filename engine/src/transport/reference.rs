@@ -31,13 +31,8 @@ fn radiance(
     for order in 1.. {
         // The path leaves the scene: upwards it meets the sky, of radiance E_sky / π.
         let Some(surface_hit) = hit else {
-            if let Some(sky) = &stage.light.dome
-                && direction.z > 0.0
-            {
-                let sky = spectrum(sky.share);
-                add(&mut radiance, &throughput, |band| {
-                    f64::from(sky[band]) * Light::RADIANCE_OF_SHARE
-                });
+            if direction.z > 0.0 {
+                add_sky(stage, &mut radiance, &throughput);
             }
             break;
         };
@@ -93,6 +88,14 @@ const ROULETTE_AFTER: u32 = 5;
 /// Largest probability to survive Russian roulette: every path ends, even where nothing is absorbed.
 const MAX_SURVIVAL: f64 = 0.95;
 
+/// Adds the radiance of the sky, if there is one.
+fn add_sky(stage: &Stage, radiance: &mut [f64], throughput: &[f64]) {
+    if let Some(sky) = &stage.light.dome {
+        let share = stage.models.spectra.lanes(sky.share);
+        add(radiance, throughput, |band| f64::from(share[band]) * Light::RADIANCE_OF_SHARE);
+    }
+}
+
 /// `L ← L + T S`, band by band.
 fn add(radiance: &mut [f64], throughput: &[f64], source: impl Fn(usize) -> f64) {
     for (band, (radiance, throughput)) in radiance.iter_mut().zip(throughput).enumerate() {
@@ -139,12 +142,7 @@ impl PathTracer for ReferencePath {
 
     fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool {
         self.radiance = vec![0.0; stage.bands];
-        if let Some(sky) = &stage.light.dome {
-            let share = stage.models.spectra.lanes(sky.share);
-            add(&mut self.radiance, &vec![1.0; stage.bands], |band| {
-                f64::from(share[band]) * Light::RADIANCE_OF_SHARE
-            });
-        }
+        add_sky(stage, &mut self.radiance, &vec![1.0; stage.bands]);
         direction.z > 0.0
     }
 

@@ -8,7 +8,7 @@ use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Interaction, Lobe, SpectrumTable};
+use crate::scattering::{Interaction, Lobe, SceneSpectra};
 use crate::transport::photons::{Part, spectra};
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 
@@ -44,7 +44,7 @@ impl BackwardPath {
     pub(in crate::transport) fn new(bands: usize, separates_orders: bool) -> Self {
         Self {
             history: History::default(),
-            throughput: vec![0.0; SpectrumTable::representatives_len(bands)],
+            throughput: vec![0.0; SceneSpectra::representatives_len(bands)],
             next_event: None,
             continuation: None,
             direction: None,

@@ -8,8 +8,7 @@ use super::history::{BLOCK, Block, History};
 use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::Ray;
 use crate::extract::{Light, Stage};
-use crate::geometry::basis;
-use crate::sampling::{Key, Sampler, cosine_hemisphere};
+use crate::sampling::{Key, Sampler, cosine_direction};
 use crate::scattering::SpectrumId;
 use crate::transport::photons::Part;
 
@@ -77,9 +76,7 @@ impl PathTracer for FirstOrderPath {
             add(sun, beam.share, hit.normal.dot(sun).abs() / sun.z);
         }
         if let Some(dome) = &stage.light.dome {
-            let (tangent, bitangent) = basis(hit.normal);
-            let local = cosine_hemisphere(sky_u, sky_v);
-            let sky = tangent * local.x + bitangent * local.y + hit.normal * local.z;
+            let sky = cosine_direction(hit.normal, sky_u, sky_v);
             let sky = if sky.z < 0.0 { -sky } else { sky };
             // A horizontal ray would never leave a flat scene.
             if sky.z > 0.0 {

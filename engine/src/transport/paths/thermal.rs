@@ -7,7 +7,7 @@ use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
-use crate::scattering::SpectrumTable;
+use crate::scattering::SceneSpectra;
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 
 /// A random walk from the sensor that gathers the radiance that surfaces and the sky emit,
@@ -33,7 +33,7 @@ impl ThermalPath {
     pub(in crate::transport) fn new(bands: usize) -> Self {
         Self {
             history: History::default(),
-            throughput: vec![0.0; SpectrumTable::representatives_len(bands)],
+            throughput: vec![0.0; SceneSpectra::representatives_len(bands)],
             sampler: Sampler::new(Key::new(0), 0),
             direction: DVec3::ZERO,
             order: 0,

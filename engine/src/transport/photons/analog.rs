@@ -4,7 +4,7 @@ use super::counters::{Event, Visited};
 use super::packet::{Packet, fly, report};
 use crate::accel::Ray;
 use crate::sampling::Sampler;
-use crate::scattering::{Importance, Lobe, LobeSpectrum, SpectrumTable};
+use crate::scattering::{Importance, Lobe, LobeSpectrum, SceneSpectra};
 
 /// Order after which a photon ends where nothing is absorbed and nothing escapes; the rest of its power counts as
 /// removed by the limit of orders.
@@ -31,7 +31,7 @@ impl Packet<'_> {
         self.tally.scatter(share.scaled(total as f32));
         self.throughput.fill(0.0);
         if let Some(band) = self.band {
-            let representative = SpectrumTable::representative_of(band, bands);
+            let representative = SceneSpectra::representative_of(band, bands);
             self.throughput[representative] = total as f32;
         }
     }
@@ -64,8 +64,7 @@ impl Packet<'_> {
             let (hit, traced) = fly(stage, counters, tally, &ray, visited);
             *rays += traced;
             let Some(hit) = hit else { return };
-            let wo = -ray.direction;
-            let surface = stage.interaction(&hit, wo);
+            let surface = stage.interaction(&hit, -ray.direction);
             let [lobe, u, v, survival] = sampler.next_event();
             let scattered = stage.models.value(&surface.scattered_fraction(), band);
             let survives = survival < f64::from(scattered);
@@ -77,7 +76,6 @@ impl Packet<'_> {
             let event = Event::Arrival {
                 hit: &hit,
                 surface,
-                wo,
                 visited,
                 is_last,
                 throughput,
@@ -93,8 +91,7 @@ impl Packet<'_> {
                 tally.scatter(Lobe::ONE.scaled(weight));
             }
             *rays += report(stage, counters, tally, &Event::Departure);
-            visited.has_met_ground |= stage.is_ground(&hit);
-            visited.order += 1;
+            visited.leave(stage.is_ground(&hit));
             ray = hit.leave(sample.wi);
         }
     }

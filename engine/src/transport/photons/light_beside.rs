@@ -76,8 +76,8 @@ impl Counter for BesideCounter {
 
     fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
         let (cells, is_beside) = match event {
-            Event::Arrival { hit, wo, visited: Visited { order: 0, .. }, .. } => {
-                ([Self::INCOMING, Self::INCOMING_BESIDE], self.is_beside(hit.point, *wo))
+            Event::Arrival { hit, surface, visited: Visited { order: 0, .. }, .. } => {
+                ([Self::INCOMING, Self::INCOMING_BESIDE], self.is_beside(hit.point, surface.wo()))
             }
             Event::Escape { ray, visited: Visited { order: 1.., .. } } if ray.direction.z > 0.0 => {
                 ([Self::OUTGOING, Self::OUTGOING_BESIDE], self.is_beside(ray.origin, ray.direction))

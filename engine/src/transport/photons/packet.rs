@@ -8,7 +8,7 @@ use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Lobe, SpectrumTable, SurfaceModels, multiply};
+use crate::scattering::{Lobe, SceneSpectra, SurfaceModels, multiply};
 use crate::transport::films::SampleTracer;
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 use crate::transport::{LightSource, PhotonKind, ReferencePlane, ReplicateSums};
@@ -47,7 +47,7 @@ impl<'a> PacketTracer<'a> {
     ) -> Self {
         let PacketOptions { source, kind, plane } = options;
         let energy: Box<dyn Counter> =
-            Box::new(EnergyCounter { surfaces: stage.models.len(), plane });
+            Box::new(EnergyCounter { surfaces: stage.models.surface_count(), plane });
         let counters = std::iter::once(energy).chain(counters).collect();
         Self { stage, light: source, kind, source: PacketSource::new(stage), counters, key }
     }
@@ -137,7 +137,7 @@ impl<'a> Packet<'a> {
             stage,
             counters,
             tally: Tally::new(models, sums),
-            throughput: vec![0.0; SpectrumTable::representatives_len(bands)],
+            throughput: vec![0.0; SceneSpectra::representatives_len(bands)],
             initial,
             kind: *kind,
             band: None,
@@ -231,13 +231,11 @@ impl<'a> Packet<'a> {
             let (hit, traced) = fly(stage, counters, tally, &ray, visited);
             *rays += traced;
             let Some(hit) = hit else { return };
-            let wo = -ray.direction;
-            let surface = stage.interaction(&hit, wo);
+            let surface = stage.interaction(&hit, -ray.direction);
             let is_last = visited.order >= max_order;
             let event = Event::Arrival {
                 hit: &hit,
                 surface,
-                wo,
                 visited,
                 is_last,
                 throughput,
@@ -255,8 +253,7 @@ impl<'a> Packet<'a> {
             let Some(sample) = sample else { return };
             tally.scatter(sample.weight);
             *rays += report(stage, counters, tally, &Event::Departure);
-            visited.has_met_ground |= stage.is_ground(&hit);
-            visited.order += 1;
+            visited.leave(stage.is_ground(&hit));
             ray = hit.leave(sample.wi);
         }
     }

@@ -75,8 +75,8 @@ impl Counter for FluxCounter {
             match (level, event) {
                 (
                     FluxLevel::Terrain | FluxLevel::TerrainSurface,
-                    Event::Arrival { hit, wo, reflected, .. },
-                ) if stage.is_ground(hit) && hit.normal.dot(*wo) > 0.0 => {
+                    Event::Arrival { hit, surface, reflected, .. },
+                ) if stage.is_ground(hit) && hit.normal.dot(surface.wo()) > 0.0 => {
                     let scale = level.per_area(hit);
                     add(hit.point, false, WeightFactor::One, scale);
                     add(hit.point, true, WeightFactor::Lobe(*reflected), scale);

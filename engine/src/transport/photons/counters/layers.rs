@@ -38,7 +38,7 @@ impl LayerCounter {
     /// below the ground; or layers between given heights, m, and nothing beyond them.
     #[must_use]
     pub fn new(stage: &Stage, layers: &Layers, plane: ReferencePlane) -> Self {
-        let surfaces = stage.models.len();
+        let surfaces = stage.models.surface_count();
         let layers = match layers {
             Layers::Thickness(thickness) => {
                 let height = stage.top() - stage.ground;
@@ -101,20 +101,20 @@ impl Counter for LayerCounter {
     }
 
     fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
-        let Event::Arrival { hit, wo, visited, scattered, .. } = event else {
+        let Event::Arrival { hit, surface, visited, scattered, .. } = event else {
             return 0;
         };
         if !self.plane.is_above(hit.point) {
             return 0;
         }
-        let surface = hit.surface as usize;
+        let material = hit.surface as usize;
         let is_ground = stage.is_ground(hit);
-        let layer = self.layer(hit.point.z).map(|layer| layer * self.surfaces + surface);
+        let layer = self.layer(hit.point.z).map(|layer| layer * self.surfaces + material);
         let canopy = (!is_ground).then(|| self.vegetation());
-        for cell in [layer, Some(self.totals() + surface), canopy].into_iter().flatten() {
+        for cell in [layer, Some(self.totals() + material), canopy].into_iter().flatten() {
             tally.add(cell, WeightFactor::Complement(*scattered), 1.0);
         }
-        if is_ground && hit.normal.dot(*wo) > 0.0 {
+        if is_ground && hit.normal.dot(surface.wo()) > 0.0 {
             let term = match (visited.order, visited.has_met_ground) {
                 (0, _) => 1,
                 (_, false) => 2,

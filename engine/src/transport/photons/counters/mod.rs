@@ -10,8 +10,6 @@ mod layers;
 mod views;
 mod virtual_photon_roulette;
 
-use glam::DVec3;
-
 use super::tally::{Tally, WeightFactor};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
@@ -34,6 +32,14 @@ pub struct Visited {
     pub order: u32,
     /// True if one of them was the ground.
     pub has_met_ground: bool,
+}
+
+impl Visited {
+    /// Adds a surface.
+    pub(super) const fn leave(&mut self, is_ground: bool) {
+        self.order += 1;
+        self.has_met_ground |= is_ground;
+    }
 }
 
 /// An event in the life of a packet, whose weight the [`Tally`] holds: in units of the power that falls on
@@ -77,8 +83,6 @@ pub enum Event<'e> {
         hit: &'e Hit,
         /// The surface, seen from the packet's origin.
         surface: Interaction<'e>,
-        /// Unit vector to the packet's origin.
-        wo: DVec3,
         /// Surfaces that it has left before.
         visited: Visited,
         /// True if scattering here does not count.
