@@ -34,8 +34,8 @@ pub use identity::{MaterialId, Name, PlantingId, PrototypeId, SceneId};
 pub use light::{Sky, Sun};
 pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
 pub use optics::{
-    EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, RpvParameters, SoilspectParameters,
-    SurfaceOptics,
+    DirectionalOptics, EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, RpvParameters,
+    SoilspectParameters, SurfaceOptics,
 };
 pub use placement::{Instance, InstanceQuery, Lean, Placement, Position, Scale, Yaw};
 pub use planting::{InstanceRange, ShownMeshes};

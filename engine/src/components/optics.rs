@@ -5,10 +5,20 @@ pub enum SurfaceOptics {
     BiLambertian(LambertianOptics),
     /// A leaf with a specular coating.
     GlossyLeaf(GlossyOptics),
-    /// RPV, shape `[bands]`.
-    Rpv(Vec<RpvParameters>),
-    /// SOILSPECT, shape `[bands]`.
-    Soilspect(Vec<SoilspectParameters>),
+    /// RPV.
+    Rpv(DirectionalOptics<RpvParameters>),
+    /// SOILSPECT.
+    Soilspect(DirectionalOptics<SoilspectParameters>),
+}
+
+/// Parameters of an opaque model whose reflection depends on both directions, and the light that it reflects in
+/// all; built by [`DirectionalOptics::new`] in `scattering`, which integrates it once for all stages of a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DirectionalOptics<B> {
+    /// Shape `[bands]`.
+    pub(crate) bands: Vec<B>,
+    /// Directional-hemispherical reflectance, shape `[bands, nodes]` of `scattering/directional.rs`.
+    pub(crate) dhr: Vec<Vec<f32>>,
 }
 
 impl SurfaceOptics {
@@ -60,13 +70,16 @@ pub struct GlossyOptics {
     pub coating: LeafCoating,
 }
 
-/// Rough dielectric surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Rough dielectric surface, and the light that it reflects; built by [`LeafCoating::new`] in `scattering`, which
+/// integrates it once for all stages of a world.
+#[derive(Clone, Debug, PartialEq)]
 pub struct LeafCoating {
     /// Real refractive index.
-    pub refractive_index: f64,
+    pub(crate) refractive_index: f64,
     /// Root mean square slope of the facets, Beckmann's m.
-    pub roughness: f64,
+    pub(crate) roughness: f64,
+    /// Fraction of the light that it reflects, by cosine in even intervals.
+    pub(crate) reflected: Vec<f64>,
 }
 
 /// Lambertian reflectance of both sides and transmittance, as fractions of the incident flux; shape `[bands]`.

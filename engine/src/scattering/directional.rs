@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::spectrum::group_size;
 use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SceneSpectra, SpectrumId};
+use crate::components::DirectionalOptics;
 use crate::sampling::cosine_direction;
 
 /// Reflection in one band, alike on both sides of a surface, `f(wi, wo) = f(wo, wi)`.
@@ -24,10 +25,11 @@ pub struct Directional<B> {
 }
 
 impl<B: BandModel> Directional<B> {
-    /// The model with these parameters, shape `[bands]`. Adds its fractions to the table.
+    /// The model of these optics. Adds its fractions to the spectra.
     #[must_use]
-    pub fn new(bands: &[B], spectra: &mut SceneSpectra) -> Self {
-        Self { bands: bands.to_vec(), fractions: FractionTable::new(bands, spectra) }
+    pub fn new(optics: &DirectionalOptics<B>, spectra: &mut SceneSpectra) -> Self {
+        let DirectionalOptics { bands, dhr } = optics;
+        Self { bands: bands.clone(), fractions: FractionTable::new(dhr, spectra) }
     }
 
     pub(super) fn scattered_fraction(&self, at: &Interaction<'_>) -> Lobe {
@@ -90,19 +92,15 @@ struct FractionTable {
 const INTERVALS: usize = 64;
 
 impl FractionTable {
-    fn new(bands: &[impl BandModel], spectra: &mut SceneSpectra) -> Self {
-        // Above 1 by the error of the quadrature at most: `check` refuses models that gain energy.
-        let nodes: Vec<Vec<f32>> = (0..=INTERVALS)
-            .into_par_iter()
-            .map(|node| {
-                let cosine = node_cosine(node);
-                bands.iter().map(|band| (dhr(band, cosine) as f32).clamp(0.0, 1.0)).collect()
-            })
-            .collect();
-        Self {
-            absorbed: nodes.iter().map(|dhr| spectra.add(dhr.iter().map(|r| 1.0 - r))).collect(),
-            scattered: nodes.into_iter().map(|dhr| spectra.add(dhr)).collect(),
+    /// Adds fractions to the spectra, from DHR of shape `[bands, nodes]`.
+    fn new(dhr: &[Vec<f32>], spectra: &mut SceneSpectra) -> Self {
+        let (mut scattered, mut absorbed) = (Vec::new(), Vec::new());
+        for node in 0..=INTERVALS {
+            let of_node = || dhr.iter().map(move |band| band[node]);
+            absorbed.push(spectra.add(of_node().map(|dhr| 1.0 - dhr)));
+            scattered.push(spectra.add(of_node()));
         }
+        Self { scattered, absorbed }
     }
 
     /// Interpolates between the two nodes about a cosine.
@@ -130,21 +128,35 @@ pub struct ModelFault {
     pub dhr: f64,
 }
 
-/// Checks that no band of a model reflects more light than it receives, or less than none, from any direction.
-///
-/// # Errors
-/// The first band that does.
-pub(super) fn check(bands: &[impl BandModel]) -> Result<(), ModelFault> {
-    let fault = |band: usize| {
-        let worst = (0..=INTERVALS / 4).find_map(|node| {
-            let cosine = node_cosine(4 * node);
-            let dhr = dhr(&bands[band], cosine);
-            (!(0.0..=1.0).contains(&dhr)).then_some(ModelFault { band, zenith: cosine.acos(), dhr })
-        });
-        worst.map_or(Ok(()), Err)
-    };
-    (0..bands.len()).into_par_iter().map(fault).find_first(Result::is_err).unwrap_or(Ok(()))
+impl<B: BandModel> DirectionalOptics<B> {
+    /// Integrates a model in each band.
+    ///
+    /// # Errors
+    /// The first band that reflects more light than it receives, or less than none, from any direction.
+    pub fn new(bands: Vec<B>) -> Result<Self, ModelFault> {
+        let rows: Vec<_> = (0..bands.len())
+            .into_par_iter()
+            .map(|band| {
+                let mut row = Vec::with_capacity(INTERVALS + 1);
+                for node in 0..=INTERVALS {
+                    let cosine = node_cosine(node);
+                    let dhr = dhr(&bands[band], cosine);
+                    if node.is_multiple_of(CHECKED) && !(0.0..=1.0).contains(&dhr) {
+                        return Err(ModelFault { band, zenith: cosine.acos(), dhr });
+                    }
+                    // Above 1 by the error of the quadrature at most.
+                    row.push((dhr as f32).clamp(0.0, 1.0));
+                }
+                Ok(row)
+            })
+            .collect();
+        let dhr = rows.into_iter().collect::<Result<_, _>>()?;
+        Ok(Self { bands, dhr })
+    }
 }
+
+/// Nodes of which one is checked.
+const CHECKED: usize = 4;
 
 /// Nodes and weights of the Gauss-Legendre rule with eight points on [0, 1].
 const GAUSS: [(f64, f64); 8] = [

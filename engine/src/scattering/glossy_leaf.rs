@@ -24,8 +24,6 @@ use crate::sampling::cosine_direction;
 pub struct GlossyLeaf {
     body: BiLambertian,
     coating: LeafCoating,
-    /// `E` by cosine, even intervals.
-    reflected: Vec<f64>,
     /// `Ē = 2 ∫ E μ dμ`.
     mean_reflected: f64,
 }
@@ -33,14 +31,22 @@ pub struct GlossyLeaf {
 /// Intervals of cosines in the table of `E`.
 const INTERVALS: usize = 128;
 
+impl LeafCoating {
+    /// A coating with this refractive index and roughness.
+    #[must_use]
+    pub fn new(refractive_index: f64, roughness: f64) -> Self {
+        let node = |node| node as f64 / INTERVALS as f64;
+        let reflected = |cosine| coating_reflectance(refractive_index, roughness, cosine);
+        let reflected = (0..=INTERVALS).map(node).map(reflected).collect();
+        Self { refractive_index, roughness, reflected }
+    }
+}
+
 impl GlossyLeaf {
     /// The model of these optics.
     #[must_use]
     pub fn new(optics: &GlossyOptics, spectra: &mut SceneSpectra) -> Self {
-        let coating = optics.coating;
-        let reflected: Vec<f64> = (0..=INTERVALS)
-            .map(|node| coating_reflectance(coating, node as f64 / INTERVALS as f64))
-            .collect();
+        let GlossyOptics { body, coating } = optics;
         // Exact for the interpolated table: Simpson's rule for a product of two linear functions.
         let step = 1.0 / INTERVALS as f64;
         let simpson = |(node, pair): (usize, &[f64])| {
@@ -48,8 +54,10 @@ impl GlossyLeaf {
             let middle = 4.0 * low.midpoint(high) * pair[0].midpoint(pair[1]);
             (low * pair[0] + middle + high * pair[1]) * step / 6.0
         };
-        let mean_reflected = 2.0 * reflected.windows(2).enumerate().map(simpson).sum::<f64>();
-        Self { body: BiLambertian::new(&optics.body, spectra), coating, reflected, mean_reflected }
+        let mean_reflected =
+            2.0 * coating.reflected.windows(2).enumerate().map(simpson).sum::<f64>();
+        let body = BiLambertian::new(body, spectra);
+        Self { body, coating: coating.clone(), mean_reflected }
     }
 
     /// `E`, interpolated.
@@ -57,7 +65,8 @@ impl GlossyLeaf {
         let place = cosine.clamp(0.0, 1.0) * INTERVALS as f64;
         let node = (place as usize).min(INTERVALS - 1);
         let upper = place - node as f64;
-        self.reflected[node] * (1.0 - upper) + self.reflected[node + 1] * upper
+        let nodes = &self.coating.reflected;
+        nodes[node] * (1.0 - upper) + nodes[node + 1] * upper
     }
 
     /// Factor of the body's `ρ` and `τ` for a pair of cosines.
@@ -206,7 +215,7 @@ fn dielectric(cosine: f64, refractive_index: f64) -> f64 {
 
 /// `E`: fraction of light from a zenith angle that the coating reflects, `∫ f cos θ dω`, over normals of facets
 /// that are even in their own density.
-fn coating_reflectance(coating: LeafCoating, cosine: f64) -> f64 {
+fn coating_reflectance(refractive_index: f64, roughness: f64, cosine: f64) -> f64 {
     const POINTS: u32 = 96;
     let cosine = cosine.max(1e-4);
     let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
@@ -214,7 +223,7 @@ fn coating_reflectance(coating: LeafCoating, cosine: f64) -> f64 {
     let mut sum = 0.0;
     for i in 0..POINTS {
         // Beyond the last facet normals that matter the density is below e⁻¹⁶.
-        let tan2 = -coating.roughness.powi(2) * (1.0 - place(i)).ln();
+        let tan2 = -roughness.powi(2) * (1.0 - place(i)).ln();
         let cos_h = (1.0 + tan2).sqrt().recip();
         let sin_h = tan2.sqrt() * cos_h;
         for j in 0..POINTS {
@@ -225,7 +234,7 @@ fn coating_reflectance(coating: LeafCoating, cosine: f64) -> f64 {
             if cos_d <= 0.0 || wi.z <= 0.0 {
                 continue;
             }
-            let fresnel = dielectric(cos_d, coating.refractive_index);
+            let fresnel = dielectric(cos_d, refractive_index);
             sum += fresnel * masking(cos_h, cosine.min(wi.z), cos_d) * cos_d / (cosine * cos_h);
         }
     }

@@ -94,8 +94,8 @@ impl SurfaceModels {
                 Bsdf::BiLambertian(BiLambertian::new(optics, spectra))
             }
             SurfaceOptics::GlossyLeaf(optics) => Bsdf::GlossyLeaf(GlossyLeaf::new(optics, spectra)),
-            SurfaceOptics::Rpv(bands) => Bsdf::Rpv(Directional::new(bands, spectra)),
-            SurfaceOptics::Soilspect(bands) => Bsdf::Soilspect(Directional::new(bands, spectra)),
+            SurfaceOptics::Rpv(optics) => Bsdf::Rpv(Directional::new(optics, spectra)),
+            SurfaceOptics::Soilspect(optics) => Bsdf::Soilspect(Directional::new(optics, spectra)),
         });
         SurfaceId(self.bsdfs.len() as u32 - 1)
     }
@@ -248,22 +248,6 @@ impl Bsdf {
 }
 
 const NO_MODEL_LOBE: &str = "lobes of these models are spectra of the table";
-
-impl SurfaceOptics {
-    /// Checks that a surface reflects no more light than it receives, and not less than none, from any
-    /// direction.
-    ///
-    /// # Errors
-    /// The first band in which it does.
-    pub fn check(&self) -> Result<(), ModelFault> {
-        match self {
-            // Their parameters are lawful by construction.
-            Self::BiLambertian(_) | Self::GlossyLeaf(_) => Ok(()),
-            Self::Rpv(bands) => directional::check(bands),
-            Self::Soilspect(bands) => directional::check(bands),
-        }
-    }
-}
 
 /// A spectrum padded with zeros to whole groups of [`LANES`].
 #[must_use]

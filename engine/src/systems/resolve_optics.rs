@@ -5,11 +5,11 @@ use hecs::World;
 use super::spectra::{Quantity, reads_file, resolve_spectrum};
 use super::{Resources, set_component};
 use crate::components::{
-    EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, MaterialId, RpvParameters,
-    SoilspectParameters, SurfaceOptics,
+    DirectionalOptics, EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, MaterialId,
+    RpvParameters, SoilspectParameters, SurfaceOptics,
 };
 use crate::document::{Diagnostic, Lambertian, Leaf, Material, Rpv, Spectrum, SurfaceQuantity};
-use crate::scattering::ModelFault;
+use crate::scattering::{BandModel, ModelFault};
 
 /// Resolves the spectra of used materials to bands, and checks the others as far as that takes no file. Reads
 /// `document::Material` and the resources `spectra`, `bands` and `used_materials`; writes [`SurfaceOptics`].
@@ -49,26 +49,19 @@ fn optics(material: &Material, path: &str, resources: &mut Resources) -> Option<
                 None => SurfaceOptics::BiLambertian(body),
                 Some(coating) => SurfaceOptics::GlossyLeaf(GlossyOptics {
                     body,
-                    coating: LeafCoating {
-                        refractive_index: coating.refractive_index,
-                        roughness: coating.roughness,
-                    },
+                    coating: LeafCoating::new(coating.refractive_index, coating.roughness),
                 }),
             })
         }
         Material::Rpv(surface) => {
             let bands = rpv(surface, material, path, resources)?;
-            directional(
-                SurfaceOptics::Rpv(bands),
-                "lower `rho0`, or bring `k` nearer to 1",
-                path,
-                resources,
-            )
+            let help = "lower `rho0`, or bring `k` nearer to 1";
+            directional(bands, help, path, resources).map(SurfaceOptics::Rpv)
         }
         Material::Soilspect(_) => {
             let bands = soilspect(material, path, resources)?;
             let help = "lower `albedo`, or bring `b`, `c`, `b_prime` and `c_prime` nearer to 0";
-            directional(SurfaceOptics::Soilspect(bands), help, path, resources)
+            directional(bands, help, path, resources).map(SurfaceOptics::Soilspect)
         }
     }
 }
@@ -173,13 +166,16 @@ fn soilspect(
 }
 
 /// Optics of a model that depends on both directions, if it keeps energy in every band.
-fn directional(
-    optics: SurfaceOptics,
+fn directional<B: BandModel>(
+    bands: Vec<B>,
     help: &str,
     path: &str,
     resources: &mut Resources,
-) -> Option<SurfaceOptics> {
-    let Err(ModelFault { band, zenith, dhr }) = optics.check() else { return Some(optics) };
+) -> Option<DirectionalOptics<B>> {
+    let ModelFault { band, zenith, dhr } = match DirectionalOptics::new(bands) {
+        Ok(optics) => return Some(optics),
+        Err(fault) => fault,
+    };
     let message = format!(
         "in band `{}` this surface would reflect {:.1} % of the light from a zenith angle of {:.0}°: \
          a surface cannot send out more light than it receives",
