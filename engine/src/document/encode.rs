@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 
 use super::decode::MapKey;
-use super::leaves::{Leaf, Walk};
+use super::leaves::{LeafValue, Walk};
 use super::path::Step;
 use super::ron_text::{Item, Text, quoted};
 
@@ -22,7 +22,7 @@ impl Encode for f64 {
     }
 
     fn visit<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
-        walk.leaf(Leaf::Number(*self));
+        walk.leaf(LeafValue::Number(*self));
     }
 }
 

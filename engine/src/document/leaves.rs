@@ -6,12 +6,12 @@ use super::scene::Scene;
 
 /// A value without parts that means something beyond itself.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Leaf<'a> {
+pub(super) enum LeafValue<'a> {
     /// A real number.
     Number(f64),
     /// Name of a definition.
     Reference {
-        /// What it refers to.
+        /// Kind of definition that it refers to.
         target: Target,
         /// The name.
         name: &'a str,
@@ -23,7 +23,7 @@ pub(super) enum Leaf<'a> {
 /// Definitions that a name refers to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
-    /// What a person calls such a definition.
+    /// Name of such a definition in messages.
     pub(super) kind: &'static str,
     /// Key of the scene that holds the definitions.
     pub(super) key: &'static str,
@@ -34,7 +34,7 @@ pub(super) struct Target {
 }
 
 /// Function that receives the path to a leaf and the leaf.
-pub(super) type Visit<'v, 'a> = &'v mut dyn FnMut(&[Step<'a>], Leaf<'a>);
+pub(super) type Visit<'v, 'a> = &'v mut dyn FnMut(&[Step<'a>], LeafValue<'a>);
 
 /// Traversal of all leaves of a document.
 pub(super) struct Walk<'v, 'a> {
@@ -51,7 +51,7 @@ impl<'a> Walk<'_, 'a> {
     }
 
     /// Visits the key of a map, which stands at the step to its value.
-    pub(super) fn key(&mut self, name: &'a str, leaf: Option<Leaf<'a>>) {
+    pub(super) fn key(&mut self, name: &'a str, leaf: Option<LeafValue<'a>>) {
         if let Some(leaf) = leaf {
             self.steps.push(Step::Name(name));
             self.leaf(leaf);
@@ -60,7 +60,7 @@ impl<'a> Walk<'_, 'a> {
     }
 
     /// Visits a leaf at the present path.
-    pub(super) fn leaf(&mut self, leaf: Leaf<'a>) {
+    pub(super) fn leaf(&mut self, leaf: LeafValue<'a>) {
         (self.visit)(&self.steps, leaf);
     }
 }

@@ -16,7 +16,7 @@ mod system;
 mod thermal;
 
 use super::diagnostic::{Diagnostic, unknown_name};
-use super::leaves::{Leaf, visit_leaves};
+use super::leaves::{LeafValue, visit_leaves};
 use super::path::path_of;
 use super::scene::{Map, Scene, Transport};
 
@@ -204,7 +204,7 @@ impl Report<'_> {
 /// Checks that every name is that of a definition, unless definitions could not be read.
 fn check_references(scene: &Scene, report: &mut Report<'_>) {
     visit_leaves(scene, &mut |steps, leaf| {
-        let Leaf::Reference { target, name } = leaf else { return };
+        let LeafValue::Reference { target, name } = leaf else { return };
         let is_known = (target.is_defined)(scene, name);
         if !is_known && report.is_readable(target.key) && !report.is_lost(name) {
             let known = (target.names)(scene);

@@ -1,6 +1,6 @@
 //! Lawful ranges of quantities: one table for all keys.
 
-use super::super::leaves::{Leaf, visit_leaves};
+use super::super::leaves::{LeafValue, visit_leaves};
 use super::super::path::{Step, path_of};
 use super::super::scene::Scene;
 use super::Report;
@@ -127,7 +127,7 @@ fn shown(value: f64) -> String {
 pub(super) fn check_ranges(scene: &Scene, report: &mut Report<'_>) {
     let known: Vec<String> = report.found.iter().map(|one| one.path.clone()).collect();
     visit_leaves(scene, &mut |steps, leaf| {
-        let Leaf::Number(value) = leaf else { return };
+        let LeafValue::Number(value) = leaf else { return };
         let problem = range_of(steps).map_or_else(
             || {
                 (!value.is_finite())

@@ -28,7 +28,7 @@ pub(super) trait Decode: Sized {
     /// Whether its values stand in parentheses of their own; those of a variant serve as well.
     const IS_TUPLE: bool = false;
 
-    /// What a person calls such a value: `a number`.
+    /// Name of such a value in messages: `a number`.
     fn expected() -> Cow<'static, str>;
 
     /// How one is written.
@@ -159,7 +159,7 @@ impl<'a> Reader<'a> {
         self.source.namespace(node.span)
     }
 
-    /// What the paths of a node's file start with: nothing, or `species/`.
+    /// Prefix of the paths in a node's file: empty, or `species/`.
     pub(super) fn folder(&self, node: &Node) -> &'a str {
         self.source.folder(node.span)
     }

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde_json::json;
 
 use super::super::describe::Book;
-use super::super::leaves::Leaf;
+use super::super::leaves::LeafValue;
 use super::super::path::Step;
 use super::super::ron_text::{Node, Value, decimal_advice};
 use super::super::scene::Param;
@@ -234,8 +234,8 @@ pub(in super::super) trait MapKey: Hash + Eq + Sized {
     /// The key as a name.
     fn as_name(&self) -> &str;
 
-    /// What the key means beyond itself.
-    fn leaf(&self) -> Option<Leaf<'_>> {
+    /// The number, file or reference that the key holds, if it is one of these.
+    fn leaf(&self) -> Option<LeafValue<'_>> {
         None
     }
 }

@@ -20,7 +20,7 @@ pub(in super::super) struct Group {
     pub(in super::super) close: String,
     /// Comments behind the last item, a line each; empty for a blank line.
     pub(in super::super) tail: Vec<String>,
-    /// Whether it has one item a line even where it has room on one.
+    /// True if it has one item per line even where it fits on one.
     pub(in super::super) is_broken: bool,
 }
 
@@ -29,7 +29,7 @@ pub(in super::super) struct Group {
 pub(in super::super) struct Item {
     /// Its key, as a step of a path in the document; none in lists.
     pub(in super::super) name: Option<String>,
-    /// What is written before the value.
+    /// Text before the value.
     pub(in super::super) key: String,
     pub(in super::super) text: Text,
     /// Comments above it, a line each; empty for a blank line.
@@ -49,7 +49,7 @@ impl Item {
     }
 }
 
-/// What to write behind the line of a path in the document.
+/// Remark at the end of the line of a path in the document.
 pub(in super::super) type Remark<'a> = &'a dyn Fn(&str) -> Option<String>;
 
 impl Text {
@@ -91,12 +91,12 @@ impl Text {
         }
     }
 
-    /// As a file: the outermost group always one item a line.
+    /// Text of a file: the outermost group always has one item per line.
     pub(in super::super) fn into_file(self) -> String {
         self.into_file_with(&|_| None)
     }
 
-    /// The same with remarks behind lines.
+    /// Text of a file with remarks at the ends of lines.
     pub(in super::super) fn into_file_with(self, remark: Remark<'_>) -> String {
         let mut writer = Writer { out: String::new(), path: String::new(), remark };
         writer.broken(&self, 0);
@@ -104,7 +104,7 @@ impl Text {
         writer.out
     }
 
-    /// As one line.
+    /// Text on one line.
     pub(in super::super) fn into_line(self) -> String {
         let mut writer = Writer { out: String::new(), path: String::new(), remark: &|_| None };
         writer.flat(&self);

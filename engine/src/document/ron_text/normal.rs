@@ -176,7 +176,7 @@ impl<'a> Normal<'a> {
         Text::Group(Group { open, items, close, tail, is_broken })
     }
 
-    /// Whether a comma stands before a byte, comments aside.
+    /// Returns whether a comma precedes a byte, comments aside.
     fn comma_before(&self, mut end: usize) -> bool {
         for comment in self.comments[..self.next].iter().rev() {
             if self.text[comment.end.min(end)..end].trim().is_empty() {

@@ -1,6 +1,6 @@
 //! What makes a scene a program: files that it includes, and points that it runs over.
 
-use super::super::leaves::{Leaf, visit_leaves};
+use super::super::leaves::{LeafValue, visit_leaves};
 use super::super::path::path_of;
 use super::super::schema::ReadKeys as _;
 use super::{Band, Map, Param, Scene, Terrain};
@@ -40,7 +40,7 @@ impl Scene {
     pub fn files(&self) -> Vec<(String, &str)> {
         let mut files = Vec::new();
         visit_leaves(self, &mut |steps, leaf| {
-            if let Leaf::File(file) = leaf {
+            if let LeafValue::File(file) = leaf {
                 files.push((path_of(steps), file));
             }
         });

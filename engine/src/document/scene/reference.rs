@@ -15,13 +15,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::super::decode::{Decode, MapKey, Reader};
 use super::super::describe::Book;
 use super::super::encode::Encode;
-use super::super::leaves::{Leaf, Target, Walk};
+use super::super::leaves::{LeafValue, Target, Walk};
 use super::super::ron_text::{Node, Text};
 use super::{Map, Material, Mesh, Scene, Spectrum};
 
 /// A type whose values the scene defines by name.
 pub trait Definition: Sized + 'static {
-    /// What a person calls such a definition: `material`.
+    /// Name of such a definition in messages: `material`.
     const KIND: &'static str;
     /// Key of the scene that holds the definitions: `materials`.
     const KEY: &'static str;
@@ -165,8 +165,8 @@ impl<T: Definition> MapKey for Ref<T> {
         &self.name
     }
 
-    fn leaf(&self) -> Option<Leaf<'_>> {
-        Some(Leaf::Reference { target: target::<T>(), name: &self.name })
+    fn leaf(&self) -> Option<LeafValue<'_>> {
+        Some(LeafValue::Reference { target: target::<T>(), name: &self.name })
     }
 }
 
@@ -220,7 +220,7 @@ macro_rules! qualified {
     };
 }
 
-/// How a string is read, written and visited.
+/// Implements reading, writing and visiting of a string type.
 macro_rules! string {
     ($name:ty[$($generics:tt)*], |$text:ident, $node:ident, $reader:ident| $qualify:expr, |$value:ident| $leaf:expr) => {
         impl $($generics)* Decode for $name {
@@ -253,7 +253,7 @@ macro_rules! string {
 
             fn visit<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
                 let $value: &'a Self = self;
-                let leaf: Option<Leaf<'a>> = $leaf;
+                let leaf: Option<LeafValue<'a>> = $leaf;
                 if let Some(leaf) = leaf {
                     walk.leaf(leaf);
                 }
@@ -265,7 +265,7 @@ macro_rules! string {
 string!(
     Ref<T>[<T: Definition>],
     |name, node, reader| reader.namespace(node).to_owned() + &name,
-    |value| Some(Leaf::Reference { target: target::<T>(), name: value })
+    |value| Some(LeafValue::Reference { target: target::<T>(), name: value })
 );
 
 qualified!(
@@ -276,7 +276,7 @@ qualified!(
     } else {
         reader.folder(node).to_owned() + &path
     },
-    |value| Some(Leaf::File(value))
+    |value| Some(LeafValue::File(value))
 );
 
 impl AsRef<Path> for FilePath {

@@ -59,7 +59,7 @@ pub(super) trait ReadKeys: Sized {
 /// A type with keys. They stand in parentheses of their own, in those of a variant, or among the keys of another
 /// record, whose defaults (`base`) then replace the declared ones.
 pub(super) trait Record: ReadKeys + Clone + PartialEq {
-    /// What a person calls such a value: `the sun`.
+    /// Name of such a value in messages: `the sun`.
     const KIND: &'static str;
 
     /// Documentation of the type.
