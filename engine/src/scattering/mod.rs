@@ -210,6 +210,12 @@ impl<'m> Interaction<'m> {
         }
     }
 
+    /// Returns whether `f` and the fractions depend on directions by their sides of the surface alone.
+    #[must_use]
+    pub fn is_diffuse(&self) -> bool {
+        matches!(self.bsdf(), Bsdf::BiLambertian(_))
+    }
+
     /// Returns whether a direction lies on the side of the surface that `wo` lies on.
     #[must_use]
     pub fn is_same_side(&self, w: DVec3) -> bool {

@@ -79,9 +79,18 @@ impl ViewCounter {
     }
 }
 
+/// Light that an event sends towards a view.
+#[derive(Clone, Copy, Debug)]
+struct SentTowards {
+    /// Fraction of the packet's weight, before the cosine.
+    factor: WeightFactor,
+    /// Largest ratio of that part to the mean that leaves the scene.
+    ratio: f64,
+}
+
 /// Fraction of a packet's weight that an event sends towards a view, before the cosine; `None` if it sends
 /// nothing.
-fn sent_towards(stage: &Stage, event: &Event<'_>, towards: DVec3) -> Option<WeightFactor> {
+fn factor_towards(stage: &Stage, event: &Event<'_>, towards: DVec3) -> Option<WeightFactor> {
     match event {
         Event::Arrival { surface, .. } => surface.f(towards).map(WeightFactor::Lobe),
         Event::Emission { hit, ray, scale, band, .. } => {
@@ -103,32 +112,51 @@ fn sent_towards(stage: &Stage, event: &Event<'_>, towards: DVec3) -> Option<Weig
 }
 
 impl ViewCounter {
+    fn roulette(&self) -> Option<&VirtualPhotonRoulette> {
+        self.roulette.as_ref().and_then(|pending| pending.roulette.get())
+    }
+
+    /// Light that an event with this throughput sends towards a view.
+    fn sent_towards(
+        &self,
+        stage: &Stage,
+        event: &Event<'_>,
+        throughput: &[f32],
+        towards: DVec3,
+    ) -> Option<SentTowards> {
+        let factor = factor_towards(stage, event, towards)?;
+        // The throughput of emitted light holds the emitted fraction.
+        let is_emitted = matches!(event, Event::Emission { .. });
+        let rest = if is_emitted { WeightFactor::One } else { factor };
+        let ratio = |roulette: &VirtualPhotonRoulette| {
+            f64::from(roulette.largest_ratio(stage, throughput, rest))
+        };
+        Some(SentTowards { factor, ratio: self.roulette().map_or(f64::INFINITY, ratio) })
+    }
+
     /// Virtual photons of an event that are traced, with their shadow rays.
     fn sample(&self, stage: &Stage, event: &Event<'_>) -> (Vec<VirtualPhoton<'_>>, Vec<Ray>) {
-        let (mut photons, mut rays) = (Vec::new(), Vec::new());
         let (hit, throughput, sampler) = match event {
             Event::Arrival { is_last: false, hit, throughput, sampler, .. }
             | Event::Emission { hit, throughput, sampler, .. } => (*hit, *throughput, *sampler),
-            _ => return (photons, rays),
+            _ => return (Vec::new(), Vec::new()),
         };
-        let is_emitted = matches!(event, Event::Emission { .. });
-        let roulette = self.roulette.as_ref().and_then(|pending| pending.roulette.get());
+        let mut photons = Vec::with_capacity(self.cameras.len());
+        let mut rays = Vec::with_capacity(self.cameras.len());
+        let is_diffuse = stage.interaction(hit, hit.normal).is_diffuse();
+        // A diffuse surface sends the same towards all views on a side.
+        let mut by_side: [Option<Option<SentTowards>>; 2] = [None; 2];
         let mut u = sampler.aside();
-        // Most views see the same side.
-        let mut last: Option<(WeightFactor, f64)> = None;
         for (camera, &first_cell) in self.cameras.iter().zip(&self.first_cells) {
-            let Some(factor) = sent_towards(stage, event, camera.towards) else { continue };
-            let cosine = hit.normal.dot(camera.towards).abs();
-            let probability = roulette.map_or(1.0, |roulette| {
-                let (_, ratio) = last.filter(|(last, _)| *last == factor).unwrap_or_else(|| {
-                    // The throughput of emitted light holds the emitted fraction.
-                    let rest = if is_emitted { WeightFactor::One } else { factor };
-                    let ratio = f64::from(roulette.largest_ratio(stage, throughput, rest));
-                    *last.insert((factor, ratio))
-                });
-                // Contribution to the reflectance factor over its mean.
-                VirtualPhotonRoulette::probability(ratio * cosine / camera.towards.z)
-            });
+            let cosine = hit.normal.dot(camera.towards);
+            let known = &mut by_side[usize::from(cosine >= 0.0)];
+            if !is_diffuse || known.is_none() {
+                *known = Some(self.sent_towards(stage, event, throughput, camera.towards));
+            }
+            let Some(Some(SentTowards { factor, ratio })) = *known else { continue };
+            let cosine = cosine.abs();
+            // Contribution to the reflectance factor over its mean.
+            let probability = VirtualPhotonRoulette::probability(ratio * cosine / camera.towards.z);
             // One number for all views: as many are traced as the probabilities sum to, or one more, whatever
             // part of the scene they show.
             u += probability;
