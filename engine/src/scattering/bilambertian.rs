@@ -93,11 +93,11 @@ impl BiLambertian {
     #[inline(always)]
     fn powers(&self, at: &Interaction<'_>, importance: Importance<'_>) -> [f64; 2] {
         let side = self.side(at.is_front());
-        let power = |spectrum: SpectrumId, is_zero: bool| {
-            let power = || at.models.power(&spectrum.into(), importance);
-            f64::from(if is_zero { 0.0 } else { power() })
-        };
-        [power(side.reflected, side.is_black), power(self.transmitted, self.is_opaque)]
+        let power = |spectrum| f64::from(at.models.spectrum_power(spectrum, importance));
+        [
+            if side.is_black { 0.0 } else { power(side.reflected) },
+            if self.is_opaque { 0.0 } else { power(self.transmitted) },
+        ]
     }
 
     #[inline(always)]

@@ -85,6 +85,10 @@ pub(crate) fn largest_product<const N: usize>(spectra: [&[f32]; N]) -> f32 {
 /// `t ← t f c`, over the lanes of `f`.
 #[inline(always)]
 pub(crate) fn multiply(t: &mut [f32], f: &[f32], c: f32) {
+    if let ([t], [f]) = (t.as_chunks_mut::<LANES>().0, f.as_chunks::<LANES>().0) {
+        *t = from_fn(|lane| t[lane] * (f[lane] * c));
+        return;
+    }
     for (t, f) in groups_mut(t).zip(groups(f)) {
         *t = from_fn(|lane| t[lane] * (f[lane] * c));
     }

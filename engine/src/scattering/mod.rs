@@ -116,6 +116,17 @@ impl SurfaceModels {
         Interaction { models: self, surface, normal, wo }
     }
 
+    /// Power of a spectrum of the scene in the bands that importance names.
+    #[inline(always)]
+    fn spectrum_power(&self, spectrum: SpectrumId, importance: Importance<'_>) -> f32 {
+        match importance {
+            Importance::Representatives(throughput) => {
+                dot(throughput, self.spectra.representatives(spectrum))
+            }
+            Importance::Band(band) => self.spectra.lanes(spectrum)[band],
+        }
+    }
+
     /// Power of a lobe in the bands that importance names.
     #[inline(always)]
     fn power(&self, lobe: &Lobe, importance: Importance<'_>) -> f32 {
@@ -161,6 +172,22 @@ impl<'m> Interaction<'m> {
     #[must_use]
     pub fn sample_f(&self, importance: Importance<'_>, u: [f64; 3]) -> Option<BsdfSample> {
         match self.bsdf() {
+            Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
+            model => self.sample_directional(model, importance, u),
+        }
+    }
+
+    /// Samples a model that is not diffuse: out of line, so that the result for diffuse surfaces stays in
+    /// registers.
+    #[cold]
+    #[inline(never)]
+    fn sample_directional(
+        &self,
+        model: &Bsdf,
+        importance: Importance<'_>,
+        u: [f64; 3],
+    ) -> Option<BsdfSample> {
+        match model {
             Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
             Bsdf::GlossyLeaf(model) => model.sample_f(self, importance, u),
             Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::sample_f(self, u),

@@ -1,7 +1,9 @@
 //! Russian roulette of paths and packets.
 
 use crate::extract::Rules;
-use crate::scattering::{BsdfSample, Importance, Interaction, Lobe, largest, multiply};
+use crate::scattering::{
+    BsdfSample, Importance, Interaction, Lobe, LobeSpectrum, largest, multiply,
+};
 
 /// Throughput threshold below which Russian roulette starts, as a fraction of the initial throughput.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,10 +84,17 @@ pub(super) fn sample_with_roulette(
     throughput: &mut [f32],
     [lobe, u, v, survival]: [f64; 4],
 ) -> Option<BsdfSample> {
+    let models = surface.models();
     let sample = surface.sample_f(Importance::Representatives(throughput), [lobe, u, v])?;
     let Lobe { spectrum, scale } = sample.weight;
-    surface.models().with_representatives(&spectrum, |weight| multiply(throughput, weight, scale));
-    let factor = roulette.survive(order, throughput, survival)?;
+    let factor = if let LobeSpectrum::Table(id) = spectrum {
+        // The common case is compiled on its own, so that its values stay in registers.
+        multiply(throughput, models.spectra.representatives(id), scale);
+        roulette.survive(order, throughput, survival)?
+    } else {
+        models.with_representatives(&spectrum, |weight| multiply(throughput, weight, scale));
+        roulette.survive(order, throughput, survival)?
+    };
     Some(BsdfSample { weight: sample.weight.scaled(factor), ..sample })
 }
 
