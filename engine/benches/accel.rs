@@ -12,7 +12,7 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use sunfleck::{
     accel::{Batch, Boundary, Domain, Hit, InstanceInput, MeshInput, Ray, Scene},
-    components::{Mesh, Part},
+    components::{Mesh, MeshPart},
     geometry::basis,
 };
 
@@ -200,7 +200,7 @@ fn read_tree(path: &Path) -> Result<Mesh, Box<dyn Error>> {
     mesh.parts = ["leaf", "trunk"]
         .iter()
         .zip(starts.windows(2))
-        .map(|(&name, w)| Part { name: name.into(), triangles: w[0]..w[1], discs: 0..0 })
+        .map(|(&name, w)| MeshPart { name: name.into(), triangles: w[0]..w[1], discs: 0..0 })
         .collect();
     Ok(mesh)
 }
@@ -212,7 +212,7 @@ fn rectangle(side: f32) -> Mesh {
             .into(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         discs: Vec::new(),
-        parts: vec![Part { name: "ground".into(), triangles: 0..2, discs: 0..0 }],
+        parts: vec![MeshPart { name: "ground".into(), triangles: 0..2, discs: 0..0 }],
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use sunfleck::document::{
     Band, Boundary, CrownShape, GeneratedCrown, InstanceList, Instances, Lambertian, Leaf,
-    LeafShape, Material, Mesh, PhotonMeasure, Photons, Scene, Sensor, Spectrum, Sun, Terrain,
+    LeafShape, Material, PhotonMeasure, Photons, Prototype, Scene, Sensor, Spectrum, Sun, Terrain,
     TerrainPlane,
 };
 use sunfleck::run::{self, Unwatched};
@@ -35,7 +35,7 @@ fn stand(leaf_area_m2: f64, trees_a_side: u32) -> Scene {
     let shape = CrownShape::Ellipsoid { diameter_m: 2.0, height_m: 3.0 };
     let leaf = LeafShape::Disc { radius_m: 0.08 };
     let crown = GeneratedCrown::new(shape, 1.0, leaf_area_m2, leaf, "leaf".into());
-    scene.meshes.insert("tree".to_owned(), Mesh::Crown(crown));
+    scene.meshes.insert("tree".to_owned(), Prototype::Crown(crown));
 
     let step = SIDE / f64::from(trees_a_side);
     let place = |index: u32| (f64::from(index) + 0.5) * step;

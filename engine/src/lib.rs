@@ -57,4 +57,4 @@ pub mod units;
 pub use document::{Diagnostic, ReadOptions, Reading, Scene, check, read_file, read_text};
 pub use output::write;
 pub use products::{Product, Report};
-pub use run::{Options as RunOptions, Progress, Sweep, Unwatched, check_file, run, run_file};
+pub use run::{Options as RunOptions, Progress, SweepRun, Unwatched, check_file, run, run_file};

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use sunfleck::components::{
-    BlackBody, Emission, Instance, LeafArea, SceneId, Sensor, Sky, Sun, SurfaceOptics, TerrainPatch,
+    BlackBody, Emission, Instance, LeafArea, ResolvedSensor, SceneId, SkyLight, SunLight,
+    SurfaceOptics, TerrainPatch,
 };
 use sunfleck::document::{ReadOptions, Scene, read_text};
 use sunfleck::run::SceneWorld;
@@ -122,7 +123,16 @@ fn contents(world: &SceneWorld) -> Vec<String> {
             }
         )+};
     }
-    list!(BlackBody, Emission, LeafArea, Sensor, Sky, Sun, SurfaceOptics, TerrainPatch);
+    list!(
+        BlackBody,
+        Emission,
+        LeafArea,
+        ResolvedSensor,
+        SkyLight,
+        SunLight,
+        SurfaceOptics,
+        TerrainPatch
+    );
     texts.sort();
     texts.extend(Instance::in_order(&world.world).iter().map(|one| format!("{one:?}")));
     let messages = &world.resources.messages;

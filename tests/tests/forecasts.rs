@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::UVec2;
 use peak_alloc::PeakAlloc;
-use sunfleck::components::{Footprint, Orthographic, System, View};
+use sunfleck::components::{Footprint, OrthographicOptics, System, View};
 use sunfleck::document;
 use sunfleck::products::{Forecast, Report};
 use sunfleck::run::{Failure, Options, Partition, Progress, run, stage_file};
@@ -146,7 +146,7 @@ fn films_hold_what_they_say() {
     let views = "Directions(views: PrincipalPlane, until: Samples(32))";
     fs::write(&file, scene(3, views)).expect("a scene");
     let stage = &stage_file(&file, &Options::default()).expect("a stage").stage;
-    let optics = Orthographic {
+    let optics = OrthographicOptics {
         footprint: Footprint::WholeScene,
         pixel: None,
         view: View { zenith: 0.3, azimuth: 0.0 },

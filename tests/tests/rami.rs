@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use sunfleck::assets::{CrownSpec, grow_crown};
-use sunfleck::document::{self, GeneratedCrown, Mesh, Scene, Sensor, System};
+use sunfleck::document::{self, GeneratedCrown, Prototype, Scene, Sensor, System};
 use sunfleck::products::Report;
 use sunfleck::run::{Options, Unwatched, run};
 use sunfleck_tests::{Estimate, product, shared};
@@ -36,7 +36,7 @@ fn scene(name: &str, set: &[(&str, f64)], sensors: &[&str]) -> Scene {
 /// The scene with leaves that are independent of one another, as those of a turbid medium are.
 fn with_independent_leaves(mut scene: Scene) -> Scene {
     for mesh in scene.meshes.values_mut() {
-        if let Mesh::Crown(GeneratedCrown { overlap, .. }) = mesh {
+        if let Prototype::Crown(GeneratedCrown { overlap, .. }) = mesh {
             *overlap = true;
         }
     }
@@ -112,7 +112,7 @@ fn leaves_of_rami_have_the_brf_of_another_program() {
     let mut scene = scene("het01.ron", &[], &["rami.brfpp"]);
     let file = shared.join("data/rami/het01_sphere_leaves.def");
     let file = file.to_str().expect("the path is UTF-8").to_owned();
-    let sphere = Mesh::Discs { file: file.into(), material: "rami.leaf".into() };
+    let sphere = Prototype::Discs { file: file.into(), material: "rami.leaf".into() };
     scene.meshes.insert("sphere".to_owned(), sphere).expect("the scene has this mesh");
     assert_within(0.001, "RAMI's leaves", &principal_plane(&scene, &shared));
 }
@@ -133,7 +133,7 @@ fn nearest(mut centers: Vec<[f64; 3]>) -> f64 {
 #[test]
 fn floating_spheres_have_leaves_a_diameter_apart() {
     let scene = scene("het01.ron", &[], &[]);
-    let Mesh::Crown(crown) = &scene.meshes["sphere"] else { panic!("a generated crown") };
+    let Prototype::Crown(crown) = &scene.meshes["sphere"] else { panic!("a generated crown") };
     let discs = grow_crown(&CrownSpec::from_document(crown)).expect("the leaves find room").discs;
     let distance = nearest(discs.iter().map(|disc| disc.center.as_dvec3().to_array()).collect());
     assert!((0.2..0.201).contains(&distance), "{distance}");

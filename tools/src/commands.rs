@@ -159,7 +159,7 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let folder = arguments.folder("_sweep");
     let scene = &arguments.scene.file;
     let results = Results::open(&folder, "sweep", scene, arguments.out.force)?;
-    let mut sweep = run::Sweep::read(scene, &run_options(arguments))?;
+    let mut sweep = run::SweepRun::read(scene, &run_options(arguments))?;
     let points = sweep.points().to_vec();
     let (mut is_first, mut ran, mut dark) = (true, 0, 0);
     for index in sweep.order().to_vec() {

@@ -141,7 +141,7 @@ impl MeshTree {
                 Ref(Ref::LEAF | (blocks.len() as u32 - 1))
             }
         });
-        let ends = |end: fn(&crate::components::Part) -> u32| {
+        let ends = |end: fn(&crate::components::MeshPart) -> u32| {
             mesh.parts.iter().zip(surfaces).map(|(part, &surface)| (end(part), surface)).collect()
         };
         Ok(Self {

@@ -8,7 +8,7 @@ use super::format::{self, FileReader};
 use super::import::coarse;
 use super::table::{Column, ColumnContent, Table, known_columns, missing};
 use super::{AssetError, Loaded};
-use crate::components::{Disc, Mesh, Part};
+use crate::components::{Disc, Mesh, MeshPart};
 use crate::document::Origin;
 
 /// Columns of a disc: radius and centre in metres, direction of the normal.
@@ -41,7 +41,7 @@ pub fn read_discs(path: &Path) -> Result<Loaded<Mesh>, AssetError> {
     if discs.is_empty() {
         return Err(AssetError::NoRows { file: path.to_owned() });
     }
-    let part = Part { name: "discs".to_owned(), triangles: 0..0, discs: 0..discs.len() as u32 };
+    let part = MeshPart { name: "discs".to_owned(), triangles: 0..0, discs: 0..discs.len() as u32 };
     let mesh = Mesh { discs, parts: vec![part], ..Mesh::default() };
     let warnings = coarse(path, &mesh, &Origin::File).into_iter().collect();
     Ok(Loaded { value: mesh, warnings })

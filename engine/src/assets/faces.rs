@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::import::{has_area, too_far};
 use super::polygon::{Pieces, Tangled, triangulate};
 use super::{AssetError, Loaded};
-use crate::components::{Mesh, Part};
+use crate::components::{Mesh, MeshPart};
 
 /// The mesh of polygons, concave ones too, given by their corners, m. Those whose corners are equal to the
 /// last bit are joined without a gap. Of one that crosses itself, what its outline encloses counts once, with
@@ -47,6 +47,6 @@ pub fn mesh_of_faces(faces: &[Vec<(f64, f64, f64)>]) -> Result<Loaded<Mesh>, Ass
         )
     });
     let triangles = 0..mesh.triangles.len() as u32;
-    mesh.parts.push(Part { name: "faces".to_owned(), triangles, discs: 0..0 });
+    mesh.parts.push(MeshPart { name: "faces".to_owned(), triangles, discs: 0..0 });
     Ok(Loaded { value: mesh, warnings: warning.into_iter().collect() })
 }

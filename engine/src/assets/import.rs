@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use indexmap::IndexMap;
 
 use super::{AssetError, Loaded};
-use crate::components::{Mesh, Part};
+use crate::components::{Mesh, MeshPart};
 use crate::document::{Axis, Origin};
 
 /// Most triangles of one file.
@@ -218,7 +218,11 @@ impl Collector {
                 empty.push(name);
                 continue;
             }
-            parts.push(Part { name: name.to_owned(), triangles: end - count..end, discs: 0..0 });
+            parts.push(MeshPart {
+                name: name.to_owned(),
+                triangles: end - count..end,
+                discs: 0..0,
+            });
         }
         if let Some(first) = empty.first() {
             let what = match empty.len() {

@@ -41,7 +41,9 @@ pub use import::Import;
 pub use instances::{Row, StemTable, read_instances};
 pub use obj::read_obj;
 pub(crate) use raster::companions;
-pub use raster::{Assumed, Extent, Place, Projection, Raster, RasterError, read_raster};
+pub use raster::{
+    Assumed, Projection, Raster, RasterError, RasterExtent, RasterGeoreference, read_raster,
+};
 pub use spectrum::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
 
 /// Value from a file, with warnings for the author of the scene.

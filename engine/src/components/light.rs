@@ -2,7 +2,7 @@ use glam::DVec3;
 
 /// The sun: a disc of even radiance, or a parallel beam.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sun {
+pub struct SunLight {
     /// Unit vector from the scene towards the sun.
     pub direction: DVec3,
     /// Angular radius of the disc, rad; 0 is a parallel beam.
@@ -14,7 +14,7 @@ pub struct Sun {
 
 /// An isotropic sky.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sky {
+pub struct SkyLight {
     /// Irradiance on the horizontal plane at the top of the scene, W m⁻² nm⁻¹, shape `[bands]`;
     /// its radiance is this over π.
     pub irradiance: Vec<f64>,

@@ -17,7 +17,7 @@ pub struct Disc {
 
 /// A named part of a mesh: the primitives that share one material.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct MeshPart {
     /// Name by which the scene binds a material (an OBJ group, a glTF material).
     pub name: String,
     /// Its triangles, as a range of [`Mesh::triangles`].
@@ -39,7 +39,7 @@ pub struct Mesh {
     /// Discs.
     pub discs: Vec<Disc>,
     /// Parts.
-    pub parts: Vec<Part>,
+    pub parts: Vec<MeshPart>,
 }
 
 /// Why numbers are not a mesh.
@@ -94,7 +94,7 @@ impl Mesh {
 
     /// One-sided area of a part, m²: what a leaf area index counts.
     #[must_use]
-    pub fn part_area(&self, part: &Part) -> f64 {
+    pub fn part_area(&self, part: &MeshPart) -> f64 {
         let triangles = part.triangles.clone().map(|index| {
             let [a, b, c] = self.corners(index as usize).map(Vec3::as_dvec3);
             0.5 * (b - a).cross(c - a).length()

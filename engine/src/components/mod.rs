@@ -5,14 +5,14 @@
 //!
 //! | entity | raw components | derived components |
 //! |---|---|---|
-//! | mesh prototype | [`SceneId`], [`Name`], `document::Mesh` | [`Mesh`], [`PartMaterials`], [`MeshBounds`], [`LeafArea`], [`InstanceCount`] |
+//! | mesh prototype | [`SceneId`], [`Name`], `document::Prototype` | [`Mesh`], [`PartMaterials`], [`MeshBounds`], [`LeafArea`], [`InstanceCount`] |
 //! | material | [`SceneId`], [`Name`], `document::Material` | [`SurfaceOptics`], [`BlackBody`] where it emits |
 //! | planting (an entry of `instances`) | [`SceneId`], `document::Instances` | [`ShownMeshes`], [`InstanceRange`] |
 //! | instance | | [`SceneId`], [`PlantingId`], [`PrototypeId`], [`Position`], [`Yaw`], [`Scale`], [`Lean`] if it is not upright |
-//! | terrain | `document::Terrain` | [`TerrainPatch`], `Ground`, `Georeference` |
-//! | sun | `document::Sun` | [`Sun`] |
-//! | sky | `document::Sky`, `document::ThermalSky` | [`Sky`], [`Emission`] where a sensor measures it |
-//! | sensor | [`SceneId`], [`Name`], `document::Sensor` | [`Sensor`] |
+//! | terrain | `document::Terrain` | [`TerrainPatch`], `Ground`, `MapFrame` |
+//! | sun | `document::Sun` | [`SunLight`] |
+//! | sky | `document::Sky`, `document::ThermalSky` | [`SkyLight`], [`Emission`] where a sensor measures it |
+//! | sensor | [`SceneId`], [`Name`], `document::Sensor` | [`ResolvedSensor`] |
 
 mod camera;
 mod extents;
@@ -27,12 +27,13 @@ mod terrain;
 mod thermal;
 
 pub use camera::{
-    Channels, Fisheye, Footprint, Look, Mapping, Optics, Orthographic, Perspective, Picture, Stand,
+    CameraPlacement, Channels, FisheyeOptics, FisheyeProjection, Footprint, LookAt, Optics,
+    OrthographicOptics, PerspectiveOptics, PictureColours,
 };
 pub use extents::{InstanceCount, LeafArea, MeshBounds, SceneExtents};
 pub use identity::{MaterialId, Name, PlantingId, PrototypeId, SceneId};
-pub use light::{Sky, Sun};
-pub use mesh::{Disc, Mesh, MeshError, Part, PartMaterials};
+pub use light::{SkyLight, SunLight};
+pub use mesh::{Disc, Mesh, MeshError, MeshPart, PartMaterials};
 pub use optics::{
     DirectionalOptics, EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, RpvParameters,
     SoilspectParameters, SurfaceOptics,
@@ -40,8 +41,8 @@ pub use optics::{
 pub use placement::{Instance, InstanceQuery, Lean, Placement, Position, Scale, Yaw};
 pub use planting::{InstanceRange, ShownMeshes};
 pub use sensor::{
-    Cone, Directions, ImageMeasure, ImageSamples, ImageSensor, Layers, Per, PhotonMeasure, Photons,
-    Sensor, StopCriterion, System, View, VirtualPlane,
+    Cone, CountingPlane, DirectionSensor, ImageMeasure, ImageSamples, ImageSensor, Layers, Per,
+    PhotonMeasure, PhotonProduct, PhotonSensor, ResolvedSensor, StopCriterion, System, View,
 };
 pub use terrain::{Projection, TerrainPatch};
 pub use thermal::{BlackBody, Emission};

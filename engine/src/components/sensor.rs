@@ -1,19 +1,21 @@
 use glam::{DVec2, DVec3, UVec2};
 
-use super::{Optics, Picture};
+use super::{Optics, PictureColours};
+// Enumerations that the author writes and that mean the same to every later stage.
+pub use crate::document::{ImageMeasure, Layers, Per, PhotonMeasure, StopCriterion, System};
 
-/// Something that measures light.
+/// A sensor whose angles, defaults and names are resolved.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Sensor {
+pub enum ResolvedSensor {
     /// An image.
     Image(ImageSensor),
     /// The whole scene seen from given directions.
-    Directions(Directions),
-    /// Fates of photons from sun and sky.
-    Photons(Photons),
+    Directions(DirectionSensor),
+    /// Photon packets of sun, sky and emission.
+    Photons(PhotonSensor),
 }
 
-impl Sensor {
+impl ResolvedSensor {
     /// Criteria that end its measurement.
     #[must_use]
     pub fn until(&self) -> &[StopCriterion] {
@@ -23,21 +25,6 @@ impl Sensor {
             Self::Photons(sensor) => &sensor.until,
         }
     }
-}
-
-/// A transport system: how a product is estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum System {
-    /// Paths from the sensor, next-event estimation to the sun.
-    Backward,
-    /// Photon packets from sun and sky, or from what emits.
-    Forward,
-    /// Photons of one band each, absorbed or scattered as a whole.
-    Analog,
-    /// Light that was scattered once, integrated.
-    FirstOrder,
-    /// Naive path tracer, one plain loop: slow, for comparison.
-    Reference,
 }
 
 /// A direction towards a sensor, as its angles.
@@ -50,37 +37,18 @@ pub struct View {
 }
 
 impl View {
+    /// The direction with these angles, degrees.
+    #[must_use]
+    pub const fn from_degrees(zenith: f64, azimuth: f64) -> Self {
+        Self { zenith: zenith.to_radians(), azimuth: azimuth.to_radians() }
+    }
+
     /// Unit vector from the scene towards the sensor.
     #[must_use]
     pub fn direction(self) -> DVec3 {
         let (sin_zenith, cos_zenith) = self.zenith.sin_cos();
         let (sin_azimuth, cos_azimuth) = self.azimuth.sin_cos();
         DVec3::new(sin_zenith * sin_azimuth, sin_zenith * cos_azimuth, cos_zenith)
-    }
-}
-
-/// Quantity of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ImageMeasure {
-    /// Radiance, W m⁻² sr⁻¹ nm⁻¹.
-    Radiance,
-    /// Bidirectional reflectance factor `π L / E`; the HDRF under a sky.
-    Brf,
-    /// The BRF split by order of scattering: uncollided, single, multiple.
-    Orders,
-    /// Temperature of the black body of this radiance, K, in bands that hold emission.
-    BrightnessTemperature,
-    /// Fractions of sunlit and shaded ground and canopy.
-    FourComponents,
-    /// Fraction of the ground, or of the sky in a camera that looks up.
-    GapFraction,
-}
-
-impl ImageMeasure {
-    /// Returns whether it is made of light, and not of the first surface along each ray.
-    #[must_use]
-    pub const fn is_light(self) -> bool {
-        matches!(self, Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature)
     }
 }
 
@@ -107,27 +75,14 @@ pub struct ImageSensor {
     /// Quantities to report.
     pub measure: Vec<ImageMeasure>,
     /// Colours of its picture.
-    pub picture: Picture,
+    pub picture: PictureColours,
     /// Transport system that estimates it; photon packets support only parallel projections.
     pub system: System,
 }
 
-/// Criterion that ends a measurement.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StopCriterion {
-    /// The median relative standard error of each product is at most this.
-    RelError(f64),
-    /// The median relative standard error of each of these products is at most this.
-    RelErrors(Vec<(String, f64)>),
-    /// This much time has passed, s.
-    Seconds(f64),
-    /// This many samples a pixel, samples a direction or photon packets were drawn.
-    Samples(u64),
-}
-
 /// Reflectance factors of the scene towards given directions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Directions {
+pub struct DirectionSensor {
     /// Directions towards the sensors.
     pub views: Vec<View>,
     /// The first that holds ends the measurement.
@@ -135,87 +90,38 @@ pub struct Directions {
     /// Quantities to report.
     pub measure: Vec<ImageMeasure>,
     /// Plane that light must leave through to count.
-    pub plane: Option<VirtualPlane>,
+    pub plane: Option<CountingPlane>,
     /// Transport system that estimates it; if absent, the one that takes fewer rays.
     pub system: Option<System>,
 }
 
-/// Quantity that photons are counted for.
+/// A measure of a photon sensor, with the directions that it names.
 #[derive(Clone, Debug, PartialEq)]
-pub enum PhotonMeasure {
-    /// BRF in this many equal-area cells of the hemisphere.
-    BrfCells(u32),
-    /// BRF towards these directions, by virtual photons.
-    BrfViews(Vec<View>),
-    /// Reflected over incident flux.
-    Albedo,
-    /// Radiance in this many equal-area cells of the hemisphere.
-    RadianceCells(u32),
-    /// Radiance towards these directions, by virtual photons.
-    RadianceViews(Vec<View>),
-    /// Radiance within cones of directions.
-    RadianceCones(Vec<Cone>),
-    /// Flux density that leaves upwards.
-    Exitance,
-    /// Temperature of the black body of each radiance that is measured.
-    BrightnessTemperature,
-    /// BRF within cones of directions.
-    BrfCones(Vec<Cone>),
-    /// Splits the other measures of reflected light by order of scattering.
-    Orders,
-    /// Fractions of the incident flux that each material absorbs in each horizontal layer, and that reach the ground.
-    Fapar(Layers),
-    /// Power that each instance absorbs, or each of its triangles and discs too.
-    Absorbed(Per),
-    /// Down- and upwelling flux density on the terrain and through horizontal planes.
-    Fluxes {
-        /// Side of a square pixel, m.
-        pixel: f64,
-        /// Heights of the planes, m, local frame.
-        heights: Vec<f64>,
-    },
-}
-
-impl PhotonMeasure {
-    /// Returns whether it is in absolute units and includes emitted light.
-    #[must_use]
-    pub const fn is_absolute(&self) -> bool {
-        match self {
-            Self::RadianceCells(_)
-            | Self::RadianceViews(_)
-            | Self::RadianceCones(_)
-            | Self::Exitance
-            | Self::Fluxes { .. } => true,
-            Self::BrfCells(_)
-            | Self::BrfViews(_)
-            | Self::BrfCones(_)
-            | Self::Albedo
-            | Self::BrightnessTemperature
-            | Self::Orders
-            | Self::Absorbed(_)
-            | Self::Fapar(_) => false,
-        }
-    }
+pub struct PhotonProduct {
+    /// Quantity that photons are counted for.
+    pub measure: PhotonMeasure,
+    /// Directions of `BrfViews` and `RadianceViews`; empty for other measures.
+    pub views: Vec<View>,
 }
 
 /// Photon packets from sun and sky, and from what emits.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Photons {
-    /// Packets a square metre of the terrain's rectangle; of emitted light, lines along which some start.
+pub struct PhotonSensor {
+    /// Packets per m² of the terrain's rectangle; for emitted light, lines along which packets start.
     pub per_area: f64,
     /// The first that holds ends the measurement; without any, `per_area` does.
     pub until: Vec<StopCriterion>,
     /// Quantities to report.
-    pub measure: Vec<PhotonMeasure>,
+    pub products: Vec<PhotonProduct>,
     /// Plane that light must leave through, or lie below, to count.
-    pub plane: Option<VirtualPlane>,
+    pub plane: Option<CountingPlane>,
     /// Transport system: packets or photons.
     pub system: System,
 }
 
 /// A horizontal rectangle through which light is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VirtualPlane {
+pub struct CountingPlane {
     /// Its middle, m, local frame.
     pub center: DVec2,
     /// Extent to the east and to the north, m.
@@ -233,20 +139,10 @@ pub struct Cone {
     pub half_angle: f64,
 }
 
-/// Resolution of absorbed power; the finer one includes the coarser one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Per {
-    /// Each instance, the terrain as the first.
-    Instance,
-    /// Each triangle and disc of each instance.
-    Triangle,
-}
-
-/// Horizontal layers.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Layers {
-    /// From the ground to the top of the scene, of this thickness, m.
-    Thickness(f64),
-    /// Between these heights, m, upwards; two at least.
-    Borders(Vec<f64>),
+impl Cone {
+    /// The cone around a direction with a full opening angle, degrees.
+    #[must_use]
+    pub const fn from_degrees(zenith: f64, azimuth: f64, opening: f64) -> Self {
+        Self { axis: View::from_degrees(zenith, azimuth), half_angle: 0.5 * opening.to_radians() }
+    }
 }

@@ -4,7 +4,9 @@ use glam::{DMat3, DVec3};
 use hecs::World;
 
 use super::InstanceInput;
-use crate::components::{Instance, Mesh, Name, Per, PhotonMeasure, SceneId, Sensor, TerrainPatch};
+use crate::components::{
+    Instance, Mesh, Name, Per, PhotonMeasure, PhotonProduct, ResolvedSensor, SceneId, TerrainPatch,
+};
 
 /// Instances of a scene, for reports of each of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,11 +52,11 @@ impl Inventory {
         instances: &[InstanceInput],
         prototypes: &[(&SceneId, &Mesh)],
     ) -> Option<Self> {
-        let finest = |sensor: &Sensor| match sensor {
-            Sensor::Photons(photons) => photons.measure.iter().filter_map(per).max(),
-            Sensor::Image(_) | Sensor::Directions(_) => None,
+        let finest = |sensor: &ResolvedSensor| match sensor {
+            ResolvedSensor::Photons(photons) => photons.products.iter().filter_map(per).max(),
+            ResolvedSensor::Image(_) | ResolvedSensor::Directions(_) => None,
         };
-        let per = world.query::<&Sensor>().iter().filter_map(finest).max()?;
+        let per = world.query::<&ResolvedSensor>().iter().filter_map(finest).max()?;
         let mut query = world.query::<(&SceneId, &Name, &Mesh)>();
         let names: BTreeMap<u32, &str> =
             query.iter().map(|(id, name, _)| (id.0, name.0.as_str())).collect();
@@ -127,9 +129,9 @@ impl Inventory {
     }
 }
 
-fn per(measure: &PhotonMeasure) -> Option<Per> {
-    match measure {
-        PhotonMeasure::Absorbed(per) => Some(*per),
+fn per(product: &PhotonProduct) -> Option<Per> {
+    match product.measure {
+        PhotonMeasure::Absorbed { per } => Some(per),
         _ => None,
     }
 }

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 use hecs::World;
 
-use crate::components::{Sky, Sun};
+use crate::components::{SkyLight, SunLight};
 use crate::sampling::{Sampler, concentric_disc};
 use crate::scattering::{SceneSpectra, SpectrumId};
 
@@ -29,7 +29,7 @@ pub struct Beam {
     /// Unit vector towards the sun's middle.
     pub direction: DVec3,
     /// The sun's disc; without one its light is parallel.
-    pub disc: Option<Disc>,
+    pub disc: Option<SunDisc>,
     /// Its fraction of the total horizontal irradiance.
     pub share: SpectrumId,
 }
@@ -40,14 +40,14 @@ pub struct Beam {
 /// ellipse has, as a direction, the density `cos θ` that makes all directions give the horizontal
 /// plane the same flux: its irradiance is exact, whatever is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
+pub struct SunDisc {
     middle: DVec2,
     /// Semi-axes of the ellipse: across the sun's azimuth, and along it.
     across: DVec2,
     along: DVec2,
 }
 
-impl Disc {
+impl SunDisc {
     /// About this direction, with this angular radius, rad; `None` for a radius of 0.
     #[must_use]
     pub fn new(direction: DVec3, radius: f64) -> Option<Self> {
@@ -92,8 +92,8 @@ impl Light {
     /// Light of the sun and sky entities. Adds their spectra to the table.
     pub(super) fn from_world(world: &World, spectra: &mut SceneSpectra) -> Self {
         let bands = spectra.bands();
-        let sun = world.query::<&Sun>().iter().next().cloned();
-        let sky = world.query::<&Sky>().iter().next().cloned();
+        let sun = world.query::<&SunLight>().iter().next().cloned();
+        let sky = world.query::<&SkyLight>().iter().next().cloned();
         let beam_irradiance: Vec<f64> = sun.as_ref().map_or_else(
             || vec![0.0; bands],
             |sun| sun.irradiance.iter().map(|e| e * sun.direction.z).collect(),
@@ -113,7 +113,7 @@ impl Light {
         let sky_share = share(&sky_irradiance);
         let sun = sun.map(|sun| Beam {
             direction: sun.direction,
-            disc: Disc::new(sun.direction, sun.radius),
+            disc: SunDisc::new(sun.direction, sun.radius),
             share: beam_share,
         });
         Self {

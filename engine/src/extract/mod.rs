@@ -17,7 +17,7 @@ use crate::components::{
 use crate::scattering::SurfaceModels;
 
 pub use inventory::{Face, Inventory, PlacedInstance};
-pub use light::{Beam, Disc, Dome, Light};
+pub use light::{Beam, Dome, Light, SunDisc};
 pub use stage::{Rules, Stage};
 pub use thermal::{SurfaceBlackBody, Thermal};
 

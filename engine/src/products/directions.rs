@@ -2,7 +2,7 @@ use super::context::{labels, numbers};
 use super::thermal::{brightness, radiance_of_sources};
 use super::{Axis, Context, Product, reflectance};
 use crate::components::{ImageMeasure, View};
-use crate::transport::{DirectionsOutcome, Part};
+use crate::transport::{DirectionsOutcome, ScatteringOrder};
 
 /// The products of a measurement of directions that are made of light: of what is `reflected`, as
 /// `L / E`, and of what is `emitted`, as far as they were measured; both of shape `[views, bands]`, and
@@ -38,7 +38,7 @@ pub fn of_directions(
                 None => product(radiance, relative?, reflectance::radiance),
             }],
             ImageMeasure::Brf => vec![product((factor, "1"), relative?, reflectance::brf)],
-            ImageMeasure::Orders => Part::ALL
+            ImageMeasure::Orders => ScatteringOrder::ALL
                 .iter()
                 .zip(&reflected?.parts)
                 .map(|(part, spread)| {

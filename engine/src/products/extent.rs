@@ -2,7 +2,7 @@
 
 use super::{Context, Product};
 use crate::components::{ImageMeasure, ImageSensor};
-use crate::transport::Part;
+use crate::transport::ScatteringOrder;
 
 /// What a product consists of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,7 +144,9 @@ fn of_light(
     match measure {
         ImageMeasure::Radiance => vec![of(bands); usize::from(reflected || emitted)],
         ImageMeasure::Brf => vec![of(bands); usize::from(reflected)],
-        ImageMeasure::Orders => vec![of(bands); usize::from(reflected) * Part::ALL.len()],
+        ImageMeasure::Orders => {
+            vec![of(bands); usize::from(reflected) * ScatteringOrder::ALL.len()]
+        }
         ImageMeasure::BrightnessTemperature => {
             vec![of(context.emitting().len()); usize::from(emitted)]
         }

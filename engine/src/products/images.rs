@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::context::labels;
 use super::thermal::{brightness, radiance_of_sources};
 use super::{Context, Georeference, Image, Product, Rendering, reflectance};
-use crate::components::{ImageMeasure, ImageSensor, Optics, Picture};
+use crate::components::{ImageMeasure, ImageSensor, Optics, PictureColours};
 use crate::extract::Stage;
-use crate::transport::{ImageOutcome, Part, footprint};
+use crate::transport::{ImageOutcome, ScatteringOrder, footprint};
 
 /// The products of an image measurement that are made of light: of what is `reflected`, as `L / E`,
 /// and of what is `emitted`, as far as they were measured.
@@ -37,12 +37,12 @@ pub fn of_image(
             ImageMeasure::Brf => vec![image((factor, "1"), (reflected?, 0), brf)],
             ImageMeasure::Orders => {
                 let outcome = reflected?;
-                let of_part = |(part, spectrum): (&Part, usize)| {
+                let of_part = |(part, spectrum): (&ScatteringOrder, usize)| {
                     let name = format!("{factor}_{}", part.suffix());
                     image((&name, "1"), (outcome, spectrum), brf)
                 };
                 let spectra = outcome.mean.len() / context.bands.len();
-                Part::ALL.iter().zip(1..spectra).map(of_part).collect()
+                ScatteringOrder::ALL.iter().zip(1..spectra).map(of_part).collect()
             }
             ImageMeasure::BrightnessTemperature => {
                 vec![brightness_image(sensor, total.as_ref()?, (context, place))]
@@ -156,8 +156,10 @@ fn image(
     // `π L / E` of a white Lambertian surface on the horizontal is 1.
     let white = of_white(&vec![FRAC_1_PI; bands], &context.irradiance);
     let rendering = match sensor.picture {
-        Picture::Quicklook => Rendering::Quicklook,
-        Picture::Colours { channels, exposure } => Rendering::Colours { channels, exposure, white },
+        PictureColours::Quicklook => Rendering::Quicklook,
+        PictureColours::Colours { channels, exposure } => {
+            Rendering::Colours { channels, exposure, white }
+        }
     };
     let pixels = Image {
         width: sensor.size.x as usize,

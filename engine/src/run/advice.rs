@@ -1,12 +1,14 @@
 //! Advice for a sensor that takes too much memory.
 
-use crate::components::{ImageSensor, Layers, Optics, Orthographic, Per, PhotonMeasure, Sensor};
+use crate::components::{
+    ImageSensor, Layers, Optics, OrthographicOptics, Per, PhotonMeasure, ResolvedSensor,
+};
 use crate::document::rounded_up;
 use crate::geometry::PixelGrid;
 
 /// Sensor that takes less memory, and the change that makes it smaller.
 pub(super) struct Smaller {
-    pub(super) sensor: Sensor,
+    pub(super) sensor: ResolvedSensor,
     /// Key below the sensor to change.
     pub(super) key: String,
     /// Text to write there.
@@ -15,17 +17,17 @@ pub(super) struct Smaller {
 
 /// Sensor with a fraction of its pixels, its views, or the cells of one of its measures; `None` if nothing would be left,
 /// or if the measure has no such choice.
-pub(super) fn smaller(sensor: &Sensor, measure: usize, fraction: f64) -> Option<Smaller> {
+pub(super) fn smaller(sensor: &ResolvedSensor, measure: usize, fraction: f64) -> Option<Smaller> {
     let mut sensor = sensor.clone();
     let (key, text) = match &mut sensor {
-        Sensor::Image(image) => fewer_pixels(image, fraction)?,
-        Sensor::Directions(directions) => {
+        ResolvedSensor::Image(image) => fewer_pixels(image, fraction)?,
+        ResolvedSensor::Directions(directions) => {
             let views = (directions.views.len() as f64 * fraction) as usize;
             directions.views.truncate(views);
             (views > 0).then(|| (".views".to_owned(), format!("at most {views} views")))?
         }
-        Sensor::Photons(photons) => {
-            let text = coarser(photons.measure.get_mut(measure)?, fraction)?;
+        ResolvedSensor::Photons(photons) => {
+            let text = coarser(&mut photons.products.get_mut(measure)?.measure, fraction)?;
             (format!(".measure[{measure}]"), text)
         }
     };
@@ -34,7 +36,7 @@ pub(super) fn smaller(sensor: &Sensor, measure: usize, fraction: f64) -> Option<
 
 /// Reduces the pixels of an image to a fraction; returns the key and the text to write there.
 fn fewer_pixels(image: &mut ImageSensor, fraction: f64) -> Option<(String, String)> {
-    if let Optics::Orthographic(Orthographic { pixel: Some(side), .. }) = &mut image.optics {
+    if let Optics::Orthographic(OrthographicOptics { pixel: Some(side), .. }) = &mut image.optics {
         let extent = image.size.as_dvec2() * *side;
         *side = rounded_up(*side / fraction.sqrt());
         image.size = PixelGrid::covering(extent, *side).counts.as_uvec2();
@@ -55,15 +57,15 @@ fn coarser(measure: &mut PhotonMeasure, fraction: f64) -> Option<String> {
     Some(match measure {
         PhotonMeasure::BrfCells(cells) => format!("`BrfCells({})`", fewer(cells)?),
         PhotonMeasure::RadianceCells(cells) => format!("`RadianceCells({})`", fewer(cells)?),
-        PhotonMeasure::Fluxes { pixel, .. } => {
-            *pixel = rounded_up(*pixel / fraction.sqrt());
-            format!("`pixel_m: {pixel:?}`")
+        PhotonMeasure::Fluxes { pixel_m, .. } => {
+            *pixel_m = rounded_up(*pixel_m / fraction.sqrt());
+            format!("`pixel_m: {pixel_m:?}`")
         }
-        PhotonMeasure::Fapar(Layers::Thickness(thickness)) => {
+        PhotonMeasure::Fapar { layer_m: Layers::Thickness(thickness) } => {
             *thickness = rounded_up(*thickness / fraction);
             format!("`layer_m: {thickness:?}`")
         }
-        PhotonMeasure::Absorbed(per @ Per::Triangle) => {
+        PhotonMeasure::Absorbed { per: per @ Per::Triangle } => {
             *per = Per::Instance;
             "`per: Instance`".to_owned()
         }

@@ -5,7 +5,7 @@ use super::convergence::is_energy_balance;
 use super::cost::{self, CostEstimate};
 use super::sensors::{Begun, MOST_SAMPLES, MeasureContext, SensorEntity, begin};
 use super::{Failure, Options};
-use crate::components::{ImageSamples, Sensor, StopCriterion};
+use crate::components::{ImageSamples, ResolvedSensor, StopCriterion};
 use crate::document::{Diagnostic, suggestion, unknown_name};
 use crate::extract::Stage;
 use crate::products::Product;
@@ -31,7 +31,7 @@ pub(super) fn check(
 /// Errors of a sensor.
 fn problems_of(
     name: &str,
-    sensor: &Sensor,
+    sensor: &ResolvedSensor,
     scene: MeasureContext<'_>,
     quality: f64,
     store: &CheckpointStore,
@@ -92,11 +92,11 @@ fn problems_of(
 /// Returns an error if a density makes more samples in a pixel than it may have.
 fn too_many_samples(
     name: &str,
-    sensor: &Sensor,
+    sensor: &ResolvedSensor,
     stage: &Stage,
     quality: f64,
 ) -> Option<Diagnostic> {
-    let Sensor::Image(image) = sensor else { return None };
+    let ResolvedSensor::Image(image) = sensor else { return None };
     let ImageSamples::PerArea(density) = image.samples else { return None };
     let samples = Camera::new(image, stage).samples(image.samples) * quality;
     // The density that makes as many as there may be, with three digits.
@@ -118,7 +118,7 @@ fn check_memory(
     options: &Options,
     store: &CheckpointStore,
 ) -> Result<(), Failure> {
-    let cost = |name: &str, sensor: &Sensor| {
+    let cost = |name: &str, sensor: &ResolvedSensor| {
         let Begun { mut measurement, .. } = begin(name, sensor, scene, options.quality);
         CostEstimate::new(measurement.as_mut(), store)
     };

@@ -103,7 +103,7 @@ impl Convergence {
                 asked.map(|(_, error)| of_error(*error, *limit)).fold(1.0, f64::min)
             }
             (StopCriterion::RelErrors(limits), Some(errors)) => {
-                let of_name = |(name, limit): &(String, f64)| {
+                let of_name = |(name, limit): (&String, &f64)| {
                     let product = errors.iter().find(|(known, _)| known == name);
                     product.map_or(1.0, |(_, error)| of_error(*error, *limit))
                 };

@@ -8,7 +8,7 @@ use super::advice::{Smaller, smaller};
 use super::checkpoint::CheckpointStore;
 use super::convergence::{Measurement, Start};
 use super::sensors::SensorEntity;
-use crate::components::Sensor;
+use crate::components::ResolvedSensor;
 use crate::document::Diagnostic;
 use crate::output;
 use crate::products::{Extent, Forecast, data_size};
@@ -135,7 +135,7 @@ fn peak(costs: &[CostEstimate]) -> u64 {
 pub(super) fn check_memory(
     sensors: &[SensorEntity],
     free: u64,
-    cost: impl Fn(&str, &Sensor) -> CostEstimate,
+    cost: impl Fn(&str, &ResolvedSensor) -> CostEstimate,
 ) -> Option<Diagnostic> {
     let mut costs: Vec<CostEstimate> =
         sensors.iter().map(|one| cost(&one.name, &one.sensor)).collect();

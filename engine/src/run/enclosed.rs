@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::sensors::SensorEntity;
 use crate::accel::Ray;
-use crate::components::{Optics, Sensor};
+use crate::components::{Optics, ResolvedSensor};
 use crate::document::Diagnostic;
 use crate::extract::Stage;
 use crate::sampling::Key;
@@ -20,7 +20,7 @@ const ENCLOSED: f64 = 0.95;
 /// Warns of cameras around which all surfaces show their back and belong to one instance.
 pub(super) fn warnings(sensors: &[SensorEntity], stage: &Stage) -> Vec<Diagnostic> {
     let warning = |SensorEntity { name, sensor, .. }: &SensorEntity| {
-        let Sensor::Image(image) = sensor else { return None };
+        let ResolvedSensor::Image(image) = sensor else { return None };
         if matches!(image.optics, Optics::Orthographic(_)) {
             return None;
         }

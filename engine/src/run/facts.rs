@@ -12,8 +12,8 @@ use super::cost::CostEstimate;
 use super::sensors::{Begun, MeasureContext, SensorEntity, begin, in_order};
 use crate::accel::Ray;
 use crate::components::{
-    Instance, InstanceCount, LeafArea, MaterialId, Mesh, Name, SceneId, Sensor, StopCriterion, Sun,
-    SurfaceOptics, TerrainPatch,
+    Instance, InstanceCount, LeafArea, MaterialId, Mesh, Name, ResolvedSensor, SceneId,
+    StopCriterion, SunLight, SurfaceOptics, TerrainPatch,
 };
 use crate::document::{self, Diagnostic, PhotonMeasure, Scene};
 use crate::extract::Stage;
@@ -302,7 +302,7 @@ fn sun(scene: &Scene) -> Option<SunFacts> {
 }
 
 fn bands(scene: &Scene, world: &World, stage: &Stage) -> Vec<BandFacts> {
-    let mut suns = world.query::<&Sun>();
+    let mut suns = world.query::<&SunLight>();
     let sun = suns.iter().next();
     let facts = |(index, band): (usize, &document::Band)| {
         let irradiance = stage.light.irradiance[index];
@@ -332,9 +332,9 @@ fn sensor_facts(
     let facts = |SensorEntity { name, sensor, .. }: &SensorEntity| {
         let Begun { mut measurement, convergence } = begin(name, sensor, measured, options.quality);
         let pixels = match sensor {
-            Sensor::Image(image) => Some(u64::from(image.size.x) * u64::from(image.size.y)),
-            Sensor::Directions(directions) => Some(directions.views.len() as u64),
-            Sensor::Photons(_) => None,
+            ResolvedSensor::Image(image) => Some(u64::from(image.size.x) * u64::from(image.size.y)),
+            ResolvedSensor::Directions(directions) => Some(directions.views.len() as u64),
+            ResolvedSensor::Photons(_) => None,
         };
         let limit = convergence.until.iter().find_map(|stop| match stop {
             StopCriterion::Samples(samples) => Some(samples.saturating_mul(pixels.unwrap_or(1))),

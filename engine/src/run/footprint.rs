@@ -1,7 +1,7 @@
 //! Warnings about light of isolated scenes that takes another way than through the footprint.
 
 use super::sensors::SensorEntity;
-use crate::components::Sensor;
+use crate::components::ResolvedSensor;
 use crate::extract::Stage;
 use crate::transport::LightBeside;
 
@@ -10,10 +10,10 @@ const NOTABLE: f64 = 0.01;
 
 /// Warnings for sensors that measure per area of the ground's rectangle, from a pilot run.
 pub(super) fn warnings(sensors: &[SensorEntity], stage: &Stage) -> Vec<String> {
-    let refers_to_ground = |sensor: &Sensor| match sensor {
-        Sensor::Image(_) => false,
-        Sensor::Directions(directions) => directions.plane.is_none(),
-        Sensor::Photons(photons) => photons.plane.is_none(),
+    let refers_to_ground = |sensor: &ResolvedSensor| match sensor {
+        ResolvedSensor::Image(_) => false,
+        ResolvedSensor::Directions(directions) => directions.plane.is_none(),
+        ResolvedSensor::Photons(photons) => photons.plane.is_none(),
     };
     if !sensors.iter().any(|one| refers_to_ground(&one.sensor)) {
         return Vec::new();

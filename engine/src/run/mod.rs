@@ -46,7 +46,7 @@ pub use failure::Failure;
 pub use options::{Options, Progress, Unwatched};
 pub use scene_world::SceneWorld;
 pub use session::Session;
-pub use sweep::Sweep;
+pub use sweep::SweepRun;
 
 use checkpoint::CheckpointStore;
 use clock::Clock;

@@ -2,49 +2,51 @@ use std::sync::Arc;
 
 use super::convergence::{Measurement, PacedFilm};
 use super::sensors::MeasureContext;
-use crate::components::{PhotonMeasure, Photons, System, View};
+use crate::components::{Cone, PhotonMeasure, PhotonProduct, PhotonSensor, System, View};
 use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
 use crate::products::{self, BandSources, Context, Extent, Product};
 use crate::sampling::Key;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
-    FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightSource, OrthographicCamera,
-    PacketOptions, Part, PartCounter, PhotonKind, ReferencePlane, ReplicateSums, RouletteThreshold,
-    ViewCounter, photon_film,
+    FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightSource, OrderCounter,
+    OrthographicCamera, PacketOptions, PhotonKind, ReferencePlane, ReplicateSums,
+    RouletteThreshold, ScatteringOrder, ViewCounter, photon_film,
 };
 
 /// Measurement by photon packets of sun and sky, and of emission.
 pub(super) struct PhotonRun<'a> {
-    sensor: &'a Photons,
+    sensor: &'a PhotonSensor,
     scene: MeasureContext<'a>,
-    kinds: Vec<(&'a PhotonMeasure, Kind)>,
+    kinds: Vec<(&'a PhotonMeasure, ProductCounter)>,
     reflected: Option<Counted<'a>>,
     emitted: Option<Counted<'a>>,
 }
 
 impl<'a> PhotonRun<'a> {
     /// Measurement before its first packet.
-    pub(super) fn new(sensor: &'a Photons, scene: MeasureContext<'a>, key: Key) -> Self {
+    pub(super) fn new(sensor: &'a PhotonSensor, scene: MeasureContext<'a>, key: Key) -> Self {
         let MeasureContext { stage, context } = scene;
         let plane = ReferencePlane::new(sensor.plane.as_ref(), stage);
-        let kinds: Vec<(&PhotonMeasure, Kind)> = sensor
-            .measure
+        let kinds: Vec<(&PhotonMeasure, ProductCounter)> = sensor
+            .products
             .iter()
-            .filter_map(|measure| Some((measure, Kind::of(measure, &plane, stage)?)))
+            .filter_map(|product| {
+                Some((&product.measure, ProductCounter::new(product, &plane, stage)?))
+            })
             .collect();
         let kind = if sensor.system == System::Analog {
             PhotonKind::Photon
         } else {
             PhotonKind::Packet(RouletteThreshold::Low)
         };
-        let film = |source, asked: Vec<(usize, Option<Part>)>, key| {
+        let film = |source, asked: Vec<(usize, Option<ScatteringOrder>)>, key| {
             (!asked.is_empty()).then(|| {
                 let counters = asked.iter().map(|&(index, part)| -> Box<dyn Counter> {
                     let counter = kinds[index].1.with_roulette(source, key);
                     match part {
                         None => counter,
-                        Some(part) => Box::new(PartCounter { counter, part }),
+                        Some(part) => Box::new(OrderCounter { counter, part }),
                     }
                 });
                 let options = PacketOptions { source, kind, plane: plane.clone() };
@@ -70,9 +72,14 @@ impl<'a> PhotonRun<'a> {
     }
 }
 
+/// Returns whether a sensor asks for a measure.
+fn measures(sensor: &PhotonSensor, measure: &PhotonMeasure) -> bool {
+    sensor.products.iter().any(|product| product.measure == *measure)
+}
+
 /// Parts of the light that are reported separately.
-fn parts(sensor: &Photons) -> &'static [Part] {
-    if sensor.measure.contains(&PhotonMeasure::Orders) { &Part::ALL } else { &[] }
+fn parts(sensor: &PhotonSensor) -> &'static [ScatteringOrder] {
+    if measures(sensor, &PhotonMeasure::Orders) { &ScatteringOrder::ALL } else { &[] }
 }
 
 impl Measurement for PhotonRun<'_> {
@@ -83,8 +90,9 @@ impl Measurement for PhotonRun<'_> {
 
     fn largest(&self) -> usize {
         let largest = self.kinds.iter().max_by_key(|(_, kind)| kind.counter().cells());
-        let is_largest = |one: &&PhotonMeasure| largest.is_some_and(|(most, _)| most == one);
-        self.sensor.measure.iter().take_while(|one| !is_largest(one)).count()
+        let is_largest =
+            |one: &&PhotonProduct| largest.is_some_and(|(most, _)| **most == one.measure);
+        self.sensor.products.iter().take_while(|one| !is_largest(one)).count()
     }
 
     fn extents(&self) -> Vec<Extent> {
@@ -92,13 +100,13 @@ impl Measurement for PhotonRun<'_> {
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let films: Vec<_> = [reflected, emitted].into_iter().flatten().collect();
         let bands = context.bands.len() as u64;
-        let of = |(index, (measure, kind)): (usize, &(&PhotonMeasure, Kind))| {
+        let of = |(index, (measure, kind)): (usize, &(&PhotonMeasure, ProductCounter))| {
             // Sources add up to one product; each part of the light is one.
             let asked = |part| films.iter().any(|film| film.asked.contains(&(index, part)));
             let parts = parts(sensor).iter().filter(|&&part| asked(Some(part))).count();
             let count = usize::from(asked(None)) + parts;
             let mut extents = vec![kind.extents(bands); count].concat();
-            let kelvin = sensor.measure.contains(&PhotonMeasure::BrightnessTemperature);
+            let kelvin = measures(sensor, &PhotonMeasure::BrightnessTemperature);
             if kelvin && measure.is_absolute() && kind.is_of_radiance() {
                 extents.extend(kind.extents(context.emitting().len() as u64));
             }
@@ -136,7 +144,7 @@ impl Measurement for PhotonRun<'_> {
             for _ in 0..reflected.len().max(emitted.len()) {
                 let (reflected, emitted) = (reflected.next(), emitted.next());
                 let product = products::of_sources(reflected.as_ref(), emitted.as_ref(), context);
-                let kelvin = sensor.measure.contains(&PhotonMeasure::BrightnessTemperature);
+                let kelvin = measures(sensor, &PhotonMeasure::BrightnessTemperature);
                 let kelvin = kelvin.then(|| products::brightness_of(&product, context)).flatten();
                 found.extend(std::iter::once(product).chain(kelvin));
             }
@@ -155,12 +163,12 @@ impl Measurement for PhotonRun<'_> {
 
 /// Counters of one source: the index of the measure and the part of the light of each, and their sums.
 struct Counted<'a> {
-    asked: Vec<(usize, Option<Part>)>,
+    asked: Vec<(usize, Option<ScatteringOrder>)>,
     film: ReplicateSums<'a>,
 }
 
 impl Counted<'_> {
-    fn spread(&self, index: usize, part: Option<Part>) -> Option<Spread> {
+    fn spread(&self, index: usize, part: Option<ScatteringOrder>) -> Option<Spread> {
         let at = self.asked.iter().position(|asked| *asked == (index, part))?;
         // The first sums are those of the energy.
         Some(self.film.spread(at + 1))
@@ -168,7 +176,7 @@ impl Counted<'_> {
 }
 
 /// Counter of a measure, with the data that its products take.
-enum Kind {
+enum ProductCounter {
     Albedo(AlbedoCounter),
     Cells(CellCounter),
     Cones(ConeCounter),
@@ -178,13 +186,17 @@ enum Kind {
     Fluxes(FluxCounter),
 }
 
-impl Kind {
-    fn of(measure: &PhotonMeasure, plane: &ReferencePlane, stage: &Stage) -> Option<Self> {
+impl ProductCounter {
+    fn new(product: &PhotonProduct, plane: &ReferencePlane, stage: &Stage) -> Option<Self> {
+        let PhotonProduct { measure, views } = product;
         let plane = plane.clone();
         Some(match measure {
             PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature => return None,
             PhotonMeasure::BrfCones(cones) | PhotonMeasure::RadianceCones(cones) => {
-                Self::Cones(ConeCounter::new(cones.clone(), plane))
+                let cone = |&(zenith, azimuth, opening): &(f64, f64, f64)| {
+                    Cone::from_degrees(zenith, azimuth, opening)
+                };
+                Self::Cones(ConeCounter::new(cones.iter().map(cone).collect(), plane))
             }
             PhotonMeasure::Albedo | PhotonMeasure::Exitance => {
                 Self::Albedo(AlbedoCounter { plane })
@@ -192,23 +204,25 @@ impl Kind {
             PhotonMeasure::BrfCells(cells) | PhotonMeasure::RadianceCells(cells) => {
                 Self::Cells(CellCounter { hemisphere: Hemisphere::new(*cells as usize), plane })
             }
-            PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
+            PhotonMeasure::BrfViews(_) | PhotonMeasure::RadianceViews(_) => {
                 let camera = |&view: &View| OrthographicCamera::from_plane(view, &plane, stage);
                 Self::Views(ViewCounter::new(views.iter().map(camera).collect()), views.clone())
             }
-            PhotonMeasure::Absorbed(per) => {
+            PhotonMeasure::Absorbed { per } => {
                 let inventory = stage.inventory.clone()?;
                 Self::Absorbed(AbsorbedCounter::new(&inventory, *per, plane), inventory)
             }
-            PhotonMeasure::Fapar(layers) => Self::Layers(LayerCounter::new(stage, layers, plane)),
-            PhotonMeasure::Fluxes { pixel, heights } => {
+            PhotonMeasure::Fapar { layer_m } => {
+                Self::Layers(LayerCounter::new(stage, layer_m, plane))
+            }
+            PhotonMeasure::Fluxes { pixel_m, heights_m } => {
                 let mut levels = vec![FluxLevel::Terrain];
                 if stage.has_relief() {
                     levels.push(FluxLevel::TerrainSurface);
                 }
                 levels.push(FluxLevel::Top);
-                levels.extend(heights.iter().map(|&height| FluxLevel::Height(height)));
-                Self::Fluxes(FluxCounter::new(plane, *pixel, levels))
+                levels.extend(heights_m.iter().map(|&height| FluxLevel::Height(height)));
+                Self::Fluxes(FluxCounter::new(plane, *pixel_m, levels))
             }
         })
     }

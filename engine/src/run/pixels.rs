@@ -2,7 +2,7 @@
 
 use hecs::World;
 
-use crate::components::{Name, Optics, Sensor};
+use crate::components::{Name, Optics, ResolvedSensor};
 use crate::document::{Diagnostic, too_many_pixels};
 use crate::extract::Stage;
 use crate::geometry::PixelGrid;
@@ -19,8 +19,8 @@ pub(super) fn count_pixels(world: &mut World, stage: &Stage) -> Result<Vec<Strin
     let bands = stage.light.irradiance.len();
     let mut problems: Vec<Diagnostic> = Vec::new();
     let mut notes: Vec<String> = Vec::new();
-    for (name, sensor) in world.query_mut::<(&Name, &mut Sensor)>() {
-        let Sensor::Image(image) = sensor else { continue };
+    for (name, sensor) in world.query_mut::<(&Name, &mut ResolvedSensor)>() {
+        let ResolvedSensor::Image(image) = sensor else { continue };
         let Optics::Orthographic(optics) = &image.optics else { continue };
         let Some(side) = optics.pixel else { continue };
         let (_, extent) = wanted_footprint(optics, stage);

@@ -7,7 +7,8 @@ use super::photons::PhotonRun;
 use super::rounds::{MeasurementEnd, measure_until};
 use super::{Failure, Options, Progress};
 use crate::components::{
-    Directions, ImageMeasure, ImageSensor, Name, Photons, SceneId, Sensor, StopCriterion, System,
+    DirectionSensor, ImageMeasure, ImageSensor, Name, PhotonSensor, ResolvedSensor, SceneId,
+    StopCriterion, System,
 };
 use crate::extract::Stage;
 use crate::products::{self, Context, Extent, Product, SensorReport};
@@ -35,23 +36,21 @@ impl<'a> MeasureContext<'a> {
 pub(super) struct SensorEntity {
     pub(super) entity: Entity,
     pub(super) name: String,
-    pub(super) sensor: Sensor,
+    pub(super) sensor: ResolvedSensor,
 }
 
 /// Sensors in document order.
 pub(super) fn in_order(world: &World) -> Vec<SensorEntity> {
-    let mut query = world.query::<(Entity, &SceneId, &Name, &Sensor)>();
+    let mut query = world.query::<(Entity, &SceneId, &Name, &ResolvedSensor)>();
     let mut sensors: Vec<_> = query.iter().collect();
     sensors.sort_unstable_by_key(|&(_, id, ..)| *id);
-    let owned = |(entity, _, name, sensor): (Entity, &SceneId, &Name, &Sensor)| SensorEntity {
-        entity,
-        name: name.0.clone(),
-        sensor: sensor.clone(),
+    let owned = |(entity, _, name, sensor): (Entity, &SceneId, &Name, &ResolvedSensor)| {
+        SensorEntity { entity, name: name.0.clone(), sensor: sensor.clone() }
     };
     sensors.into_iter().map(owned).collect()
 }
 
-/// Measures all sensors in document order; returns a warning if the checkpoint could not be saved. Reads [`Sensor`];
+/// Measures all sensors in document order; returns a warning if the checkpoint could not be saved. Reads [`ResolvedSensor`];
 /// writes [`SensorReport`].
 pub(super) fn measure_sensors(
     world: &mut World,
@@ -88,15 +87,15 @@ pub(super) struct Begun<'a> {
 /// Begins the measurement of a sensor; `quality` is the factor on its numbers of samples.
 pub(super) fn begin<'a>(
     name: &str,
-    sensor: &'a Sensor,
+    sensor: &'a ResolvedSensor,
     scene: MeasureContext<'a>,
     quality: f64,
 ) -> Begun<'a> {
     let key = Key::new(scene.stage.rules.seed).path("sensors").path(name);
     match sensor {
-        Sensor::Image(sensor) => image(sensor, scene, key, quality),
-        Sensor::Directions(sensor) => directions(sensor, scene, key, quality),
-        Sensor::Photons(sensor) => photons(sensor, scene, key, quality),
+        ResolvedSensor::Image(sensor) => image(sensor, scene, key, quality),
+        ResolvedSensor::Directions(sensor) => directions(sensor, scene, key, quality),
+        ResolvedSensor::Photons(sensor) => photons(sensor, scene, key, quality),
     }
 }
 
@@ -114,7 +113,7 @@ pub(super) fn measure(
     let films = measurement.films();
     let sum = |of: &dyn Fn(&PacedFilm<'_>) -> u64| films.iter().map(of).sum();
     let samples = sum(&|paced| paced.film.samples());
-    let noun = if matches!(sensor, Sensor::Photons(_)) { "packets" } else { "samples" };
+    let noun = if matches!(sensor, ResolvedSensor::Photons(_)) { "packets" } else { "samples" };
     Ok(SensorReport {
         name: name.clone(),
         seconds: end.seconds,
@@ -139,7 +138,7 @@ fn ended_by(end: &MeasurementEnd, samples: &str) -> String {
             worst.map_or_else(|| samples.to_owned(), |worst| text(worst, *limit))
         }
         StopCriterion::RelErrors(limits) => {
-            let of = |(name, limit): &(String, f64)| {
+            let of = |(name, limit): (&String, &f64)| {
                 let product = end.errors.iter().find(|(known, _)| known == name);
                 product.map(|product| text(product, *limit))
             };
@@ -214,7 +213,7 @@ fn image<'a>(
         .then(|| film(LightSource::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
         .then(|| film(LightSource::Emitted, false, key.path("emission")));
-    let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
+    let components = (!sensor.measure.iter().all(ImageMeasure::is_light))
         .then(|| image_components_film(stage, &camera, key.path("components")));
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
     let run = |pace| ImageRun { sensor, scene, reflected, emitted, components, pace };
@@ -279,7 +278,7 @@ impl Measurement for ImageRun<'_> {
 }
 
 struct DirectionsRun<'a> {
-    sensor: &'a Directions,
+    sensor: &'a DirectionSensor,
     context: &'a Context,
     reflected: Option<DirectionsFilm<'a>>,
     emitted: Option<DirectionsFilm<'a>>,
@@ -287,7 +286,7 @@ struct DirectionsRun<'a> {
 }
 
 fn directions<'a>(
-    sensor: &'a Directions,
+    sensor: &'a DirectionSensor,
     scene: MeasureContext<'a>,
     key: Key,
     quality: f64,
@@ -305,7 +304,7 @@ fn directions<'a>(
         .then(|| film(LightSource::Reflected, orders, key));
     let emitted = needs_emission(&sensor.measure, context)
         .then(|| film(LightSource::Emitted, false, key.path("emission")));
-    let components = (!sensor.measure.iter().all(|measure| measure.is_light()))
+    let components = (!sensor.measure.iter().all(ImageMeasure::is_light))
         .then(|| ComponentsFilm::new(stage, views, plane, key.path("components")));
     let until = at_quality(&sensor.until, quality);
     let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
@@ -324,13 +323,13 @@ impl Measurement for DirectionsRun<'_> {
     }
 
     fn extents(&self) -> Vec<Extent> {
-        let Directions { views, measure, .. } = self.sensor;
+        let DirectionSensor { views, measure, .. } = self.sensor;
         let found = (self.reflected.is_some(), self.emitted.is_some());
         products::extents_of_directions(views.len(), measure, found, self.context)
     }
 
     fn products(&self) -> Vec<Product> {
-        let Directions { views, measure, .. } = self.sensor;
+        let DirectionSensor { views, measure, .. } = self.sensor;
         let reflected = self.reflected.as_ref().map(DirectionsFilm::outcome);
         let emitted = self.emitted.as_ref().map(DirectionsFilm::outcome);
         let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
@@ -351,7 +350,7 @@ impl Measurement for DirectionsRun<'_> {
 /// Packets serve all views at once: for 31 views they take half of the rays of paths, for one view as many or more
 /// (`transport/README.md`). Most packets miss a small plane, and emitted radiance is found directly by paths from the
 /// sensor.
-fn system_of(sensor: &Directions, source: LightSource) -> System {
+fn system_of(sensor: &DirectionSensor, source: LightSource) -> System {
     let best = match source {
         LightSource::Reflected if sensor.plane.is_none() && sensor.views.len() > 1 => {
             System::Forward
@@ -382,7 +381,7 @@ fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
 }
 
 fn photons<'a>(
-    sensor: &'a Photons,
+    sensor: &'a PhotonSensor,
     scene: MeasureContext<'a>,
     key: Key,
     quality: f64,

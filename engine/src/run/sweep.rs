@@ -18,7 +18,7 @@ use crate::products::{Day, Night, Point, Report};
 /// Random streams have the seed and the sensor's path as keys, so each point is traced with the same
 /// numbers: differences between points have far less noise than the points themselves.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
-pub struct Sweep {
+pub struct SweepRun {
     file: PathBuf,
     options: Options,
     scene: Scene,
@@ -28,7 +28,7 @@ pub struct Sweep {
     world: SceneWorld,
 }
 
-impl Sweep {
+impl SweepRun {
     /// Reads a scene file at every point.
     ///
     /// # Errors

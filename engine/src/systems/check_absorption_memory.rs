@@ -20,14 +20,14 @@ pub(super) fn check_absorption_memory(world: &mut World, resources: &mut Resourc
         for (index, measure) in photons.measure.iter().enumerate() {
             let PhotonMeasure::Absorbed { per } = measure else { continue };
             let path = format!("sensors.{name}.measure[{index}]");
-            if let Some(problem) = problem(&path, per, world, resources) {
+            if let Some(problem) = problem(&path, *per, world, resources) {
                 resources.messages.report(problem);
             }
         }
     }
 }
 
-fn problem(path: &str, per: &Per, world: &World, resources: &Resources) -> Option<Diagnostic> {
+fn problem(path: &str, per: Per, world: &World, resources: &Resources) -> Option<Diagnostic> {
     let patch = world.get::<&TerrainPatch>(resources.terrain);
     let ground = patch.map_or(0, |patch| patch.mesh.triangles.len());
     let (mut instances, mut triangles): (usize, usize) = (1, ground);

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use hecs::World;
 
 use super::Resources;
-use super::georeference::{Georeference, MapFrame};
+use super::georeference::{MapFrame, MapTransform};
 use crate::components::{InstanceRange, SceneId};
 use crate::document::{
     Area, InstanceList, InstanceTable, Instances, TableCoordinates, Terrain, TerrainRaster,
@@ -105,7 +105,7 @@ fn less_origin(
     resources: &Resources,
 ) -> Option<String> {
     let ground = place.ground;
-    let map = place.map.georeference.unwrap_or_else(|| Georeference::from_frame(resources));
+    let map = place.map.transform.unwrap_or_else(|| MapTransform::from_frame(resources));
     if !lie_on(ground, strays.iter().map(|stray| map.apply(stray.truncate()))) {
         return None;
     }
@@ -141,7 +141,7 @@ fn raster_corner(
         return None;
     };
     let ground = place.ground;
-    place.map.georeference.filter(|reference| !reference.is_of_degrees)?;
+    place.map.transform.filter(|reference| !reference.is_of_degrees)?;
     let corner = ground.corner();
     let moved = || strays.iter().map(|stray| stray.truncate() + corner);
     if !lie_on(ground, moved()) {

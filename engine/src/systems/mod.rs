@@ -56,7 +56,7 @@ mod warn_sensor_heights;
 
 pub use changes::Changes;
 pub(crate) use coordinate_advice::place_of_instance;
-pub use georeference::{CoordinateSystem, Georeference, MapFrame};
+pub use georeference::{CoordinateSystem, MapFrame, MapTransform};
 pub use messages::Messages;
 pub use resources::Resources;
 pub use schedule::{ScheduleRun, run_schedule};

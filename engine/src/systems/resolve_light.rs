@@ -2,11 +2,11 @@ use hecs::World;
 
 use super::spectra::{Quantity, resolve_spectrum};
 use super::{Resources, set_component};
-use crate::components::{Sky, Sun, View};
+use crate::components::{SkyLight, SunLight, View};
 use crate::document::{self, Spectrum};
 
 /// Resolves the irradiance of sun and sky to bands. Reads `document::Sun`, `document::Sky` and the resources `spectra`
-/// and `bands`; writes [`Sun`] and [`Sky`].
+/// and `bands`; writes [`SunLight`] and [`SkyLight`].
 pub(super) fn resolve_light(world: &mut World, resources: &mut Resources) {
     let (sun, sky) = light(world, resources);
     set_component(world, resources.sun, sun);
@@ -14,7 +14,7 @@ pub(super) fn resolve_light(world: &mut World, resources: &mut Resources) {
 }
 
 /// Sun and sky of the sources that the author wrote; `None` where there is none, and after an error.
-fn light(world: &World, resources: &mut Resources) -> (Option<Sun>, Option<Sky>) {
+fn light(world: &World, resources: &mut Resources) -> (Option<SunLight>, Option<SkyLight>) {
     let sun = world.get::<&document::Sun>(resources.sun).ok().and_then(|sun| {
         let path = "sun.irradiance";
         let irradiance = resolve_spectrum(&sun.irradiance, Quantity::Irradiance, path, resources)?;
@@ -23,7 +23,7 @@ fn light(world: &World, resources: &mut Resources) -> (Option<Sun>, Option<Sky>)
         let (zenith, azimuth) = sun.angles_deg()?;
         let view = View { zenith: zenith.to_radians(), azimuth: azimuth.to_radians() };
         let radius = 0.5 * sun.disc_deg.to_radians();
-        Some(Sun { direction: view.direction(), radius, irradiance })
+        Some(SunLight { direction: view.direction(), radius, irradiance })
     });
     let sky = world.get::<&document::Sky>(resources.sky);
     match &*sky.expect("`spawn` gives the sky its source") {
@@ -31,18 +31,18 @@ fn light(world: &World, resources: &mut Resources) -> (Option<Sun>, Option<Sky>)
         document::Sky::Isotropic { irradiance } => {
             let at = "sky.irradiance";
             let irradiance = resolve_spectrum(irradiance, Quantity::Irradiance, at, resources);
-            (sun, irradiance.map(|irradiance| Sky { irradiance }))
+            (sun, irradiance.map(|irradiance| SkyLight { irradiance }))
         }
         document::Sky::Fraction(fractions) => {
             // `document::check` asks for a sun and for one fraction a band; the sky is dark at night.
-            let sky = sun.as_ref().map(|sun| Sky {
+            let sky = sun.as_ref().map(|sun| SkyLight {
                 irradiance: fractions
                     .iter()
                     .zip(&sun.irradiance)
                     .map(|(s, e)| e * s * sun.direction.z)
                     .collect(),
             });
-            let sun = sun.map(|sun| Sun {
+            let sun = sun.map(|sun| SunLight {
                 irradiance: fractions
                     .iter()
                     .zip(&sun.irradiance)

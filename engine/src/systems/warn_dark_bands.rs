@@ -1,13 +1,13 @@
 use hecs::World;
 
 use super::Resources;
-use crate::components::{Sky, Sun};
+use crate::components::{SkyLight, SunLight};
 use crate::document::{Diagnostic, ImageMeasure, PhotonMeasure, Sensor};
 
-/// Warns of bands without light in which a sensor measures reflectance. Reads [`Sun`], [`Sky`] and `document::Sensor`.
+/// Warns of bands without light in which a sensor measures reflectance. Reads [`SunLight`], [`SkyLight`] and `document::Sensor`.
 pub(super) fn warn_dark_bands(world: &mut World, resources: &mut Resources) {
-    let sun = world.get::<&Sun>(resources.sun).ok();
-    let sky = world.get::<&Sky>(resources.sky).ok();
+    let sun = world.get::<&SunLight>(resources.sun).ok();
+    let sky = world.get::<&SkyLight>(resources.sky).ok();
     let lights = [sun.as_ref().map(|sun| &sun.irradiance), sky.as_ref().map(|sky| &sky.irradiance)];
     let is_dark = |band: usize| lights.iter().flatten().all(|light| light[band] <= 0.0);
     // Reflectance is measured in bands of emission as well.

@@ -5,7 +5,7 @@ use hecs::World;
 use super::Resources;
 use super::measure_bounds::placed_meshes;
 use crate::components::{Instance, InstanceQuery, LeafArea, TerrainPatch};
-use crate::document::{Diagnostic, Mesh};
+use crate::document::{Diagnostic, Prototype};
 
 /// Leaf area over the area of a plant's outline from above; crowns of trees have 2 to 15.
 const LEAF_AREA_OF_PLANT: f64 = 40.0;
@@ -34,7 +34,7 @@ struct Plants {
 }
 
 /// Warns of leaf areas and numbers of stems that no plant or stand has: units or decimal points that went wrong. Reads
-/// the components of instances, [`LeafArea`], `MeshBounds`, `document::Mesh` and [`TerrainPatch`].
+/// the components of instances, [`LeafArea`], `MeshBounds`, `document::Prototype` and [`TerrainPatch`].
 pub(super) fn warn_implausible_plants(world: &mut World, resources: &mut Resources) {
     let Ok(patch) = world.get::<&TerrainPatch>(resources.terrain) else { return };
     let area = patch.size.element_product();
@@ -51,8 +51,8 @@ pub(super) fn warn_implausible_plants(world: &mut World, resources: &mut Resourc
             );
             let help = format!(
                 "crowns have 2 to 15{}",
-                match world.get::<&Mesh>(resources.meshes[plant.name.as_str()]).as_deref() {
-                    Ok(Mesh::Crown(_)) =>
+                match world.get::<&Prototype>(resources.meshes[plant.name.as_str()]).as_deref() {
+                    Ok(Prototype::Crown(_)) =>
                         "; `leaf_area_m2` is the one-sided area of all leaves of one crown",
                     _ => "; is its unit right, and is it one plant?",
                 }

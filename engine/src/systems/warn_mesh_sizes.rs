@@ -4,23 +4,23 @@ use super::Resources;
 use super::measure_bounds::placed_meshes;
 use super::warn_implausible_plants::TALLEST;
 use crate::components::MeshBounds;
-use crate::document::{Diagnostic, Mesh};
+use crate::document::{Diagnostic, Prototype};
 
 /// A mesh that a unit below a metre makes smaller than this, m, was most likely in metres.
 const SMALLEST: f32 = 0.3;
 
-/// Warns of meshes from files that are larger than any plant. Reads `document::Mesh` and [`MeshBounds`] of placed
+/// Warns of meshes from files that are larger than any plant. Reads `document::Prototype` and [`MeshBounds`] of placed
 /// meshes.
 pub(super) fn warn_mesh_sizes(world: &mut World, resources: &mut Resources) {
     for mesh in placed_meshes(world).values() {
         let name = &mesh.name;
         let unit = match &*world
-            .get::<&Mesh>(resources.meshes[name.as_str()])
+            .get::<&Prototype>(resources.meshes[name.as_str()])
             .expect("`spawn` gives each mesh prototype its source")
         {
-            Mesh::Obj(obj) => obj.unit_m,
-            Mesh::Gltf(_) | Mesh::Discs { .. } => 1.0,
-            Mesh::Faces { .. } | Mesh::Crown(_) => continue,
+            Prototype::Obj(obj) => obj.unit_m,
+            Prototype::Gltf(_) | Prototype::Discs { .. } => 1.0,
+            Prototype::Faces { .. } | Prototype::Crown(_) => continue,
         };
         let Some(MeshBounds { low, high }) = mesh.bounds else { continue };
         let size = (high - low).max_element();

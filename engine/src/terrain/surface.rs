@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::components::{MaterialId, Mesh, Part, PartMaterials, TerrainPatch};
+use crate::components::{MaterialId, Mesh, MeshPart, PartMaterials, TerrainPatch};
 
 /// Triangles of the ground over its rectangle, before they are a terrain.
 #[derive(Clone, Debug)]
@@ -125,12 +125,12 @@ impl TerrainSurface {
         let mut materials = Vec::new();
         for (index, (name, material)) in parts.into_iter().enumerate() {
             let triangles = start(index as u16)..start(index as u16 + 1);
-            named.push(Part { name, triangles, discs: 0..0 });
+            named.push(MeshPart { name, triangles, discs: 0..0 });
             materials.push(material);
         }
         if let (true, Some(&material)) = (first_cut < end, materials.first()) {
             let name = "cut".to_owned();
-            named.push(Part { name, triangles: first_cut..end, discs: 0..0 });
+            named.push(MeshPart { name, triangles: first_cut..end, discs: 0..0 });
             materials.push(material);
         }
         let mesh = Mesh {

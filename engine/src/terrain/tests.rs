@@ -190,7 +190,7 @@ fn opposite_sides_that_differ_get_walls_and_others_do_not() {
 #[test]
 fn a_mesh_is_turned_up_and_keeps_its_parts() {
     let vertices = [(0.0, 0.0), (8.0, 0.0), (8.0, 4.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)];
-    let part = |name: &str, triangles| crate::components::Part {
+    let part = |name: &str, triangles| crate::components::MeshPart {
         name: name.to_owned(),
         triangles,
         discs: 0..0,

@@ -31,8 +31,8 @@ pub use films::{
 pub use paths::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS, TracedRay};
 pub use photons::{
     AbsorbedCounter, AlbedoCounter, Cell, CellCounter, ConeCounter, Counter, EnergyCounter,
-    FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightBeside, PacketOptions,
-    Part, PartCounter, PhotonKind, Tally, ViewCounter, photon_film, spectra,
+    FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightBeside, OrderCounter,
+    PacketOptions, PhotonKind, ScatteringOrder, Tally, ViewCounter, photon_film, spectra,
 };
 pub use plane::ReferencePlane;
 pub use roulette::RouletteThreshold;

@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::accel::Ray;
-use crate::components::VirtualPlane;
+use crate::components::CountingPlane;
 use crate::extract::Stage;
 
 /// The horizontal rectangle that a measurement refers to: reflected light counts if it leaves through
@@ -37,7 +37,7 @@ pub struct ReferencePlane {
 impl ReferencePlane {
     /// A virtual plane or, without one, the scene's own.
     #[must_use]
-    pub fn new(plane: Option<&VirtualPlane>, stage: &Stage) -> Self {
+    pub fn new(plane: Option<&CountingPlane>, stage: &Stage) -> Self {
         let scene = Self {
             corner: stage.corner,
             size: stage.size,

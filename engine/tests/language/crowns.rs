@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use sunfleck::document::{
-    Branches, Clumps, CrownShape, GeneratedCrown, LeafAngle, LeafProfile, LeafShape, Mesh, Trunk,
+    Branches, Clumps, CrownShape, GeneratedCrown, LeafAngle, LeafProfile, LeafShape, Prototype,
+    Trunk,
 };
 
 use crate::writing::{list, number, option, text};
@@ -68,7 +69,7 @@ fn profile() -> impl Strategy<Value = LeafProfile> {
     ]
 }
 
-pub(crate) fn crown() -> BoxedStrategy<Mesh> {
+pub(crate) fn crown() -> BoxedStrategy<Prototype> {
     let trunk =
         (number(), number(), number()).prop_map(|(height_m, diameter_m, tip_diameter_m)| Trunk {
             height_m,
@@ -100,7 +101,7 @@ pub(crate) fn crown() -> BoxedStrategy<Mesh> {
             let (base_m, leaf_area_m2, leaf_profile, clumps, leaf_angle, leaf, leaf_material) =
                 leaves;
             let (leaf, overlap, min_distance_m) = leaf;
-            Mesh::Crown(GeneratedCrown {
+            Prototype::Crown(GeneratedCrown {
                 shape,
                 base_m,
                 leaf_area_m2,

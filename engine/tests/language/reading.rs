@@ -3,9 +3,9 @@
 use std::io::Write as _;
 
 use sunfleck::document::{
-    Boundary, Diagnostic, Lambertian, Material, Mesh, Photons, ReadError, ReadOptions, Reading,
-    Scene, Sensor, Sky, Spectrum, Sun, TabulatedSpectrum, check, nearest, read_file, read_text,
-    unknown_name,
+    Boundary, Diagnostic, Lambertian, Material, Photons, Prototype, ReadError, ReadOptions,
+    Reading, Scene, Sensor, Sky, Spectrum, Sun, TabulatedSpectrum, check, nearest, read_file,
+    read_text, unknown_name,
 };
 
 const DESIGN: &str = include_str!("design.ron");
@@ -237,7 +237,7 @@ fn a_scene_built_in_rust_is_checked_without_a_file() {
     assert_eq!(check(&scene), []);
     scene.bands[0].center_nm = f64::NAN;
     scene.frame.origin_m.2 = f64::INFINITY;
-    if let Some(Mesh::Discs { material, .. }) = scene.meshes.get_mut("crown") {
+    if let Some(Prototype::Discs { material, .. }) = scene.meshes.get_mut("crown") {
         *material = "laef".into();
     }
     assert_eq!(

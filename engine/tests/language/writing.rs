@@ -5,12 +5,12 @@ use proptest::prelude::*;
 use sunfleck::document::{
     Area, Axis, Band, BandSource, Boundary, Coating, Cover, Directions, Distribution, Ends,
     Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions, InstanceList,
-    InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Mesh, Obj, Origin,
+    InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj, Origin,
     Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture, Prospect,
-    ReadOptions, Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, Soilspect, Spa, SpeciesMeshes,
-    Spectrum, Stems, Sun, SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum,
-    Temperature, Terrain, TerrainPlane, ThermalSky, Transport, Until, ValueUnit, Views,
-    VirtualPlane, WavelengthUnit, read_file, read_text,
+    Prototype, ReadOptions, Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, Soilspect, Spa,
+    SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun, SunPosition, Sweep, System,
+    TableCoordinates, TabulatedSpectrum, Temperature, Terrain, TerrainPlane, ThermalSky, Transport,
+    ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file, read_text,
 };
 
 use crate::crowns::crown;
@@ -161,7 +161,7 @@ fn thermal_sky() -> BoxedStrategy<ThermalSky> {
     .boxed()
 }
 
-fn from_file() -> BoxedStrategy<Mesh> {
+fn from_file() -> BoxedStrategy<Prototype> {
     let axis = prop_oneof![Just(Axis::X), Just(Axis::Y), Just(Axis::Z)];
     let origin = prop_oneof![Just(Origin::File), Just(Origin::BaseCenter)];
     let parts_by = prop_oneof![Just(PartsBy::Group), Just(PartsBy::Material)];
@@ -169,18 +169,18 @@ fn from_file() -> BoxedStrategy<Mesh> {
     (option(parts_by), text(), axis, number(), map(text()), option(text()), origin)
         .prop_map(|(parts_by, file, up, unit_m, parts, material, origin)| match parts_by {
             Some(parts_by) => {
-                Mesh::Obj(Obj { file, up, unit_m, parts, parts_by, material, origin })
+                Prototype::Obj(Obj { file, up, unit_m, parts, parts_by, material, origin })
             }
-            None => Mesh::Gltf(Gltf { file, up, unit_m, parts, material, origin }),
+            None => Prototype::Gltf(Gltf { file, up, unit_m, parts, material, origin }),
         })
         .boxed()
 }
 
-fn mesh() -> BoxedStrategy<Mesh> {
-    let discs = (text(), text()).prop_map(|(file, material)| Mesh::Discs { file, material });
+fn mesh() -> BoxedStrategy<Prototype> {
+    let discs = (text(), text()).prop_map(|(file, material)| Prototype::Discs { file, material });
     let corner = (number(), number(), number());
     let faces = (list(list(corner)), text())
-        .prop_map(|(faces_m, material)| Mesh::Faces { faces_m, material });
+        .prop_map(|(faces_m, material)| Prototype::Faces { faces_m, material });
     prop_oneof![from_file(), discs, faces, crown()].boxed()
 }
 
@@ -444,10 +444,10 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
 
 fn ends() -> impl Strategy<Value = Ends> {
     let until = prop_oneof![
-        number().prop_map(Until::RelError),
-        map(number()).prop_map(Until::RelErrors),
-        number().prop_map(Until::Seconds),
-        any::<u64>().prop_map(Until::Samples),
+        number().prop_map(StopCriterion::RelError),
+        map(number()).prop_map(StopCriterion::RelErrors),
+        number().prop_map(StopCriterion::Seconds),
+        any::<u64>().prop_map(StopCriterion::Samples),
     ];
     list(until).prop_map(Ends)
 }

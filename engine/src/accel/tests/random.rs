@@ -2,7 +2,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use crate::{
     accel::{Boundary, Domain, InstanceInput, MeshInput, Scene},
-    components::{Disc, Mesh, Part},
+    components::{Disc, Mesh, MeshPart},
 };
 
 /// `SplitMix64`: tests need numbers that are alike everywhere.
@@ -62,7 +62,7 @@ impl Random {
 }
 
 pub(super) fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, discs: Vec<Disc>) -> Mesh {
-    let parts = vec![Part {
+    let parts = vec![MeshPart {
         name: "all".into(),
         triangles: 0..triangles.len() as u32,
         discs: 0..discs.len() as u32,

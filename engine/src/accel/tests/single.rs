@@ -3,7 +3,7 @@ use glam::{DMat3, DVec3, Vec3};
 use super::random::{Random, at, domain, mesh, quad, scene, square};
 use crate::{
     accel::{Boundary, InstanceInput, MeshInput, Ray, Scene},
-    components::{Disc, Mesh, Part},
+    components::{Disc, Mesh, MeshPart},
 };
 
 fn down(origin: DVec3) -> Ray {
@@ -65,8 +65,8 @@ fn a_hit_names_its_surface_primitive_and_front() {
     leaf.triangles.extend([[4, 6, 5], [4, 7, 6]]);
     leaf.discs.push(Disc { center: Vec3::new(0.0, 0.0, 2.0), normal: -Vec3::Z, radius: 0.5 });
     leaf.parts = vec![
-        Part { name: "top".into(), triangles: 0..2, discs: 0..0 },
-        Part { name: "bottom".into(), triangles: 2..4, discs: 0..1 },
+        MeshPart { name: "top".into(), triangles: 0..2, discs: 0..0 },
+        MeshPart { name: "bottom".into(), triangles: 2..4, discs: 0..1 },
     ];
     for mirror in [1.0, -1.0] {
         let one = InstanceInput {
@@ -110,7 +110,7 @@ fn a_quadrilateral_is_a_parallelogram_only_if_it_is_one() {
     kite[2].x = 1.1;
     assert_eq!(blocks(&quad(kite)), 2);
     let mut two_parts = quad(corners);
-    let part = |triangles| Part { name: "half".into(), triangles, discs: 0..0 };
+    let part = |triangles| MeshPart { name: "half".into(), triangles, discs: 0..0 };
     two_parts.parts = vec![part(0..1), part(1..2)];
     let input = [MeshInput { mesh: &two_parts, surfaces: &[0, 1] }];
     let scene =

@@ -19,7 +19,7 @@ use angles::Normals;
 use places::Places;
 
 use super::AssetError;
-use crate::components::{Mesh, Part};
+use crate::components::{Mesh, MeshPart};
 use crate::document::{
     self, Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk,
 };
@@ -141,8 +141,11 @@ pub fn grow_crown(crown: &CrownSpec) -> Result<Mesh, AssetError> {
         ("wood", leaf_triangles..triangles, leaf_discs..leaf_discs),
     ];
     let parts = parts.into_iter().filter(|(_, triangles, discs)| triangles.len() + discs.len() > 0);
-    let named =
-        |(name, triangles, discs): (&str, _, _)| Part { name: name.to_owned(), triangles, discs };
+    let named = |(name, triangles, discs): (&str, _, _)| MeshPart {
+        name: name.to_owned(),
+        triangles,
+        discs,
+    };
     mesh.parts = parts.map(named).collect();
     Ok(mesh)
 }

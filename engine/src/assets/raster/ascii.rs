@@ -12,7 +12,10 @@ use super::super::error::excerpt;
 use super::super::text::open;
 use super::metadata::BandMetadata;
 use super::window::CellWindow;
-use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
+use super::{
+    MOST_CELLS, Raster, RasterError, RasterExtent, RasterGeoreference, length, parse_no_data,
+    sidecar,
+};
 
 /// Stands for no data where a grid does not say what does. Source: Esri, "ESRI ASCII raster format".
 const DEFAULT_NO_DATA: f64 = -9999.0;
@@ -155,7 +158,7 @@ fn is_number(word: &str) -> bool {
     word.parse::<f64>().is_ok() || word.contains('#') && parse_no_data(word).is_some()
 }
 
-pub(super) fn read(path: &Path, extent: Option<&Extent>) -> Result<Raster, AssetError> {
+pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster, AssetError> {
     let file = open(path)?;
     let bytes = length(&file);
     let mut words =
@@ -171,7 +174,7 @@ pub(super) fn read(path: &Path, extent: Option<&Extent>) -> Result<Raster, Asset
     let (auxiliary, of_auxiliary) = sidecar::auxiliary(path).map_err(wrong)?;
     let crs = sidecar::projection(path).map_err(wrong)?.or(of_auxiliary);
     let crs = crs.unwrap_or_else(|| Crs::named(""));
-    let place = Place { corner, cell, crs, projection: None };
+    let place = RasterGeoreference { corner, cell, crs, projection: None };
     let (window, place) = CellWindow::new(columns, rows, Some(&place), extent).map_err(wrong)?;
     let count = columns.saturating_mul(rows);
     if count > MOST_CELLS * MOST_CELLS {

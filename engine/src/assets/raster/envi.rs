@@ -11,7 +11,9 @@ use super::metadata::BandMetadata;
 use super::names::{headers, values};
 use super::raw::{Interleave, SampleLayout, SampleType};
 use super::window::CellWindow;
-use super::{Extent, Place, Projection, Raster, RasterError, parse_no_data, sidecar};
+use super::{
+    Projection, Raster, RasterError, RasterExtent, RasterGeoreference, parse_no_data, sidecar,
+};
 use crate::files;
 
 /// Longest header, bytes.
@@ -105,7 +107,7 @@ impl EnviHeader {
         }
     }
 
-    fn place(&self, rows: u64) -> Result<Option<Place>, RasterError> {
+    fn place(&self, rows: u64) -> Result<Option<RasterGeoreference>, RasterError> {
         let Some(text) = self.get("map info") else { return Ok(None) };
         let items: Vec<&str> = text.split(',').map(str::trim).collect();
         let numbers: Vec<f64> =
@@ -150,7 +152,7 @@ impl EnviHeader {
             east - (column - 1.0) * width,
             north + (row - 1.0) * height - rows as f64 * height,
         );
-        Ok(Some(Place { corner, cell: DVec2::new(width, height), crs, projection }))
+        Ok(Some(RasterGeoreference { corner, cell: DVec2::new(width, height), crs, projection }))
     }
 
     /// The system that a `map info` and the well-known text beside it name.
@@ -185,7 +187,7 @@ impl EnviHeader {
 pub(super) fn read(
     named: &Path,
     header_path: &Path,
-    extent: Option<&Extent>,
+    extent: Option<&RasterExtent>,
 ) -> Result<Raster, RasterError> {
     let header = EnviHeader::read(header_path)?;
     let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
@@ -193,7 +195,7 @@ pub(super) fn read(
     let place = header.place(layout.rows)?;
     let (auxiliary, crs) = sidecar::auxiliary(&file)?;
     let place = place.map(|place| match crs {
-        Some(crs) if place.crs.name.is_empty() => Place { crs, ..place },
+        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
         _ => place,
     });
     let band = header.band()?.or(auxiliary);

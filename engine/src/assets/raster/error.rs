@@ -1,6 +1,6 @@
 use glam::DVec2;
 
-use super::Extent;
+use super::RasterExtent;
 
 /// Error of a file that is no raster or none that can be used, with advice; lines count from 1.
 #[non_exhaustive]
@@ -57,7 +57,7 @@ pub enum RasterError {
          a window is given in the local frame, which is the map less `frame.origin_m`",
         .window.min.x, .window.min.y, .window.max.x, .window.max.y, .min.x, .min.y, .max.x, .max.y
     )]
-    WindowBeside { window: Extent, min: DVec2, max: DVec2 },
+    WindowBeside { window: RasterExtent, min: DVec2, max: DVec2 },
     #[error("is {0}, which is not read; convert it: gdal_translate -of GTiff in out.tif")]
     Strange(&'static str),
     #[error(

@@ -13,7 +13,7 @@ use super::metadata::BandMetadata;
 use super::names::{headers, split, without};
 use super::raw::{Interleave, SampleLayout, SampleType};
 use super::window::CellWindow;
-use super::{Extent, Place, Raster, RasterError, parse_no_data, sidecar};
+use super::{Raster, RasterError, RasterExtent, RasterGeoreference, parse_no_data, sidecar};
 use crate::files;
 
 /// Longest header, bytes.
@@ -132,7 +132,11 @@ impl EsriHeader {
         })
     }
 
-    fn place(&self, rows: u64, crs: Option<Crs>) -> Result<Option<Place>, RasterError> {
+    fn place(
+        &self,
+        rows: u64,
+        crs: Option<Crs>,
+    ) -> Result<Option<RasterGeoreference>, RasterError> {
         let size = self.real("cellsize")?;
         let (width, height) = (self.real("xdim")?.or(size), self.real("ydim")?.or(size));
         let (Some(width), Some(height)) = (width, height) else { return Ok(None) };
@@ -155,7 +159,7 @@ impl EsriHeader {
             _ => return Ok(None),
         };
         let crs = crs.unwrap_or_else(|| Crs::named(""));
-        Ok(Some(Place { corner, cell, crs, projection: None }))
+        Ok(Some(RasterGeoreference { corner, cell, crs, projection: None }))
     }
 }
 
@@ -163,7 +167,7 @@ impl EsriHeader {
 pub(super) fn read(
     path: &Path,
     header_path: &Path,
-    extent: Option<&Extent>,
+    extent: Option<&RasterExtent>,
 ) -> Result<Raster, RasterError> {
     let file = if path == header_path { values_of(header_path)? } else { path.to_owned() };
     let unreadable = || RasterError::NoHeader(split(header_path).1);

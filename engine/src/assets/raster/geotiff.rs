@@ -13,7 +13,10 @@ use super::directory::{self, PhotometricPatch};
 use super::geokeys::GeoKeys;
 use super::metadata::BandMetadata;
 use super::window::CellWindow;
-use super::{Extent, MOST_CELLS, Place, Raster, RasterError, length, parse_no_data, sidecar};
+use super::{
+    MOST_CELLS, Raster, RasterError, RasterExtent, RasterGeoreference, length, parse_no_data,
+    sidecar,
+};
 use crate::files;
 
 type Tiff = Decoder<BufReader<PhotometricPatch<File>>>;
@@ -52,7 +55,7 @@ fn open(mut file: File) -> Result<Opened, RasterError> {
 pub(super) fn read(
     path: &Path,
     file: File,
-    extent: Option<&Extent>,
+    extent: Option<&RasterExtent>,
 ) -> Result<Raster, RasterError> {
     let Opened { mut tiff, length, mask } = open(file)?;
     let (columns, rows) = tiff.dimensions().map_err(wrong)?;
@@ -66,7 +69,7 @@ pub(super) fn read(
     };
     let (auxiliary, crs) = sidecar::auxiliary(path)?;
     let place = place.map(|place| match crs {
-        Some(crs) if place.crs.name.is_empty() => Place { crs, ..place },
+        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
         _ => place,
     });
     let band = band(&mut tiff)?.or(auxiliary);
@@ -270,7 +273,11 @@ fn reals(tiff: &mut Tiff, tag: Tag) -> Result<Option<Vec<f64>>, RasterError> {
     value.map(|value| value.into_f64_vec().map_err(wrong)).transpose()
 }
 
-fn place(tiff: &mut Tiff, columns: f64, rows: f64) -> Result<Option<Place>, RasterError> {
+fn place(
+    tiff: &mut Tiff,
+    columns: f64,
+    rows: f64,
+) -> Result<Option<RasterGeoreference>, RasterError> {
     let scale = reals(tiff, Tag::ModelPixelScaleTag)?;
     let tie = reals(tiff, Tag::ModelTiepointTag)?;
     let map = reals(tiff, Tag::ModelTransformationTag)?;
@@ -306,5 +313,5 @@ fn place(tiff: &mut Tiff, columns: f64, rows: f64) -> Result<Option<Place>, Rast
     if !(columns * cell.x).is_finite() {
         return Err(RasterError::BadCell { width: cell.x, height: cell.y });
     }
-    Ok(Some(Place { corner, cell, crs: keys.crs(), projection: None }))
+    Ok(Some(RasterGeoreference { corner, cell, crs: keys.crs(), projection: None }))
 }

@@ -27,7 +27,7 @@ use super::text::open;
 
 pub use error::RasterError;
 pub(crate) use sidecar::companions;
-pub use window::Extent;
+pub use window::RasterExtent;
 
 pub use crate::components::Projection;
 
@@ -45,7 +45,7 @@ pub struct Raster {
     /// NaN where there is no data.
     pub values: Vec<f64>,
     /// Georeference, if the file has one.
-    pub place: Option<Place>,
+    pub place: Option<RasterGeoreference>,
     /// Names of classes by their value, if it is an ENVI classification; else empty.
     pub class_names: Vec<String>,
     /// Unit of its values, if the file says so.
@@ -65,7 +65,7 @@ pub struct Assumed {
 
 /// Georeference of a raster, in the units of its coordinates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct RasterGeoreference {
     /// South-west corner of the south-westernmost cell (its corner, not its centre).
     pub corner: DVec2,
     /// Width and height of a cell.
@@ -133,7 +133,7 @@ impl Raster {
 ///
 /// # Errors
 /// What the file lacks or says wrongly.
-pub fn read_raster(path: &Path, extent: Option<&Extent>) -> Result<Raster, AssetError> {
+pub fn read_raster(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster, AssetError> {
     let mut start = Vec::new();
     open(path)?
         .take(512)

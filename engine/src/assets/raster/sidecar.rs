@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::super::crs::{Crs, from_name};
 use super::metadata::BandMetadata;
 use super::names::{VALUES, headers, named, split, values, without};
-use super::{Place, RasterError};
+use super::{RasterError, RasterGeoreference};
 use crate::files;
 
 /// Longest of them, bytes.
@@ -93,7 +93,7 @@ pub(super) fn mask(path: &Path) -> Option<PathBuf> {
 }
 
 /// Reads the georeference of a picture from its world file: `dem.tfw`, `dem.tifw` or `dem.wld`.
-pub(super) fn world(path: &Path, rows: f64) -> Result<Option<Place>, RasterError> {
+pub(super) fn world(path: &Path, rows: f64) -> Result<Option<RasterGeoreference>, RasterError> {
     let found = ["tfw", "tifw", "tiffw", "wld"].into_iter().find_map(|ending| beside(path, ending));
     let Some(file) = found else { return Ok(None) };
     let content = text(&file).unwrap_or_default();
@@ -109,7 +109,7 @@ pub(super) fn world(path: &Path, rows: f64) -> Result<Option<Place>, RasterError
     let cell = DVec2::new(width, -height);
     let corner = DVec2::new(x - 0.5 * cell.x, y + 0.5 * cell.y - rows * cell.y);
     let crs = projection(path)?.unwrap_or_else(|| Crs::named(""));
-    Ok(Some(Place { corner, cell, crs, projection: None }))
+    Ok(Some(RasterGeoreference { corner, cell, crs, projection: None }))
 }
 
 /// Files that belong to a raster, for lists of the files of a scene.

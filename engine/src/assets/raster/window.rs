@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::{Place, RasterError, cells};
+use super::{RasterError, RasterGeoreference, cells};
 
 /// Rectangle in the coordinates of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct RasterExtent {
     /// South-west corner.
     pub min: DVec2,
     /// North-east corner.
@@ -27,9 +27,9 @@ impl CellWindow {
     pub(super) fn new(
         columns: u64,
         rows: u64,
-        place: Option<&Place>,
-        extent: Option<&Extent>,
-    ) -> Result<(Self, Option<Place>), RasterError> {
+        place: Option<&RasterGeoreference>,
+        extent: Option<&RasterExtent>,
+    ) -> Result<(Self, Option<RasterGeoreference>), RasterError> {
         let Some(extent) = extent else {
             cells(columns, rows)?;
             let window = Self { columns: 0..columns as usize, rows: 0..rows as usize };
@@ -55,7 +55,7 @@ impl CellWindow {
             rows: (rows - end.y) as usize..(rows - first.y) as usize,
         };
         let corner = place.corner + low * cell;
-        Ok((window, Some(Place { corner, ..place.clone() })))
+        Ok((window, Some(RasterGeoreference { corner, ..place.clone() })))
     }
 
     /// Number of cells.

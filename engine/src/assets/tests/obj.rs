@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::assets::{Loaded, read_obj};
-use crate::components::Part;
+use crate::components::MeshPart;
 
 fn read(text: &str) -> Result<Loaded<Mesh>, AssetError> {
     read_obj(file(text).path(), &AS_IS, &PartsBy::Group)
@@ -134,7 +134,7 @@ fn faces_without_area_are_dropped_and_counted() {
     let body = "v 2 0 0\ng a\nf 1 2 3\nf 1 2 5\nf 1 1 2\nf 2 2 2\ng flat\nf 1 2 5\n";
     let Loaded { value, warnings } = read(&format!("{SQUARE}{body}")).unwrap();
     assert_lawful(&value);
-    assert_eq!(value.parts, [Part { name: "a".to_owned(), triangles: 0..1, discs: 0..0 }]);
+    assert_eq!(value.parts, [MeshPart { name: "a".to_owned(), triangles: 0..1, discs: 0..0 }]);
     assert!(warnings[0].ends_with(": 4 triangles without area were dropped"), "{warnings:?}");
     assert!(warnings[1].ends_with(": part \"flat\" has no triangle and was left out"));
     assert_eq!(warnings.len(), 2);

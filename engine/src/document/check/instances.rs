@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use super::super::diagnostic::{Diagnostic, suggestion};
 use super::super::scene::{
     Area, CanopyHeights, Distribution, INSTANCE_COLUMNS, InstanceList, InstanceTable, Instances,
-    Mesh, Ref, Rule, Scatter, Scene, SpeciesMeshes, Stems, meant_column,
+    Prototype, Ref, Rule, Scatter, Scene, SpeciesMeshes, Stems, meant_column,
 };
 use super::{Report, count};
 
@@ -134,7 +134,7 @@ fn check_scatter(scatter: &Scatter, path: &str, report: &mut Report<'_>) {
     report.finite(&format!("{path}.sink_m"), &[*sink_m]);
 }
 
-fn check_shares(of: &IndexMap<Ref<Mesh>, f64>, path: &str, report: &mut Report<'_>) {
+fn check_shares(of: &IndexMap<Ref<Prototype>, f64>, path: &str, report: &mut Report<'_>) {
     if of.is_empty() {
         let help = "write, for example, `of: { \"oak\": 0.7, \"birch\": 0.3 }`";
         report.error(path, "nothing would stand there", help);

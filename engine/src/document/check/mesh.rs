@@ -1,7 +1,7 @@
 //! Mesh prototypes.
 
 use super::super::diagnostic::Diagnostic;
-use super::super::scene::{Mesh, MeshFile, Scene};
+use super::super::scene::{MeshFile, Prototype, Scene};
 use super::Report;
 use super::crown::check_crown;
 
@@ -10,13 +10,13 @@ pub(super) fn check_meshes(scene: &Scene, report: &mut Report<'_>) {
     for (name, mesh) in &scene.meshes {
         let path = format!("meshes.{name}");
         match mesh {
-            Mesh::Obj(obj) => check_file(&path, &obj.mesh_file(), report),
-            Mesh::Gltf(gltf) => check_file(&path, &gltf.mesh_file(), report),
-            Mesh::Discs { .. } => {}
-            Mesh::Faces { faces_m, .. } => {
+            Prototype::Obj(obj) => check_file(&path, &obj.mesh_file(), report),
+            Prototype::Gltf(gltf) => check_file(&path, &gltf.mesh_file(), report),
+            Prototype::Discs { .. } => {}
+            Prototype::Faces { faces_m, .. } => {
                 check_faces(&format!("{path}.faces_m"), faces_m, report);
             }
-            Mesh::Crown(crown) => check_crown(&path, crown, report),
+            Prototype::Crown(crown) => check_crown(&path, crown, report),
         }
     }
 }

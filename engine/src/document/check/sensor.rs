@@ -4,7 +4,7 @@ use std::mem::discriminant;
 
 use super::super::diagnostic::Diagnostic;
 use super::super::scene::{
-    ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, Terrain, TerrainPlane, Until, Views,
+    ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, StopCriterion, Terrain, TerrainPlane, Views,
 };
 use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
@@ -107,8 +107,8 @@ fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
     for (index, end) in ends.iter().enumerate() {
         let path = if ends.len() == 1 { path.to_owned() } else { format!("{path}[{index}]") };
         match end {
-            Until::RelError(error) => check_rel_error(&path, *error, report),
-            Until::RelErrors(errors) => {
+            StopCriterion::RelError(error) => check_rel_error(&path, *error, report),
+            StopCriterion::RelErrors(errors) => {
                 if errors.is_empty() && report.is_whole(&path) {
                     let help = "write `RelErrors({ \"brf\": 0.01 })`, or `RelError(0.01)` for all";
                     report.error(&path, "no product is named", help);
@@ -117,16 +117,16 @@ fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
                     check_rel_error(&format!("{path}.{name}"), *error, report);
                 }
             }
-            Until::Seconds(seconds) => report.above_zero(&path, *seconds),
-            Until::Samples(samples) if *samples < least => {
+            StopCriterion::Seconds(seconds) => report.above_zero(&path, *seconds),
+            StopCriterion::Samples(samples) if *samples < least => {
                 let message = format!("expected {least} samples or more, found {samples}");
                 report.error(&path, message, "fewer give no error estimate");
             }
-            Until::Samples(samples) if *samples > MOST_SAMPLES => {
+            StopCriterion::Samples(samples) if *samples > MOST_SAMPLES => {
                 let message = format!("expected {MOST_SAMPLES} samples or fewer, found {samples}");
                 report.error(&path, message, "the first of several ends that holds ends it: `[RelError(0.01), Seconds(60.0)]`");
             }
-            Until::Samples(_) => {}
+            StopCriterion::Samples(_) => {}
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The ground.
 
-use super::{FilePath, Map, Material, Mesh, Ref};
+use super::{FilePath, Map, Material, Prototype, Ref};
 
 choice! {
     /// The ground.
@@ -13,7 +13,7 @@ choice! {
         /// A mesh, whose rectangle is the one around it.
         Mesh {
             /// Its name among `meshes`.
-            mesh: Ref<Mesh> => r#""hill""#,
+            mesh: Ref<Prototype> => r#""hill""#,
             /// Where its origin lies, m.
             at_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
         },

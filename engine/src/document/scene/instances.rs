@@ -11,7 +11,7 @@ use super::super::diagnostic::nearest;
 use super::super::encode::Encode;
 use super::super::leaves::Walk;
 use super::super::ron_text::{Node, Text, Value};
-use super::{FilePath, InstancesName, Map, Mesh, Ref};
+use super::{FilePath, InstancesName, Map, Prototype, Ref};
 
 choice! {
     /// Instances of mesh prototypes.
@@ -55,7 +55,7 @@ record! {
     /// Instances at places that the scene lists.
     pub struct InstanceList ("a list of instances") {
         /// Mesh that stands there.
-        of: Ref<Mesh> => r#""tree""#,
+        of: Ref<Prototype> => r#""tree""#,
         /// Positions, m.
         at_m: Vec<(f64, f64, f64)> => "[(20.0, 30.0, 0.0)]",
         /// Turn of each (counter-clockwise seen from above), degrees; none if empty.
@@ -73,7 +73,7 @@ record! {
     /// Instances that a rule of placement puts on the terrain.
     pub struct Scatter ("scattered instances") {
         /// Meshes and their shares. One more leaves all stems in place: some become its own.
-        of: IndexMap<Ref<Mesh>, f64> => r#"{ "oak": 0.7, "birch": 0.3 }"#,
+        of: IndexMap<Ref<Prototype>, f64> => r#"{ "oak": 0.7, "birch": 0.3 }"#,
         /// How places are chosen.
         rule: Rule,
         /// How many.
@@ -112,7 +112,7 @@ record! {
         file: FilePath => r#""chm.asc""#,
         /// Meshes. Each tree gets the one whose ratio of height to crown diameter is nearest to
         /// its own, scaled to both.
-        of: Vec<Ref<Mesh>> => r#"["oak", "fir"]"#,
+        of: Vec<Ref<Prototype>> => r#"["oak", "fir"]"#,
         /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
         /// for feet. Without it, heights that the file says are in feet become metres.
         height_unit_m: Option<f64> => "0.01" = None,
@@ -249,9 +249,9 @@ choice! {
 #[serde(untagged)]
 pub enum SpeciesMeshes {
     /// The same for all.
-    One(Ref<Mesh>),
+    One(Ref<Prototype>),
     /// By the column `species`.
-    BySpecies(Map<Ref<Mesh>>),
+    BySpecies(Map<Ref<Prototype>>),
 }
 
 impl SpeciesMeshes {
@@ -275,7 +275,7 @@ impl Decode for SpeciesMeshes {
     }
 
     fn schema(book: &mut Book) -> serde_json::Value {
-        serde_json::json!({ "anyOf": [String::schema(book), Map::<Ref<Mesh>>::schema(book)] })
+        serde_json::json!({ "anyOf": [String::schema(book), Map::<Ref<Prototype>>::schema(book)] })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {

@@ -5,7 +5,7 @@ use super::{FilePath, Map, Material, Ref};
 
 choice! {
     /// A mesh prototype.
-    pub enum Mesh ("a mesh") {
+    pub enum Prototype ("a mesh") {
         /// Wavefront OBJ; `parts_by` says what the parts are.
         Obj(..Obj),
         /// glTF 2.0 or GLB; materials are the parts.
@@ -116,7 +116,7 @@ impl Gltf {
     }
 }
 
-impl Mesh {
+impl Prototype {
     /// Keys of a mesh from a file with parts, if it is one.
     #[must_use]
     pub fn mesh_file(&self) -> Option<MeshFile<'_>> {

@@ -25,7 +25,7 @@ pub use instances::{
     Rule, Scatter, SpeciesMeshes, Stems, TableCoordinates, meant_column,
 };
 pub use light::{Sky, Spa, Sun, SunPosition};
-pub use mesh::{Axis, GeneratedCrown, Gltf, Mesh, MeshFile, Obj, Origin, PartsBy};
+pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Prototype};
 pub use param::Param;
 pub use program::{Include, Sweep};
 pub use reference::{Definition, FilePath, InstancesName, NamePattern, Ref};
@@ -40,7 +40,7 @@ pub use spectrum::{
 };
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
-pub use until::{Ends, Until};
+pub use until::{Ends, StopCriterion};
 
 /// Named values in document order.
 pub type Map<T> = IndexMap<String, T>;
@@ -67,7 +67,7 @@ record! {
         /// Surfaces.
         materials: Map<Material> = Map::new(),
         /// Mesh prototypes.
-        meshes: Map<Mesh> = Map::new(),
+        meshes: Map<Prototype> = Map::new(),
         /// The ground.
         terrain: Terrain => r#"Plane(size_m: (100.0, 100.0), material: "soil")"#,
         /// What stands on it.

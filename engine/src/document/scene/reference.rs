@@ -17,7 +17,7 @@ use super::super::describe::Book;
 use super::super::encode::Encode;
 use super::super::leaves::{LeafValue, Target, Walk};
 use super::super::ron_text::{Node, Text};
-use super::{Map, Material, Mesh, Scene, Spectrum};
+use super::{Map, Material, Prototype, Scene, Spectrum};
 
 /// A type whose values the scene defines by name.
 pub trait Definition: Sized + 'static {
@@ -45,7 +45,7 @@ macro_rules! definition {
 
 definition! {
     Material: "material", materials;
-    Mesh: "mesh", meshes;
+    Prototype: "mesh", meshes;
     Spectrum: "spectrum", spectra;
 }
 

@@ -13,7 +13,7 @@ use super::Map;
 
 choice! {
     /// When a measurement is good enough.
-    pub enum Until ("an end of the measurement") {
+    pub enum StopCriterion ("an end of the measurement") {
         /// The median relative standard error of each product that the sensor reports is at most this;
         /// of an image it is that of its pixels.
         RelError(f64 => "0.005"),
@@ -29,14 +29,14 @@ choice! {
 /// Ends of a measurement, one or a list: the first that holds ends it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "OneOrMany", into = "OneOrMany")]
-pub struct Ends(pub Vec<Until>);
+pub struct Ends(pub Vec<StopCriterion>);
 
 /// Form of [`Ends`] in files.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(untagged)]
 enum OneOrMany {
-    One(Until),
-    Many(Vec<Until>),
+    One(StopCriterion),
+    Many(Vec<StopCriterion>),
 }
 
 impl From<OneOrMany> for Ends {
@@ -50,15 +50,15 @@ impl From<OneOrMany> for Ends {
 
 impl From<Ends> for OneOrMany {
     fn from(ends: Ends) -> Self {
-        match <[Until; 1]>::try_from(ends.0) {
+        match <[StopCriterion; 1]>::try_from(ends.0) {
             Ok([end]) => Self::One(end),
             Err(ends) => Self::Many(ends),
         }
     }
 }
 
-impl From<Until> for Ends {
-    fn from(end: Until) -> Self {
+impl From<StopCriterion> for Ends {
+    fn from(end: StopCriterion) -> Self {
         Self(vec![end])
     }
 }
@@ -69,22 +69,22 @@ impl Decode for Ends {
     }
 
     fn example() -> String {
-        Until::example()
+        StopCriterion::example()
     }
 
     fn schema(book: &mut Book) -> serde_json::Value {
-        serde_json::json!({ "anyOf": [Until::schema(book), Vec::<Until>::schema(book)] })
+        serde_json::json!({ "anyOf": [StopCriterion::schema(book), Vec::<StopCriterion>::schema(book)] })
     }
 
     fn decode<'a>(node: &'a Node, reader: &mut Reader<'a>) -> Self {
         match &node.value {
             Value::List(_) => Self(Vec::decode(node, reader)),
-            _ => Until::decode(node, reader).into(),
+            _ => StopCriterion::decode(node, reader).into(),
         }
     }
 
     fn placeholder() -> Self {
-        Until::placeholder().into()
+        StopCriterion::placeholder().into()
     }
 }
 

@@ -28,14 +28,14 @@ pub struct MapFrame {
     /// Coordinate reference system of the scene, if it is known.
     pub(super) crs: Option<CoordinateSystem>,
     /// Coordinates of rasters in the local frame; `None` if the raster of the terrain has no georeference.
-    pub(super) georeference: Option<Georeference>,
+    pub(super) transform: Option<MapTransform>,
     /// Unit and kind of the coordinates of the terrain's raster.
     pub(super) axes: Axes,
 }
 
 /// Transformation of coordinates of the map to the local frame: `to + (place - from) scale`, m.
 #[derive(Clone, Copy, Debug)]
-pub struct Georeference {
+pub struct MapTransform {
     pub(super) from: DVec2,
     pub(super) to: DVec2,
     pub(super) scale: DVec2,
@@ -44,7 +44,7 @@ pub struct Georeference {
     pub(super) is_given: bool,
 }
 
-impl Georeference {
+impl MapTransform {
     /// Transformation by the anchor of the frame.
     pub(super) fn from_frame(resources: &Resources) -> Self {
         let (x, y, _) = resources.frame.origin_m;
@@ -66,8 +66,8 @@ impl Georeference {
 impl MapFrame {
     /// Map of the frame, before the terrain's raster is read.
     pub(super) fn from_frame(resources: &Resources) -> Self {
-        let georeference = Some(Georeference::from_frame(resources));
-        Self { crs: resources.frame_crs.clone(), georeference, axes: Axes::Unknown }
+        let transform = Some(MapTransform::from_frame(resources));
+        Self { crs: resources.frame_crs.clone(), transform, axes: Axes::Unknown }
     }
 }
 
@@ -80,7 +80,7 @@ pub(super) fn locate_raster(
     map: &MapFrame,
     resources: &mut Resources,
 ) -> Option<(DVec2, DVec2)> {
-    let (Some(place), Some(reference)) = (&raster.place, map.georeference) else {
+    let (Some(place), Some(reference)) = (&raster.place, map.transform) else {
         return Some((terrain.min, terrain.size()));
     };
     if raster.is_in_degrees() != reference.is_of_degrees {

@@ -3,10 +3,11 @@
 
 use glam::DVec2;
 
-use super::{Georeference, MapFrame, check_crs};
+use super::{MapFrame, MapTransform, check_crs};
 use crate::assets::crs::TargetSystem;
 use crate::assets::{
-    AssetError, Assumed, Axes, Extent, Heights, Length, Place, Raster, RasterError, read_raster,
+    AssetError, Assumed, Axes, Heights, Length, Raster, RasterError, RasterExtent,
+    RasterGeoreference, read_raster,
 };
 use crate::document::{Coordinates, Diagnostic};
 use crate::geometry::Rectangle;
@@ -37,7 +38,7 @@ pub(in crate::systems) struct RasterSource<'a> {
     /// Length of the unit of heights, m, if the scene says so.
     pub(in crate::systems) height_unit_m: Option<f64>,
     /// Needed part, in the coordinates of the file.
-    pub(in crate::systems) extent: Option<Extent>,
+    pub(in crate::systems) extent: Option<RasterExtent>,
 }
 
 impl<'a> RasterSource<'a> {
@@ -91,22 +92,22 @@ pub(in crate::systems) fn read_georaster(
 }
 
 /// Extent in the coordinates of the map of a part of the local frame.
-pub(in crate::systems) fn extent_on_map(part: Rectangle, map: &MapFrame) -> Option<Extent> {
-    let Georeference { from, to, scale, .. } = map.georeference?;
+pub(in crate::systems) fn extent_on_map(part: Rectangle, map: &MapFrame) -> Option<RasterExtent> {
+    let MapTransform { from, to, scale, .. } = map.transform?;
     let back = |place: DVec2| from + (place - to) / scale;
-    Some(Extent { min: back(part.min), max: back(part.max) })
+    Some(RasterExtent { min: back(part.min), max: back(part.max) })
 }
 
 /// Refuses coordinates in another unit than metres and degrees, unless the scene says what they are.
 fn check_unit(
-    place: &Place,
+    place: &RasterGeoreference,
     raster: &Raster,
     source: &RasterSource<'_>,
     map: &MapFrame,
     resources: &mut Resources,
 ) -> Option<()> {
     let is_as_terrain = map
-        .georeference
+        .transform
         .as_ref()
         .is_none_or(|reference| reference.is_given && map.axes == place.crs.axes);
     if source.has_size || source.coordinates.is_some() || is_as_terrain {
@@ -215,7 +216,7 @@ fn in_unit(unit: &Length, system: &str) -> String {
 }
 
 /// Message about a map of the world, with the ratio of its metres to those on the ground if it is known.
-fn world_message(place: &Place, raster: &Raster) -> String {
+fn world_message(place: &RasterGeoreference, raster: &Raster) -> String {
     /// Radius of the sphere of Web Mercator, m.
     const RADIUS: f64 = 6_378_137.0;
     let name = &place.crs.name;

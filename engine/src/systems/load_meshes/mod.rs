@@ -13,7 +13,7 @@ use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj};
 
 pub(super) use part_materials::part_materials;
 
-/// Loads the meshes that plantings show, all at once. Reads `document::Mesh` and `ShownMeshes`; writes [`Mesh`] and
+/// Loads the meshes that plantings show, all at once. Reads `document::Prototype` and `ShownMeshes`; writes [`Mesh`] and
 /// [`PartMaterials`] of mesh prototypes.
 pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
     let needed = needed_meshes(world, resources);
@@ -22,7 +22,7 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
         // Whatever is absent already need not be removed.
         drop(world.remove::<(Mesh, PartMaterials)>(entity));
         if needed.contains(&(index as u32)) {
-            let source = world.get::<&document::Mesh>(entity);
+            let source = world.get::<&document::Prototype>(entity);
             let source = source.expect("`spawn` gives each mesh prototype its source");
             wanted.push((name.clone(), entity, (*source).clone()));
         }
@@ -44,8 +44,8 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
             }
             Err(error) => {
                 let key = match source {
-                    document::Mesh::Faces { .. } => ".faces_m",
-                    document::Mesh::Crown(_) => "",
+                    document::Prototype::Faces { .. } => ".faces_m",
+                    document::Prototype::Crown(_) => "",
                     _ => ".file",
                 };
                 resources.report(Diagnostic::error(format!("{path}{key}"), error.to_string()));
@@ -55,14 +55,14 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
 }
 
 /// Notes the file of a mesh as read.
-pub(super) fn note_file(mesh: &document::Mesh, resources: &mut Resources) {
+pub(super) fn note_file(mesh: &document::Prototype, resources: &mut Resources) {
     match mesh {
-        document::Mesh::Obj(Obj { file, .. })
-        | document::Mesh::Gltf(Gltf { file, .. })
-        | document::Mesh::Discs { file, .. } => {
+        document::Prototype::Obj(Obj { file, .. })
+        | document::Prototype::Gltf(Gltf { file, .. })
+        | document::Prototype::Discs { file, .. } => {
             resources.file(file);
         }
-        document::Mesh::Faces { .. } | document::Mesh::Crown(_) => {}
+        document::Prototype::Faces { .. } | document::Prototype::Crown(_) => {}
     }
 }
 
@@ -71,18 +71,18 @@ fn import(mesh: &MeshFile<'_>) -> Import {
 }
 
 /// Loads or generates a mesh.
-pub(super) fn load(mesh: &document::Mesh, folder: &Path) -> Result<Loaded<Mesh>, AssetError> {
+pub(super) fn load(mesh: &document::Prototype, folder: &Path) -> Result<Loaded<Mesh>, AssetError> {
     match mesh {
-        document::Mesh::Obj(obj) => {
+        document::Prototype::Obj(obj) => {
             let import = import(&obj.mesh_file());
             assets::read_obj(&folder.join(&obj.file), &import, &obj.parts_by)
         }
-        document::Mesh::Gltf(gltf) => {
+        document::Prototype::Gltf(gltf) => {
             assets::read_gltf(&folder.join(&gltf.file), &import(&gltf.mesh_file()))
         }
-        document::Mesh::Discs { file, .. } => assets::read_discs(&folder.join(file)),
-        document::Mesh::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),
-        document::Mesh::Crown(crown) => {
+        document::Prototype::Discs { file, .. } => assets::read_discs(&folder.join(file)),
+        document::Prototype::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),
+        document::Prototype::Crown(crown) => {
             let value = assets::grow_crown(&CrownSpec::from_document(crown))?;
             Ok(Loaded { value, warnings: Vec::new() })
         }

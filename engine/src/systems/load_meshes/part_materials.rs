@@ -12,19 +12,20 @@ const MOST_SHOWN: usize = 10;
 
 /// Material of each part of a mesh; a part without one is reported and gets the first material.
 pub(in crate::systems) fn part_materials(
-    mesh: &document::Mesh,
+    mesh: &document::Prototype,
     loaded: &Mesh,
     path: &str,
     resources: &mut Resources,
 ) -> Vec<MaterialId> {
     let none = Map::new();
     let (named, rest) = match mesh {
-        document::Mesh::Obj(obj) => (&obj.parts, obj.material.as_ref()),
-        document::Mesh::Gltf(gltf) => (&gltf.parts, gltf.material.as_ref()),
-        document::Mesh::Discs { material, .. } | document::Mesh::Faces { material, .. } => {
-            (&none, Some(material))
+        document::Prototype::Obj(obj) => (&obj.parts, obj.material.as_ref()),
+        document::Prototype::Gltf(gltf) => (&gltf.parts, gltf.material.as_ref()),
+        document::Prototype::Discs { material, .. }
+        | document::Prototype::Faces { material, .. } => (&none, Some(material)),
+        document::Prototype::Crown(crown) => {
+            return crown_materials(crown, loaded, path, resources);
         }
-        document::Mesh::Crown(crown) => return crown_materials(crown, loaded, path, resources),
     };
     check_part_names(named, loaded, path, resources);
     let patterns: Vec<_> = patterns(named);
@@ -113,7 +114,7 @@ fn patterns(named: &Map<Ref<Material>>) -> Vec<(&str, &Ref<Material>)> {
     patterns
 }
 
-fn missing_parts(mesh: &document::Mesh, missing: &[&str], path: &str) -> Diagnostic {
+fn missing_parts(mesh: &document::Prototype, missing: &[&str], path: &str) -> Diagnostic {
     let shown = missing.iter().take(MOST_SHOWN);
     let list = shown.clone().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let more = match missing.len() {
@@ -129,7 +130,7 @@ fn missing_parts(mesh: &document::Mesh, missing: &[&str], path: &str) -> Diagnos
     let mut help = format!("write parts: {{ {entries} }}, or material: \"..\" for all others");
     if missing.len() > 1 {
         help += "; `*` in a name stands for any text, as in parts: { \"leaf*\": \"leaf\" }";
-        if matches!(mesh, document::Mesh::Obj(Obj { parts_by: PartsBy::Group, .. })) {
+        if matches!(mesh, document::Prototype::Obj(Obj { parts_by: PartsBy::Group, .. })) {
             help +=
                 ", and with parts_by: Material the parts are the materials (`usemtl`) of the file";
         }

@@ -1,6 +1,6 @@
 use super::{Site, rectangle_of};
 use crate::components::Placement;
-use crate::document::{CanopyHeights, Diagnostic, Mesh, Ref};
+use crate::document::{CanopyHeights, Diagnostic, Prototype, Ref};
 use crate::geometry::{millimetres, place_text};
 use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
 use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
@@ -71,7 +71,7 @@ pub(super) fn plant_canopy(
 }
 
 /// Meshes that may stand for trees; `None` if there is none.
-fn models(of: &[Ref<Mesh>], site: &mut Site<'_>) -> Option<Vec<Model>> {
+fn models(of: &[Ref<Prototype>], site: &mut Site<'_>) -> Option<Vec<Model>> {
     let mut models = Vec::new();
     for (index, name) in of.iter().enumerate() {
         let path = format!("{}.of[{index}]", site.path);

@@ -11,7 +11,7 @@ use hecs::{Entity, World};
 
 use super::Resources;
 use super::coordinate_advice::{AdvicePlace, other_coordinates};
-use super::georeference::{Georeference, MapFrame};
+use super::georeference::{MapFrame, MapTransform};
 use crate::assets::Row;
 use crate::components::{
     Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingId, PrototypeId, Scale,
@@ -59,8 +59,8 @@ impl Site<'_> {
     }
 
     /// Relation of the map to the local frame.
-    fn georeference(&self) -> Georeference {
-        self.map.georeference.unwrap_or_else(|| Georeference::from_frame(self.resources))
+    fn transform(&self) -> MapTransform {
+        self.map.transform.unwrap_or_else(|| MapTransform::from_frame(self.resources))
     }
 
     /// Stream of random numbers of the planting, keyed by its name, or its number if it has none.

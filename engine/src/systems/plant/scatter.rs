@@ -3,7 +3,7 @@ use indexmap::IndexMap;
 use super::areas::region;
 use super::{Site, rectangle_of};
 use crate::components::Placement;
-use crate::document::{Diagnostic, Mesh, Ref, Scatter, Stems};
+use crate::document::{Diagnostic, Prototype, Ref, Scatter, Stems};
 use crate::geometry::{Rectangle, place_text};
 use crate::placement::{Amount, Habit, Species, instantiate_trees, places};
 use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
@@ -76,7 +76,7 @@ pub(super) fn scatter(scatter: &Scatter, ground: &Ground, site: &mut Site<'_>) -
 
 /// Species that compete for each stem.
 fn species<'a>(
-    of: &'a IndexMap<Ref<Mesh>, f64>,
+    of: &'a IndexMap<Ref<Prototype>, f64>,
     is_scaled_to_height: bool,
     site: &mut Site<'_>,
 ) -> Vec<Species<'a>> {

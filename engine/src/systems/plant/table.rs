@@ -188,7 +188,7 @@ fn kind(mesh: &str, table: &StemTable, path: &str, site: &mut Site<'_>) -> Optio
 /// Returns whether coordinates are those of the map rather than the scene's: whichever lies on the terrain.
 fn guess_coordinates(rows: &[Row], file: &str, path: &str, site: &mut Site<'_>) -> Option<bool> {
     let Some(ground) = site.ground else { return Some(false) };
-    let map = site.georeference();
+    let map = site.transform();
     let is_same = |place: DVec2| (map.apply(place) - place).abs().max_element() < 1e-3;
     if is_same(DVec2::ZERO) && is_same(DVec2::splat(1000.0)) {
         return Some(false);
@@ -237,7 +237,7 @@ fn guess_coordinates(rows: &[Row], file: &str, path: &str, site: &mut Site<'_>) 
 
 /// Converts coordinates of the map to the local frame.
 fn move_from_map(rows: &mut [Row], on_terrain: bool, site: &Site<'_>) {
-    let (map, (.., height)) = (site.georeference(), site.resources.frame.origin_m);
+    let (map, (.., height)) = (site.transform(), site.resources.frame.origin_m);
     for row in rows {
         let z = if on_terrain { row.position.z } else { row.position.z - height };
         row.position = map.apply(row.position.truncate()).extend(z);

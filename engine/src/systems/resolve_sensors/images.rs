@@ -1,11 +1,11 @@
 use glam::{DVec2, DVec3, UVec2};
 
-use super::{SensorPlace, image_measures, resolve_plane, stop_criteria, system_of, view};
+use super::{SensorPlace, resolve_plane};
 use crate::components::{
-    Channels, Fisheye, Footprint, ImageSamples, ImageSensor, Look, Mapping, Optics, Orthographic,
-    Perspective, Picture, Stand,
+    CameraPlacement, Channels, FisheyeOptics, Footprint, ImageSamples, ImageSensor, LookAt, Optics,
+    OrthographicOptics, PerspectiveOptics, PictureColours, View,
 };
-use crate::document::{self, Cover, FisheyeProjection, Sensor};
+use crate::document::{self, Cover, Sensor};
 use crate::systems::Resources;
 
 /// Samples per pixel if the scene does not say.
@@ -35,48 +35,40 @@ pub(super) fn image(
         size: UVec2::from(size),
         optics: camera(sensor, place)?,
         samples,
-        until: stop_criteria(sensor),
-        measure: image_measures(&image.measure),
+        until: sensor.until().to_vec(),
+        measure: image.measure.clone(),
         picture: resolve_picture(&image.picture, resources)?,
-        system: system_of(image.system),
+        system: image.system,
     })
 }
 
-fn resolve_picture(picture: &document::Picture, resources: &Resources) -> Option<Picture> {
+fn resolve_picture(picture: &document::Picture, resources: &Resources) -> Option<PictureColours> {
     // `document::check` has seen that the bands are there.
     let band = |name: &str| resources.bands.iter().position(|band| band.name == name);
     Some(match picture {
-        document::Picture::Quicklook => Picture::Quicklook,
-        document::Picture::Bands { red, green, blue, exposure_stops } => Picture::Colours {
+        document::Picture::Quicklook => PictureColours::Quicklook,
+        document::Picture::Bands { red, green, blue, exposure_stops } => PictureColours::Colours {
             channels: Channels::Bands([band(red)?, band(green)?, band(blue)?]),
             exposure: *exposure_stops,
         },
         document::Picture::Cie { exposure_stops } => {
-            Picture::Colours { channels: Channels::Cie, exposure: *exposure_stops }
+            PictureColours::Colours { channels: Channels::Cie, exposure: *exposure_stops }
         }
     })
 }
 
 fn camera(sensor: &Sensor, place: &SensorPlace) -> Option<Optics> {
     Some(match sensor {
-        Sensor::Orthographic(sensor) => {
-            let middle = place.corner + 0.5 * place.size;
-            // `document::check` asks for exactly one of the two.
-            let footprint = match (&sensor.cover, sensor.extent_m) {
-                (None, Some(extent)) => Footprint::Rectangle {
-                    extent: DVec2::from(extent),
-                    center: sensor.center_m.map_or(middle, DVec2::from),
-                },
-                (Some(Cover::WholeScene), _) | (None, None) => Footprint::WholeScene,
-            };
-            let view = view(sensor.zenith_deg, sensor.azimuth_deg);
-            let plane = resolve_plane(sensor.virtual_plane.as_ref(), place.corner, place.size);
-            Optics::Orthographic(Orthographic { footprint, pixel: sensor.pixel_m, view, plane })
-        }
-        Sensor::Perspective(sensor) => Optics::Perspective(Perspective {
-            stand: Stand {
+        Sensor::Orthographic(sensor) => Optics::Orthographic(OrthographicOptics {
+            footprint: footprint(sensor, place),
+            pixel: sensor.pixel_m,
+            view: View::from_degrees(sensor.zenith_deg, sensor.azimuth_deg),
+            plane: resolve_plane(sensor.virtual_plane.as_ref(), place.corner, place.size),
+        }),
+        Sensor::Perspective(sensor) => Optics::Perspective(PerspectiveOptics {
+            placement: CameraPlacement {
                 position: DVec3::from(sensor.position_m),
-                look: Look::Target(DVec3::from(sensor.target_m)),
+                look: LookAt::Target(DVec3::from(sensor.target_m)),
                 up: DVec3::from(sensor.up),
                 above_ground: sensor.above_ground,
             },
@@ -84,15 +76,15 @@ fn camera(sensor: &Sensor, place: &SensorPlace) -> Option<Optics> {
             sees_sky: sensor.sees_sky,
         }),
         Sensor::Fisheye(sensor) => {
-            let (look, usual_up) = look_of(&sensor.look);
-            Optics::Fisheye(Fisheye {
-                stand: Stand {
+            let (look, usual_up) = look_at(&sensor.look);
+            Optics::Fisheye(FisheyeOptics {
+                placement: CameraPlacement {
                     position: DVec3::from(sensor.position_m),
                     look,
                     up: sensor.up.map_or(usual_up, DVec3::from),
                     above_ground: sensor.above_ground,
                 },
-                mapping: mapping(&sensor.projection),
+                projection: sensor.projection,
                 field: sensor.fov_deg.to_radians(),
                 sees_sky: sensor.sees_sky,
             })
@@ -101,23 +93,27 @@ fn camera(sensor: &Sensor, place: &SensorPlace) -> Option<Optics> {
     })
 }
 
-/// Direction or target of a camera, and the default of the direction that is up in its image.
-fn look_of(look: &document::Look) -> (Look, DVec3) {
-    match look {
-        document::Look::Up => (Look::Direction(DVec3::Z), DVec3::Y),
-        document::Look::Down => (Look::Direction(DVec3::NEG_Z), DVec3::Y),
-        document::Look::Towards { zenith_deg, azimuth_deg } => {
-            (Look::Direction(view(*zenith_deg, *azimuth_deg).direction()), DVec3::Z)
-        }
-        document::Look::Target { at_m } => (Look::Target(DVec3::from(*at_m)), DVec3::Z),
+/// Part of the scene that a parallel projection shows.
+fn footprint(sensor: &document::Orthographic, place: &SensorPlace) -> Footprint {
+    // `document::check` asks for exactly one of the two.
+    match (&sensor.cover, sensor.extent_m) {
+        (None, Some(extent)) => Footprint::Rectangle {
+            extent: DVec2::from(extent),
+            center: sensor.center_m.map_or(place.corner + 0.5 * place.size, DVec2::from),
+        },
+        (Some(Cover::WholeScene), _) | (None, None) => Footprint::WholeScene,
     }
 }
 
-fn mapping(projection: &FisheyeProjection) -> Mapping {
-    match projection {
-        FisheyeProjection::Equisolid => Mapping::Equisolid,
-        FisheyeProjection::Equidistant => Mapping::Equidistant,
-        FisheyeProjection::Orthographic => Mapping::Orthographic,
-        FisheyeProjection::Stereographic => Mapping::Stereographic,
+/// Direction or target of a camera, and the default of the direction that is up in its image.
+fn look_at(look: &document::Look) -> (LookAt, DVec3) {
+    match look {
+        document::Look::Up => (LookAt::Direction(DVec3::Z), DVec3::Y),
+        document::Look::Down => (LookAt::Direction(DVec3::NEG_Z), DVec3::Y),
+        document::Look::Towards { zenith_deg, azimuth_deg } => {
+            let view = View::from_degrees(*zenith_deg, *azimuth_deg);
+            (LookAt::Direction(view.direction()), DVec3::Z)
+        }
+        document::Look::Target { at_m } => (LookAt::Target(DVec3::from(*at_m)), DVec3::Z),
     }
 }

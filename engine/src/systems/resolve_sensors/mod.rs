@@ -7,10 +7,9 @@ use hecs::World;
 
 use super::{Resources, set_component};
 use crate::components::{
-    Cone, Directions, ImageMeasure, Layers, Per, PhotonMeasure, Photons, Sensor, StopCriterion,
-    System, TerrainPatch, View, VirtualPlane,
+    CountingPlane, DirectionSensor, PhotonProduct, PhotonSensor, ResolvedSensor, TerrainPatch, View,
 };
-use crate::document::{self, Diagnostic, Sun, Until, Views};
+use crate::document::{self, Diagnostic, PhotonMeasure, Sun, Views};
 
 use images::image;
 
@@ -25,7 +24,7 @@ struct SensorPlace {
 }
 
 /// Resolves sensors: directions of views, virtual planes, units. Reads `document::Sensor`, `document::Sun` and
-/// [`TerrainPatch`]; writes [`Sensor`].
+/// [`TerrainPatch`]; writes [`ResolvedSensor`].
 pub(super) fn resolve_sensors(world: &mut World, resources: &mut Resources) {
     let place = {
         let patch = world.get::<&TerrainPatch>(resources.terrain);
@@ -52,73 +51,35 @@ fn sensor(
     path: &str,
     place: &SensorPlace,
     resources: &mut Resources,
-) -> Option<Sensor> {
+) -> Option<ResolvedSensor> {
+    let until = sensor.until().to_vec();
+    let plane = resolve_plane(sensor.virtual_plane(), place.corner, place.size);
     Some(match sensor {
         document::Sensor::Orthographic(_)
         | document::Sensor::Perspective(_)
-        | document::Sensor::Fisheye(_) => Sensor::Image(image(sensor, place, resources)?),
+        | document::Sensor::Fisheye(_) => ResolvedSensor::Image(image(sensor, place, resources)?),
         document::Sensor::Directions(directions) => {
-            let plane = directions.virtual_plane.as_ref();
-            let path = format!("{path}.views");
-            Sensor::Directions(Directions {
-                views: resolve_views(&directions.views, &path, place, resources)?,
-                until: stop_criteria(sensor),
-                measure: image_measures(&directions.measure),
-                plane: resolve_plane(plane, place.corner, place.size),
-                system: directions.system.map(system_of),
-            })
+            let views =
+                resolve_views(&directions.views, &format!("{path}.views"), place, resources)?;
+            let (measure, system) = (directions.measure.clone(), directions.system);
+            ResolvedSensor::Directions(DirectionSensor { views, until, measure, plane, system })
         }
         document::Sensor::Photons(photons) => {
-            let mut measures = Vec::new();
-            for (index, measure) in photons.measure.iter().enumerate() {
+            let mut products = Vec::new();
+            for (index, source) in photons.measure.iter().enumerate() {
                 let at = format!("{path}.measure[{index}]");
-                measures.push(match measure {
-                    document::PhotonMeasure::BrfCells(cells) => PhotonMeasure::BrfCells(*cells),
-                    document::PhotonMeasure::BrfViews(views) => {
-                        PhotonMeasure::BrfViews(resolve_views(views, &at, place, resources)?)
-                    }
-                    document::PhotonMeasure::Albedo => PhotonMeasure::Albedo,
-                    document::PhotonMeasure::BrfCones(list) => PhotonMeasure::BrfCones(cones(list)),
-                    document::PhotonMeasure::RadianceCells(cells) => {
-                        PhotonMeasure::RadianceCells(*cells)
-                    }
-                    document::PhotonMeasure::RadianceViews(views) => {
-                        PhotonMeasure::RadianceViews(resolve_views(views, &at, place, resources)?)
-                    }
-                    document::PhotonMeasure::RadianceCones(list) => {
-                        PhotonMeasure::RadianceCones(cones(list))
-                    }
-                    document::PhotonMeasure::Exitance => PhotonMeasure::Exitance,
-                    document::PhotonMeasure::BrightnessTemperature => {
-                        PhotonMeasure::BrightnessTemperature
-                    }
-                    document::PhotonMeasure::Orders => PhotonMeasure::Orders,
-                    document::PhotonMeasure::Absorbed { per } => {
-                        let per = match per {
-                            document::Per::Instance => Per::Instance,
-                            document::Per::Triangle => Per::Triangle,
-                        };
-                        PhotonMeasure::Absorbed(per)
-                    }
-                    document::PhotonMeasure::Fapar { layer_m } => {
-                        PhotonMeasure::Fapar(match layer_m {
-                            document::Layers::Thickness(m) => Layers::Thickness(*m),
-                            document::Layers::Borders(m) => Layers::Borders(m.clone()),
-                        })
-                    }
-                    document::PhotonMeasure::Fluxes { pixel_m, heights_m } => {
-                        PhotonMeasure::Fluxes { pixel: *pixel_m, heights: heights_m.clone() }
-                    }
+                products.push(PhotonProduct {
+                    measure: source.clone(),
+                    views: match source {
+                        PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
+                            resolve_views(views, &at, place, resources)?
+                        }
+                        _ => Vec::new(),
+                    },
                 });
             }
-            let plane = photons.virtual_plane.as_ref();
-            Sensor::Photons(Photons {
-                per_area: photons.per_m2,
-                until: stop_criteria(sensor),
-                measure: measures,
-                plane: resolve_plane(plane, place.corner, place.size),
-                system: system_of(photons.system),
-            })
+            let (per_area, system) = (photons.per_m2, photons.system);
+            ResolvedSensor::Photons(PhotonSensor { per_area, until, products, plane, system })
         }
     })
 }
@@ -128,9 +89,9 @@ pub(super) fn resolve_plane(
     plane: Option<&document::VirtualPlane>,
     corner: DVec2,
     size: DVec2,
-) -> Option<VirtualPlane> {
+) -> Option<CountingPlane> {
     let middle = corner + 0.5 * size;
-    plane.map(|plane| VirtualPlane {
+    plane.map(|plane| CountingPlane {
         center: plane.center_m.map_or(middle, DVec2::from),
         size: plane.size_m.map_or(size, DVec2::from),
         height: plane.height_m,
@@ -146,7 +107,9 @@ fn resolve_views(
 ) -> Option<Vec<View>> {
     let (max_deg, step_deg, turn) = match views {
         Views::List(list) => {
-            return Some(list.iter().map(|&(zenith, azimuth)| view(zenith, azimuth)).collect());
+            return Some(
+                list.iter().map(|&(zenith, azimuth)| View::from_degrees(zenith, azimuth)).collect(),
+            );
         }
         Views::PrincipalPlane { max_deg, step_deg } => (*max_deg, *step_deg, 0.0),
         Views::CrossPlane { max_deg, step_deg } => (*max_deg, *step_deg, FRAC_PI_2),
@@ -169,53 +132,4 @@ fn resolve_views(
             })
             .collect(),
     )
-}
-
-/// Conditions that end a measurement.
-pub(super) fn stop_criteria(sensor: &document::Sensor) -> Vec<StopCriterion> {
-    let criterion = |end: &Until| match end {
-        Until::RelError(limit) => StopCriterion::RelError(*limit),
-        Until::RelErrors(limits) => StopCriterion::RelErrors(
-            limits.iter().map(|(name, limit)| (name.clone(), *limit)).collect(),
-        ),
-        Until::Seconds(limit) => StopCriterion::Seconds(*limit),
-        Until::Samples(limit) => StopCriterion::Samples(*limit),
-    };
-    sensor.until().iter().map(criterion).collect()
-}
-
-pub(super) fn view(zenith_deg: f64, azimuth_deg: f64) -> View {
-    View { zenith: zenith_deg.to_radians(), azimuth: azimuth_deg.to_radians() }
-}
-
-fn cones(list: &[(f64, f64, f64)]) -> Vec<Cone> {
-    let cone = |&(zenith, azimuth, full): &(f64, f64, f64)| Cone {
-        axis: view(zenith, azimuth),
-        half_angle: 0.5 * full.to_radians(),
-    };
-    list.iter().map(cone).collect()
-}
-
-pub(super) fn image_measures(measures: &[document::ImageMeasure]) -> Vec<ImageMeasure> {
-    measures
-        .iter()
-        .map(|measure| match measure {
-            document::ImageMeasure::Radiance => ImageMeasure::Radiance,
-            document::ImageMeasure::Brf => ImageMeasure::Brf,
-            document::ImageMeasure::Orders => ImageMeasure::Orders,
-            document::ImageMeasure::BrightnessTemperature => ImageMeasure::BrightnessTemperature,
-            document::ImageMeasure::FourComponents => ImageMeasure::FourComponents,
-            document::ImageMeasure::GapFraction => ImageMeasure::GapFraction,
-        })
-        .collect()
-}
-
-pub(super) fn system_of(system: document::System) -> System {
-    match system {
-        document::System::Backward => System::Backward,
-        document::System::Forward => System::Forward,
-        document::System::Analog => System::Analog,
-        document::System::FirstOrder => System::FirstOrder,
-        document::System::Reference => System::Reference,
-    }
 }

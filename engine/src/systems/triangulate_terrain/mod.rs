@@ -19,7 +19,7 @@ use raster::raster_patch;
 /// periodic tiles than can be counted.
 const SMALLEST_M: f64 = 1e-3;
 
-/// Triangulates the terrain. Reads `document::Terrain`, `document::Mesh` of a terrain that is a mesh, and the frame;
+/// Triangulates the terrain. Reads `document::Terrain`, `document::Prototype` of a terrain that is a mesh, and the frame;
 /// writes [`TerrainPatch`], [`Ground`] and [`MapFrame`] of the terrain.
 pub(super) fn triangulate_terrain(world: &mut World, resources: &mut Resources) {
     let entity = resources.terrain;
@@ -86,7 +86,7 @@ fn mesh_patch(
     resources: &mut Resources,
 ) -> Option<TerrainPatch> {
     resources.prototype(name, "terrain.mesh")?;
-    let mesh = world.get::<&document::Mesh>(resources.meshes[name]);
+    let mesh = world.get::<&document::Prototype>(resources.meshes[name]);
     let mesh = mesh.expect("`spawn` gives each mesh prototype its source");
     note_file(&mesh, resources);
     let path = format!("meshes.{name}");

@@ -3,13 +3,13 @@ use glam::DVec2;
 use super::land_cover::land_cover_cells;
 use super::no_data::fill_no_data;
 use super::steepness::warn_steepness;
-use crate::assets::{Extent, Projection, Raster};
+use crate::assets::{Projection, Raster, RasterExtent};
 use crate::components::TerrainPatch;
 use crate::document::{Coordinates, Diagnostic, TerrainRaster};
 use crate::geometry::Rectangle;
 use crate::systems::Resources;
 use crate::systems::georeference::{
-    Georeference, MapFrame, Quantity, RasterSource, frame_projection, projection_of,
+    MapFrame, MapTransform, Quantity, RasterSource, frame_projection, projection_of,
     read_georaster, target_of,
 };
 use crate::terrain::{self, Cells};
@@ -42,7 +42,7 @@ pub(super) fn raster_patch(
     let (east, north, up) = resources.frame.origin_m;
     let extent = window.as_ref().map(|window| {
         let corner = DVec2::from(window.corner_m) + DVec2::new(east, north);
-        Extent { min: corner, max: corner + DVec2::from(window.size_m) }
+        RasterExtent { min: corner, max: corner + DVec2::from(window.size_m) }
     });
     let source = RasterSource {
         coordinates: coordinates.clone(),
@@ -56,7 +56,7 @@ pub(super) fn raster_patch(
         map.axes = place.crs.axes.clone();
     }
     let (corner, size) = rectangle_of(&raster, terrain, map, resources)?;
-    map.georeference = raster.place.as_ref().map(|place| Georeference {
+    map.transform = raster.place.as_ref().map(|place| MapTransform {
         from: place.corner,
         to: corner,
         scale: size / (place.cell * raster.size_in_cells()),
@@ -115,7 +115,7 @@ fn projection_of_raster(
     resources: &Resources,
 ) -> Option<Projection> {
     let place = raster.place.as_ref()?;
-    let Georeference { from, to, scale, is_of_degrees, .. } = map.georeference?;
+    let MapTransform { from, to, scale, is_of_degrees, .. } = map.transform?;
     let (x, y, _) = resources.frame.origin_m;
     let is_kept = to == from - DVec2::new(x, y) && scale == DVec2::ONE && !is_of_degrees;
     place.projection.clone().or_else(|| projection_of(&place.crs)).filter(|_| is_kept)

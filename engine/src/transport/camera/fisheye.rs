@@ -2,7 +2,7 @@ use glam::{DVec2, UVec2};
 
 use super::pose::CameraPose;
 use crate::accel::Ray;
-use crate::components::{self, Mapping};
+use crate::components::{self, FisheyeProjection};
 use crate::extract::Stage;
 
 /// A fisheye camera: a disc in the middle of the image, as wide as the image's shorter side.
@@ -13,7 +13,7 @@ pub struct FisheyeCamera {
     /// True if it sees the sky.
     pub sees_sky: bool,
     pose: CameraPose,
-    mapping: Mapping,
+    projection: FisheyeProjection,
     /// Half the angle of view, rad.
     edge: f64,
     /// Film coordinates to units of the disc's radius.
@@ -23,13 +23,13 @@ pub struct FisheyeCamera {
 impl FisheyeCamera {
     /// The camera in a scene.
     #[must_use]
-    pub fn new(camera: &components::Fisheye, size: UVec2, stage: &Stage) -> Self {
+    pub fn new(camera: &components::FisheyeOptics, size: UVec2, stage: &Stage) -> Self {
         let pixels = size.as_dvec2();
         Self {
             size,
             sees_sky: camera.sees_sky,
-            pose: CameraPose::new(&camera.stand, stage),
-            mapping: camera.mapping,
+            pose: CameraPose::new(&camera.placement, stage),
+            projection: camera.projection,
             edge: 0.5 * camera.field,
             scale: 2.0 * pixels / pixels.min_element(),
         }
@@ -51,7 +51,7 @@ impl FisheyeCamera {
         if distance > 1.0 {
             return None;
         }
-        let (sin, cos) = off_axis(self.mapping, distance, self.edge).sin_cos();
+        let (sin, cos) = off_axis(self.projection, distance, self.edge).sin_cos();
         let CameraPose { eye, right, down, ahead } = self.pose;
         // In the very middle every way outwards is as good as another.
         let outwards = if distance > 0.0 { on_disc / distance } else { DVec2::X };
@@ -64,26 +64,26 @@ impl FisheyeCamera {
 /// where the disc's edge shows the angle `edge`.
 ///
 /// Source: Schneider, Schwalbe and Maas (2009), ISPRS J. Photogramm. 64, 259-266, eqs. 1 to 4.
-fn off_axis(mapping: Mapping, distance: f64, edge: f64) -> f64 {
+fn off_axis(mapping: FisheyeProjection, distance: f64, edge: f64) -> f64 {
     match mapping {
-        Mapping::Equisolid => 2.0 * (distance * (0.5 * edge).sin()).min(1.0).asin(),
-        Mapping::Equidistant => distance * edge,
-        Mapping::Orthographic => (distance * edge.sin()).min(1.0).asin(),
-        Mapping::Stereographic => 2.0 * (distance * (0.5 * edge).tan()).atan(),
+        FisheyeProjection::Equisolid => 2.0 * (distance * (0.5 * edge).sin()).min(1.0).asin(),
+        FisheyeProjection::Equidistant => distance * edge,
+        FisheyeProjection::Orthographic => (distance * edge.sin()).min(1.0).asin(),
+        FisheyeProjection::Stereographic => 2.0 * (distance * (0.5 * edge).tan()).atan(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Mapping, off_axis};
+    use super::{FisheyeProjection, off_axis};
 
     #[test]
     fn the_edge_of_the_disc_shows_half_the_field() {
         for mapping in [
-            Mapping::Equisolid,
-            Mapping::Equidistant,
-            Mapping::Orthographic,
-            Mapping::Stereographic,
+            FisheyeProjection::Equisolid,
+            FisheyeProjection::Equidistant,
+            FisheyeProjection::Orthographic,
+            FisheyeProjection::Stereographic,
         ] {
             for degrees in [1.0_f64, 60.0, 89.0] {
                 let edge = degrees.to_radians();

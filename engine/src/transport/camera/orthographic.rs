@@ -1,7 +1,7 @@
 use glam::{DMat2, DMat3, DVec2, DVec3, UVec2};
 
 use crate::accel::Ray;
-use crate::components::{Footprint, Orthographic, View};
+use crate::components::{Footprint, OrthographicOptics, View};
 use crate::extract::Stage;
 use crate::geometry::PixelGrid;
 use crate::transport::ReferencePlane;
@@ -30,7 +30,7 @@ impl OrthographicCamera {
     /// Up in the image is away from the sensor's side, so that a nadir view with the default azimuth
     /// of 180° has north up and oblique views show what stands upright as upright.
     #[must_use]
-    pub fn from_sensor(sensor: &Orthographic, size: UVec2, stage: &Stage) -> Self {
+    pub fn from_sensor(sensor: &OrthographicOptics, size: UVec2, stage: &Stage) -> Self {
         let towards = sensor.view.direction();
         let (right, down) = axes(sensor.view);
         let (middle, extent) = footprint(sensor, stage);
@@ -186,14 +186,14 @@ fn axes(view: View) -> (DVec3, DVec3) {
 
 /// The point in the middle of an orthographic image, and the image's width and height, m.
 #[must_use]
-pub fn footprint(sensor: &Orthographic, stage: &Stage) -> (DVec3, DVec2) {
+pub fn footprint(sensor: &OrthographicOptics, stage: &Stage) -> (DVec3, DVec2) {
     let (middle, extent) = wanted_footprint(sensor, stage);
     (middle, sensor.pixel.map_or(extent, |side| PixelGrid::covering(extent, side).extent))
 }
 
 /// The footprint before it grows to whole pixels.
 #[must_use]
-pub fn wanted_footprint(sensor: &Orthographic, stage: &Stage) -> (DVec3, DVec2) {
+pub fn wanted_footprint(sensor: &OrthographicOptics, stage: &Stage) -> (DVec3, DVec2) {
     match sensor.footprint {
         Footprint::Rectangle { extent, center } => (center.extend(stage.ground_at(center)), extent),
         Footprint::WholeScene => {

@@ -20,12 +20,12 @@ pub struct PerspectiveCamera {
 impl PerspectiveCamera {
     /// The camera in a scene.
     #[must_use]
-    pub fn new(camera: &components::Perspective, size: UVec2, stage: &Stage) -> Self {
+    pub fn new(camera: &components::PerspectiveOptics, size: UVec2, stage: &Stage) -> Self {
         let half = 0.5 * camera.field;
         Self {
             size,
             sees_sky: camera.sees_sky,
-            pose: CameraPose::new(&camera.stand, stage),
+            pose: CameraPose::new(&camera.placement, stage),
             reach: DVec2::new(half.x.tan(), half.y.tan()),
         }
     }

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::components::{Look, Stand};
+use crate::components::{CameraPlacement, LookAt};
 use crate::extract::Stage;
 
 /// A camera's position and axes: right and down in the image, and ahead; unit vectors,
@@ -15,19 +15,20 @@ pub(super) struct CameraPose {
 
 impl CameraPose {
     /// The pose in a scene: heights of camera and target may be above the ground below them.
-    pub(super) fn new(stand: &Stand, stage: &Stage) -> Self {
+    pub(super) fn new(placement: &CameraPlacement, stage: &Stage) -> Self {
         let place = |point: DVec3| {
-            let ground = if stand.above_ground { stage.ground_at(point.truncate()) } else { 0.0 };
+            let ground =
+                if placement.above_ground { stage.ground_at(point.truncate()) } else { 0.0 };
             point + DVec3::Z * ground
         };
-        let eye = place(stand.position);
-        let ahead = match stand.look {
-            Look::Direction(direction) => direction,
-            Look::Target(target) => (place(target) - eye).try_normalize().unwrap_or(DVec3::NEG_Z),
+        let eye = place(placement.position);
+        let ahead = match placement.look {
+            LookAt::Direction(direction) => direction,
+            LookAt::Target(target) => (place(target) - eye).try_normalize().unwrap_or(DVec3::NEG_Z),
         };
         // `document::check` refuses an up along the view; uneven ground can still turn the view into it.
         let across = |up: DVec3| ahead.cross(up).try_normalize();
-        let right = across(stand.up).or_else(|| across(DVec3::Z)).or_else(|| across(DVec3::Y));
+        let right = across(placement.up).or_else(|| across(DVec3::Z)).or_else(|| across(DVec3::Y));
         let right = right.unwrap_or(DVec3::X);
         Self { eye, right, down: ahead.cross(right), ahead }
     }

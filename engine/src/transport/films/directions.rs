@@ -11,7 +11,8 @@ use crate::transport::paths::{
     BackwardPath, FirstOrderPath, PathBatch, PathTracer, ThermalPath, write_each,
 };
 use crate::transport::photons::{
-    Counter, PacketOptions, Part, PartCounter, PhotonKind, ViewCounter, photon_film, spectra,
+    Counter, OrderCounter, PacketOptions, PhotonKind, ScatteringOrder, ViewCounter, photon_film,
+    spectra,
 };
 use crate::transport::reference::ReferencePath;
 use crate::transport::{LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold};
@@ -23,7 +24,7 @@ pub struct LightSettings {
     pub system: System,
     /// Origin of the light.
     pub source: LightSource,
-    /// True if each [`Part`] is kept apart.
+    /// True if each [`ScatteringOrder`] is kept apart.
     pub separates_orders: bool,
 }
 
@@ -44,7 +45,7 @@ pub struct DirectionsOutcome {
     /// Radiance towards each view in the unit of its [`LightSource`], shape `[views, bands]`, with its
     /// standard error: the mean over the scene's rectangle, where rays that miss an isolated scene count as dark.
     pub spread: Spread,
-    /// Radiance of each [`Part`], on request.
+    /// Radiance of each [`ScatteringOrder`], on request.
     pub parts: Vec<Spread>,
 }
 
@@ -162,11 +163,11 @@ pub(super) fn in_parts(
     counter: ViewCounter,
     separates_orders: bool,
 ) -> impl Iterator<Item = Box<dyn Counter>> {
-    let parts: &[Part] = if separates_orders { &Part::ALL } else { &[] };
+    let parts: &[ScatteringOrder] = if separates_orders { &ScatteringOrder::ALL } else { &[] };
     let of_part = {
         let counter = counter.clone();
-        move |&part: &Part| -> Box<dyn Counter> {
-            Box::new(PartCounter { counter: Box::new(counter.clone()), part })
+        move |&part: &ScatteringOrder| -> Box<dyn Counter> {
+            Box::new(OrderCounter { counter: Box::new(counter.clone()), part })
         }
     };
     let whole: Box<dyn Counter> = Box::new(counter);

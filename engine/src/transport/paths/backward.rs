@@ -9,7 +9,7 @@ use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
 use crate::scattering::{Interaction, Lobe, SceneSpectra};
-use crate::transport::photons::{Part, spectra};
+use crate::transport::photons::{ScatteringOrder, spectra};
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 
 /// Backward path tracer with next-event estimation: the radiance that arrives along a ray, `L / E` in sr⁻¹.
@@ -173,10 +173,10 @@ impl PathTracer for BackwardPath {
         if self.order >= 2 {
             history.radiance(&stage.models, self.single, bands, &mut single);
         }
-        for (part, values) in Part::ALL.iter().zip(parts) {
+        for (part, values) in ScatteringOrder::ALL.iter().zip(parts) {
             *values = match part {
-                Part::Multiple => array::from_fn(|band| whole[band] - single[band]),
-                part if *part == Part::from_order(1, self.has_met_ground) => single,
+                ScatteringOrder::Multiple => array::from_fn(|band| whole[band] - single[band]),
+                part if *part == ScatteringOrder::from_order(1, self.has_met_ground) => single,
                 _ => [0.0; BLOCK],
             };
         }

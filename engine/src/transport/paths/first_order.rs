@@ -10,7 +10,7 @@ use crate::accel::Ray;
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler, cosine_direction};
 use crate::scattering::SpectrumId;
-use crate::transport::photons::Part;
+use crate::transport::photons::ScatteringOrder;
 
 /// Radiance over irradiance, `L / E` in sr⁻¹, of light that was scattered exactly once: light of sun and sky
 /// that the first surface along a ray sends back. There is no random walk, no choice of lobes and no roulette:
@@ -25,7 +25,7 @@ pub(in crate::transport) struct FirstOrderPath {
     sampler: Sampler,
     direction: DVec3,
     has_hit: bool,
-    part: Part,
+    part: ScatteringOrder,
     separates_orders: bool,
     rays: u64,
 }
@@ -38,7 +38,7 @@ impl FirstOrderPath {
             sampler: Sampler::new(Key::new(0), 0),
             direction: DVec3::ZERO,
             has_hit: false,
-            part: Part::Uncollided,
+            part: ScatteringOrder::Uncollided,
             separates_orders,
             rays: 0,
         }
@@ -46,7 +46,7 @@ impl FirstOrderPath {
 
     /// Number of spectra: the whole and, on request, its parts, none of which is multiply scattered.
     pub(in crate::transport) const fn spectra(separates_orders: bool) -> usize {
-        if separates_orders { Part::ALL.len() } else { 1 }
+        if separates_orders { ScatteringOrder::ALL.len() } else { 1 }
     }
 }
 
@@ -59,7 +59,7 @@ impl PathTracer for FirstOrderPath {
     fn advance(&mut self, stage: &Stage, results: RayResults<'_>, _: &mut RayQueue) {
         let Some(hit) = results.hit.filter(|hit| !stage.is_cut(hit)) else { return };
         self.has_hit = true;
-        self.part = Part::from_order(1, stage.is_ground(hit));
+        self.part = ScatteringOrder::from_order(1, stage.is_ground(hit));
         let surface = stage.interaction(hit, -self.direction);
         let [sun_u, sun_v, sky_u, sky_v] = self.sampler.next_event();
         let mut add = |wi: DVec3, source: SpectrumId, scale: f64| {
@@ -94,7 +94,7 @@ impl PathTracer for FirstOrderPath {
             return false;
         }
         self.history.clear();
-        self.part = Part::Uncollided;
+        self.part = ScatteringOrder::Uncollided;
         if let Some(dome) = &stage.light.dome {
             self.history.see(dome.share, Light::RADIANCE_OF_SHARE as f32);
         }
@@ -110,7 +110,7 @@ impl PathTracer for FirstOrderPath {
     fn write_radiance(&self, stage: &Stage, bands: Range<usize>, radiance: &mut [Block]) {
         let [whole, parts @ ..] = radiance else { return };
         self.history.radiance(&stage.models, self.history.len(), bands, whole);
-        for (part, values) in Part::ALL.iter().zip(parts) {
+        for (part, values) in ScatteringOrder::ALL.iter().zip(parts) {
             *values = if *part == self.part { *whole } else { [0.0; BLOCK] };
         }
     }

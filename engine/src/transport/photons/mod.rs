@@ -5,7 +5,7 @@ mod counters;
 mod hemisphere;
 mod light_beside;
 mod packet;
-mod parts;
+mod scattering_orders;
 mod source;
 mod spectrum_products;
 mod tally;
@@ -18,7 +18,7 @@ pub use counters::{
 pub use hemisphere::{Cell, Hemisphere};
 pub use light_beside::LightBeside;
 pub use packet::{PacketOptions, photon_film};
-pub use parts::{Part, PartCounter, spectra};
+pub use scattering_orders::{OrderCounter, ScatteringOrder, spectra};
 pub use tally::Tally;
 
 use super::RouletteThreshold;

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use crate::accel::Ray;
-use crate::extract::{Disc, Stage};
+use crate::extract::{Stage, SunDisc};
 use crate::sampling::{Sampler, cosine_hemisphere};
 use crate::scattering::{Lobe, SpectrumId};
 
@@ -23,7 +23,7 @@ pub(super) struct PacketSource {
     sun_share: SpectrumId,
     sky_share: SpectrumId,
     sun: DVec3,
-    disc: Option<Disc>,
+    disc: Option<SunDisc>,
     /// Area of the scene's rectangle, m².
     area: f64,
     /// Distance before its face at which a ray starts, m.

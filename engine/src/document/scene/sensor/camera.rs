@@ -78,6 +78,7 @@ choice! {
 
 choice! {
     /// How angles off the axis become distances from the middle of a fisheye image.
+    #[derive(Copy, Eq)]
     pub enum FisheyeProjection ("a fisheye projection") {
         /// As sin(θ/2): equal areas of the image are equal solid angles.
         Equisolid,

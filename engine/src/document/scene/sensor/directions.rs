@@ -1,6 +1,6 @@
 //! The scene seen from many directions.
 
-use super::{Ends, ImageMeasure, System, Until};
+use super::{Ends, ImageMeasure, StopCriterion, System};
 
 record! {
     /// Mean radiance or reflectance of the scene towards each of many directions.
@@ -8,7 +8,7 @@ record! {
         /// Where the sensors are.
         views: Views => "PrincipalPlane",
         /// When it is good enough.
-        until: Ends = Ends::from(Until::RelError(0.005)),
+        until: Ends = Ends::from(StopCriterion::RelError(0.005)),
         /// What to report.
         measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
         /// Only light that leaves through it counts; it is what is seen.

@@ -55,7 +55,8 @@ choice! {
 }
 
 choice! {
-    /// What an image holds.
+    /// Quantity of an image or of a list of directions.
+    #[derive(Copy, Eq)]
     pub enum ImageMeasure ("a measure of an image") {
         /// Radiance, W m⁻² sr⁻¹ nm⁻¹, from the sources that the band names.
         Radiance,
@@ -78,6 +79,12 @@ choice! {
 }
 
 impl ImageMeasure {
+    /// Returns whether it is a function of radiance, rather than of the first surface along each ray.
+    #[must_use]
+    pub const fn is_light(&self) -> bool {
+        matches!(self, Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature)
+    }
+
     /// Returns whether a transport system estimates it in a scene. `FirstOrder` and `Reference` measure reflected
     /// light, `FirstOrder` that of all orders only where no more than one counts; the surface that is seen first is
     /// measured backwards.

@@ -12,7 +12,7 @@ pub use image::{Cover, ImageMeasure, ImageOptions, Orthographic, Picture};
 pub use photons::{Layers, Per, PhotonMeasure, Photons};
 pub use system::System;
 
-use super::until::{Ends, Until};
+use super::until::{Ends, StopCriterion};
 use super::{Band, Scene};
 
 choice! {
@@ -143,8 +143,8 @@ impl Sensor {
             | Self::Fisheye(Fisheye { image: ImageOptions { until, .. }, .. }) => until.as_mut(),
         };
         for end in ends.into_iter().flat_map(|ends| &mut ends.0) {
-            if let Until::RelErrors(limits) = end {
-                *end = Until::RelError(limits.values().copied().fold(0.0, f64::max));
+            if let StopCriterion::RelErrors(limits) = end {
+                *end = StopCriterion::RelError(limits.values().copied().fold(0.0, f64::max));
             }
         }
     }
@@ -161,7 +161,7 @@ impl Sensor {
 
     /// When it is good enough, if that is written.
     #[must_use]
-    pub fn until(&self) -> &[Until] {
+    pub fn until(&self) -> &[StopCriterion] {
         self.ends().map_or(&[], |ends| &ends.0)
     }
 }

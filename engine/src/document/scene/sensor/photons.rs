@@ -102,7 +102,8 @@ impl PhotonMeasure {
 }
 
 choice! {
-    /// What absorbed power is told of.
+    /// Resolution of absorbed power, from coarse to fine.
+    #[derive(Copy, Eq, PartialOrd, Ord)]
     pub enum Per ("`Instance` or `Triangle`") {
         /// Each instance.
         Instance,

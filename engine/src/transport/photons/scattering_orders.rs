@@ -4,7 +4,7 @@ use crate::extract::Stage;
 
 /// Parts of what a scene reflects, as RAMI splits it; they sum to the whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ScatteringOrder {
     /// Scattered once, by the ground: it has met no canopy on its way in or out.
     Uncollided,
     /// Scattered once, by anything but the ground.
@@ -13,7 +13,7 @@ pub enum Part {
     Multiple,
 }
 
-impl Part {
+impl ScatteringOrder {
     /// All, in the order of their cells.
     pub const ALL: [Self; 3] = [Self::Uncollided, Self::Single, Self::Multiple];
 
@@ -41,24 +41,24 @@ impl Part {
 /// Number of spectra of a path: the whole and, on request, its parts.
 #[must_use]
 pub const fn spectra(separates_orders: bool) -> usize {
-    if separates_orders { 1 + Part::ALL.len() } else { 1 }
+    if separates_orders { 1 + ScatteringOrder::ALL.len() } else { 1 }
 }
 
 /// A counter of the light of one part.
-pub struct PartCounter<'a> {
+pub struct OrderCounter<'a> {
     /// The counter.
     pub counter: Box<dyn Counter + 'a>,
     /// The part that is counted.
-    pub part: Part,
+    pub part: ScatteringOrder,
 }
 
-impl std::fmt::Debug for PartCounter<'_> {
+impl std::fmt::Debug for OrderCounter<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("PartCounter").field("part", &self.part).finish_non_exhaustive()
     }
 }
 
-impl Counter for PartCounter<'_> {
+impl Counter for OrderCounter<'_> {
     fn cells(&self) -> usize {
         self.counter.cells()
     }
@@ -70,11 +70,11 @@ impl Counter for PartCounter<'_> {
     fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
         let part = match event {
             Event::Escape { visited, .. } => {
-                Part::from_order(visited.order, visited.has_met_ground)
+                ScatteringOrder::from_order(visited.order, visited.has_met_ground)
             }
             // A virtual photon leaves after one more event.
             Event::Arrival { hit, visited, .. } => {
-                Part::from_order(visited.order + 1, stage.is_ground(hit))
+                ScatteringOrder::from_order(visited.order + 1, stage.is_ground(hit))
             }
             _ => return 0,
         };
