@@ -45,7 +45,7 @@ pub struct StemTable {
     pub diameter_is_of_crown: bool,
     /// Columns that mean nothing here.
     pub left_out: Vec<String>,
-    /// Those of them that are spelled nearly as one that does, with that one.
+    /// Columns that are spelled almost as a column with a meaning, with that one.
     pub misspelt: Vec<(String, &'static str)>,
 }
 

@@ -17,7 +17,7 @@ pub(super) enum ColumnContent {
     Ignored,
     /// A number for this place in the caller's row.
     Number(usize),
-    /// The same; NaN where the field says that there is none.
+    /// Number; NaN where the field says that there is none.
     NumberOrMissing(usize),
     /// A text for this place in the caller's texts.
     Text(usize),

@@ -90,9 +90,9 @@ pub enum LookAt {
 /// Colours of the picture of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PictureColours {
-    /// By wavelength, stretched.
+    /// Bands chosen by wavelength, stretched.
     Quicklook,
-    /// By given channels.
+    /// Given channels.
     Colours {
         /// Sources of red, green and blue.
         channels: Channels,

@@ -42,7 +42,7 @@ pub struct Mesh {
     pub parts: Vec<MeshPart>,
 }
 
-/// Why numbers are not a mesh.
+/// Reason why numbers are not a mesh.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]

@@ -30,7 +30,7 @@ impl ResolvedSensor {
 /// A direction towards a sensor, as its angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// From the vertical, rad.
+    /// Zenith angle, rad.
     pub zenith: f64,
     /// Azimuth of the sensor, clockwise from north, rad.
     pub azimuth: f64,

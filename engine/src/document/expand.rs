@@ -26,7 +26,7 @@ impl Reading {
         out + &scene.to_text().into_file_with(&|path| self.remark(path))
     }
 
-    /// Where the value of a parameter comes from.
+    /// Source of the value of a parameter.
     fn origin(&self, name: &str) -> String {
         let has = |given: &[(String, Param)]| given.iter().any(|(given, _)| given == name);
         if has(&self.options.set) {

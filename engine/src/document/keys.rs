@@ -8,7 +8,7 @@ use super::describe::{self, KEYS, VARIANT};
 use super::diagnostic::nearest;
 use super::formula::{functions_text, is_function};
 
-/// What stands above all types.
+/// Head of the page, above all types.
 const HEAD: &str = "\
 # Keys of the scene language
 

@@ -17,7 +17,7 @@ use super::scene::Param;
 pub(super) struct Params {
     /// Value of each; NaN where it could not be read.
     pub(super) values: IndexMap<String, Param>,
-    /// What names of included files start with that could not be read.
+    /// Namespaces of included files that could not be read.
     lost: Vec<String>,
     used: RefCell<HashSet<String>>,
 }
@@ -227,7 +227,7 @@ fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader
     }
 }
 
-/// The same where formulas have been dealt with.
+/// Walks over a node whose formulas are already evaluated.
 fn walk_plain<'a>(node: &'a Node, reader: &mut Reader<'a>) {
     match &node.inner().value {
         Value::BadNumber(bad) => report_bad_number(node, *bad, reader),

@@ -18,7 +18,7 @@ use super::source::Source;
 /// A scene may hold so many bytes, included files among them; large stands belong into tables.
 pub(super) const FILE_SIZE: u64 = 256 << 20;
 
-/// How a scene is to be read.
+/// Options for reading a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// Parameters to set, by name; they go before those of the file, of the variant and of the point.
@@ -36,26 +36,26 @@ pub struct Reading {
     pub scene: Scene,
     /// The text it was read from.
     pub source: Source,
-    /// All that is wrong, in the order of the text.
+    /// Errors and warnings, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
     pub(super) options: ReadOptions,
 }
 
 impl Reading {
-    /// Whether nothing is wrong that keeps the scene from running.
+    /// Returns whether the scene has no error, so that it can run.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         !self.diagnostics.iter().any(Diagnostic::is_error)
     }
 
-    /// What a person reads: each diagnostic with its place.
+    /// Text of all diagnostics, each with its place.
     #[must_use]
     pub fn render(&self) -> String {
         self.source.render(&self.diagnostics)
     }
 }
 
-/// Why there is nothing to read a scene from.
+/// Reason why no scene could be read.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]

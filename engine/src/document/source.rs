@@ -27,9 +27,9 @@ pub struct Source {
 #[derive(Clone, Debug)]
 struct SourceFile {
     name: String,
-    /// What its names start with in the scene: nothing, or `birch.`.
+    /// Prefix of its names in the scene: empty, or `birch.`.
     namespace: String,
-    /// What its paths start with in the scene: nothing, or `species/`.
+    /// Prefix of its paths in the scene: empty, or `species/`.
     folder: String,
     /// First byte and first line in the text of all.
     start: usize,
@@ -73,12 +73,12 @@ impl Source {
         &self.files[self.files.partition_point(|file| file.start <= byte).max(1) - 1]
     }
 
-    /// What the names of a file start with: nothing, or `birch.`.
+    /// Prefix of the names of a file: empty, or `birch.`.
     pub(super) fn namespace(&self, span: Span) -> &str {
         &self.file_at(span.start as usize).namespace
     }
 
-    /// The same of its paths: nothing, or `species/`.
+    /// Prefix of the paths of a file: empty, or `species/`.
     pub(super) fn folder(&self, span: Span) -> &str {
         &self.file_at(span.start as usize).folder
     }
@@ -174,7 +174,7 @@ impl Source {
         (line, self.lines[line - 1])
     }
 
-    /// What a person reads: each diagnostic with its line of the text and a caret below it.
+    /// Text of all diagnostics, each with its line of the file and a caret below it.
     #[must_use]
     pub fn render(&self, diagnostics: &[Diagnostic]) -> String {
         diagnostics.iter().map(|one| self.render_one(one)).collect::<Vec<_>>().join("\n")
@@ -188,7 +188,7 @@ impl Source {
         format!("{severity}: {}", self.describe(diagnostic))
     }
 
-    /// The same without the leading `error: `.
+    /// Text of a diagnostic without the leading `error: `.
     pub(super) fn describe(&self, diagnostic: &Diagnostic) -> String {
         let Diagnostic { message, path, help, .. } = diagnostic;
         let mut out = format!("{}\n", legible(message));

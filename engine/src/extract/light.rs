@@ -7,7 +7,7 @@ use crate::components::{SkyLight, SunLight};
 use crate::sampling::{Sampler, concentric_disc};
 use crate::scattering::{SceneSpectra, SpectrumId};
 
-/// What lights a stage, in units of the total irradiance on the horizontal plane, band by band.
+/// Light of a stage, in units of the total irradiance on the horizontal plane, band by band.
 ///
 /// Transport computes with a total irradiance of 1, so that what it finds is `L / E`: π times that
 /// is the BRF, and times `E` it is the radiance.

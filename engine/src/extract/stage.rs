@@ -11,7 +11,7 @@ use crate::scattering::{Interaction, SurfaceId, SurfaceModels};
 pub struct Stage {
     /// Number of spectral bands.
     pub bands: usize,
-    /// How paths are traced.
+    /// Rules by which paths are traced.
     pub rules: Rules,
     /// South-west corner of the scene's rectangle, m.
     pub corner: DVec2,
@@ -42,7 +42,7 @@ pub struct Stage {
     pub geometry: Arc<accel::Scene>,
 }
 
-/// How paths are traced.
+/// Rules by which paths are traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
     /// Seed of all random streams.

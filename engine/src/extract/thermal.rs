@@ -20,9 +20,9 @@ pub struct Thermal {
 /// Radiance of a black body with the temperature of a surface, W m⁻² sr⁻¹ nm⁻¹.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceBlackBody {
-    /// Where the sun's disc is visible.
+    /// Radiance where the sun's disc is visible.
     pub sunlit: SpectrumId,
-    /// Where it is not.
+    /// Radiance where it is not.
     pub shaded: SpectrumId,
     /// True if the two differ.
     pub depends_on_sun: bool,

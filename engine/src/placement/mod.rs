@@ -51,16 +51,16 @@ const MOST_STEMS: usize = 20_000_000;
 /// Memory of a stem while the ray engine builds its tree, bytes.
 const STEM_BYTES: u64 = 410;
 
-/// How many stems are asked for.
+/// Number of stems to place.
 #[derive(Clone, Copy, Debug)]
 pub enum Amount<'a> {
-    /// So many.
+    /// Number.
     Count(u32),
-    /// So many m⁻² of the region.
+    /// Number per m² of the region.
     Density(f64),
-    /// So many m⁻² as the cell at each place says; none beside them and where that is NaN.
+    /// Number per m² by the cell at each place; none beside the cells and where the value is NaN.
     Map(&'a Cells<f64>),
-    /// As many as find room.
+    /// As many stems as find room.
     Fill,
 }
 

@@ -36,7 +36,7 @@ pub struct Habit<'a> {
     pub scale: &'a Distribution,
     /// Further vertical scale.
     pub scale_vertical: Option<&'a Distribution>,
-    /// How deep the mesh's origin lies below the ground, m.
+    /// Depth of the mesh's origin below the ground, m.
     pub sink_m: f64,
 }
 

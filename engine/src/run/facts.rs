@@ -138,7 +138,7 @@ pub struct SensorFacts {
     pub pixels: Option<u64>,
     /// Paths or photon packets that it traces, where that is fixed.
     pub samples: Option<u64>,
-    /// Why it ends.
+    /// Criterion that ends it.
     pub ends: String,
     /// Memory of the measurement, bytes.
     pub memory_bytes: u64,

@@ -16,7 +16,7 @@ pub enum Failure {
     /// The scene has no points to run at, or not these.
     #[error("{0}")]
     Sweep(String),
-    /// At one point of a sweep, something is wrong.
+    /// A point of a sweep failed.
     #[error("at {point}: {}", without_severity(&source.to_string()))]
     Point { point: String, source: Box<Self> },
     #[error("{}: could not be read again: {source}", path.display())]

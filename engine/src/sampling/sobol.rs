@@ -34,7 +34,7 @@ const fn directions(degree: usize, a: u32, m: [u32; 3]) -> [u32; 32] {
     v
 }
 
-/// What each half byte of an index adds to the four coordinates, bit-reversed: entry `[i][value]` belongs to
+/// Contribution of each half byte of an index to the four coordinates, bit-reversed: entry `[i][value]` belongs to
 /// bits `4i` to `4i + 3`. A loop over the bits that are set would end where no processor foresees it.
 const PARTS: [[[u32; 4]; 16]; 8] = {
     let mut parts = [[[0; 4]; 16]; 8];

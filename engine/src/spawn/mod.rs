@@ -169,7 +169,7 @@ fn spawn_plantings(
     has_changed
 }
 
-/// Whether each material is a leaf.
+/// Returns whether each material is a leaf.
 fn leaves(world: &World, materials: &Map<Entity>) -> Vec<bool> {
     let is_leaf = |entity: &Entity| {
         world.get::<&Material>(*entity).is_ok_and(|one| matches!(*one, Material::Leaf(_)))

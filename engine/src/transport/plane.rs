@@ -94,7 +94,7 @@ impl ReferencePlane {
         self.covers_tile() || self.within((ray.origin + ray.direction * along).truncate()).is_some()
     }
 
-    /// Of a ray that comes down from above everything, the length above a plane that something may
+    /// For a ray that comes down from above everything: the length above a plane that something may
     /// lie above, m: what is met there has not left through the plane.
     #[must_use]
     pub fn clearance(&self, ray: &Ray) -> Option<f64> {

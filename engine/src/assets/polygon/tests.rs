@@ -20,7 +20,7 @@ fn area(corners: &[DVec3]) -> f64 {
     pieces.triangles.iter().map(area_of).sum()
 }
 
-/// How often a closed line runs around a point, counter-clockwise.
+/// Number of counter-clockwise turns of a closed line around a point.
 fn winding_number(line: &[DVec2], point: DVec2) -> i32 {
     let mut winding = 0;
     for (&start, &end) in line.iter().zip(line.iter().cycle().skip(1)) {
@@ -199,7 +199,7 @@ fn simple() -> impl Strategy<Value = Vec<DVec2>> {
     })
 }
 
-/// Where a spike starts, by edge and share of it, and its points on the way out.
+/// Start of a spike, by edge and fraction of it, and its points on the way out.
 type Spike = (prop::sample::Index, f64, Vec<(f64, f64)>);
 
 fn spike() -> impl Strategy<Value = Spike> {

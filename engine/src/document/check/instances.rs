@@ -1,4 +1,4 @@
-//! What stands on the ground.
+//! Checks of instances.
 
 use indexmap::IndexMap;
 
@@ -200,7 +200,7 @@ fn check_ring(ring: &[(f64, f64)], path: &str, report: &mut Report<'_>) {
     }
 }
 
-/// What a distribution's values may be, and what a person calls them.
+/// Lower limit of a distribution's values, with its name in messages.
 #[derive(Clone, Copy)]
 enum Least {
     Any,
@@ -208,7 +208,7 @@ enum Least {
     AboveZero(&'static str),
 }
 
-/// Whether values are finite, spread the right way round, and not below the least.
+/// Checks that values are finite, in order, and not below the minimum.
 fn check_distribution(
     distribution: &Distribution,
     path: &str,

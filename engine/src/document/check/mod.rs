@@ -1,4 +1,4 @@
-//! What a scene may not say, as far as it shows without files: ranges, shapes and names.
+//! Checks of a scene that need no file: ranges, shapes and names.
 
 mod camera;
 mod crown;
@@ -30,13 +30,13 @@ const ERRORS: usize = 100;
 /// Largest zenith angle: what lies within a millionth of a degree of the horizon is on it.
 pub(crate) const LOWEST_DEG: f64 = 90.0 - 1e-6;
 
-/// Everything wrong with a scene that needs no file to be seen.
+/// Faults of a scene that can be found without reading a file.
 #[must_use]
 pub fn check(scene: &Scene) -> Vec<Diagnostic> {
     check_readable(scene, &[])
 }
 
-/// The same for a scene that was read with errors at the `broken` paths: says nothing of these.
+/// Faults of a scene that was read with errors at the `broken` paths, without those there.
 pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic> {
     let mut report = Report { broken, found: Vec::new(), dropped: 0 };
     if scene.format != 1 {
@@ -63,7 +63,7 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
     report.finish()
 }
 
-/// What has been found so far.
+/// Faults found so far.
 struct Report<'a> {
     broken: &'a [String],
     found: Vec<Diagnostic>,
@@ -98,17 +98,17 @@ impl Report<'_> {
         self.found
     }
 
-    /// Whether what stands at a path could be read: nothing is wrong there or above.
+    /// Returns whether the value at a path could be read: no error is there or above.
     fn is_readable(&self, path: &str) -> bool {
         !self.broken.iter().any(|broken| is_within(path, broken))
     }
 
-    /// Whether nothing below a path is wrong either.
+    /// Returns whether no error is below a path either.
     fn is_whole(&self, path: &str) -> bool {
         self.is_readable(path) && !self.broken.iter().any(|broken| is_within(broken, path))
     }
 
-    /// Whether a name belongs to an included file that could not be read.
+    /// Returns whether a name belongs to an included file that could not be read.
     fn is_lost(&self, name: &str) -> bool {
         let prefixes = self.broken.iter().filter_map(|path| path.strip_prefix("include."));
         prefixes.into_iter().any(|lost| lost.ends_with('.') && name.starts_with(lost))

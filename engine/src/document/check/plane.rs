@@ -59,7 +59,7 @@ pub(super) fn check_plane(
     }
 }
 
-/// What a plane and the terrain take up along one axis, m.
+/// Intervals of a plane and of the terrain along one axis, m.
 struct Span {
     low: f64,
     high: f64,

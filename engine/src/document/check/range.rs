@@ -14,7 +14,7 @@ pub(crate) struct Range {
     unit: &'static str,
     least: f64,
     most: f64,
-    /// What to write instead.
+    /// Advice on what to write instead.
     help: &'static str,
 }
 
@@ -104,7 +104,7 @@ const SECONDS: Range = Range {
 };
 
 impl Range {
-    /// What is wrong with a value, and what to write instead; `None` if it is lawful.
+    /// Fault of a value, with advice; `None` if it is lawful.
     pub(crate) fn problem(&self, value: f64) -> Option<(String, &'static str)> {
         let Self { quantity, unit, least, most, help } = self;
         if (*least..=*most).contains(&value) {

@@ -235,7 +235,7 @@ fn check_layers(path: &str, layers: &Layers, report: &mut Report<'_>) {
     }
 }
 
-/// At least one measure, each kind once: outputs are called by it.
+/// Checks for at least one measure, each kind once: outputs are named by it.
 fn check_measures<T>(path: &str, measures: &[T], example: &str, report: &mut Report<'_>) {
     if measures.is_empty() && report.is_readable(path) {
         let help = format!("write, for example, `measure: [{example}]`");
@@ -254,7 +254,7 @@ fn check_measures<T>(path: &str, measures: &[T], example: &str, report: &mut Rep
     }
 }
 
-/// Whether the maps of fluxes over a scene of this extent, m, hold more values than anybody wants.
+/// Checks that maps of fluxes over a scene of this extent, m, are not excessively large.
 pub(crate) fn check_maps(
     path: &str,
     measure: &PhotonMeasure,

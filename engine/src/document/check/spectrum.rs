@@ -181,7 +181,7 @@ pub(super) fn check_spectrum(
     }
 }
 
-/// As many values as bands; both numbers if not.
+/// Checks that there are as many values as bands.
 pub(super) fn check_band_count(
     path: &str,
     what: &str,

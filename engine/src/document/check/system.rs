@@ -3,7 +3,7 @@
 use super::super::scene::{ImageMeasure, Photons, Scene, Sensor, System};
 use super::Report;
 
-/// Whether a sensor can be measured by the system that it asks for.
+/// Checks that the transport system of a sensor can measure its quantities.
 pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
     let Some(system) = sensor.system() else { return };
     if let Sensor::Photons(Photons { measure, .. }) = sensor

@@ -50,7 +50,7 @@ pub(super) fn check_temperatures(scene: &Scene, report: &mut Report<'_>) {
     }
 }
 
-/// What a sensor can measure of emission.
+/// Checks that a sensor can measure its emission.
 pub(super) fn check_emission(
     path: &str,
     measures: &[ImageMeasure],
@@ -64,7 +64,7 @@ pub(super) fn check_emission(
     }
 }
 
-/// What photons can measure of emission.
+/// Checks that photons can measure their emission.
 pub(super) fn check_photon_emission(
     path: &str,
     measures: &[PhotonMeasure],
@@ -90,7 +90,7 @@ fn check_band(at: &str, scene: &Scene, report: &mut Report<'_>) {
     }
 }
 
-/// Whether any sensor measures light of sun and sky: gaps are there in the dark too, emission needs
+/// Returns whether any sensor measures light of sun and sky: gaps exist in the dark too, emission needs
 /// no light, and the four components ask for a sun themselves.
 pub(super) fn needs_light(scene: &Scene) -> bool {
     let reflects = scene.bands.iter().any(Band::reflects);

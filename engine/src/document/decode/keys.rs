@@ -14,9 +14,9 @@ const ELEVATIONS: [&str; 6] =
 /// The keys of a record or of a variant.
 pub(in super::super) struct Fields<'a> {
     list: &'a [Field],
-    /// What to underline where a key is missing.
+    /// Part of the text to underline where a key is missing.
     head: Span,
-    /// What a person calls the owner: `the sun`.
+    /// Name of the owner in messages: `the sun`.
     owner: &'static str,
     known: &'static [&'static str],
 }
@@ -135,7 +135,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Whether a key that is missing may stand in a file that could not be included.
+    /// Returns whether a missing key may stand in a file that could not be included.
     fn may_be_lost(&self, reader: &Reader<'_>) -> bool {
         self.owner == "the scene" && reader.has_lost_files()
     }

@@ -25,16 +25,16 @@ const BROKEN: usize = 1000;
 
 /// A type that can be read from the tree.
 pub(super) trait Decode: Sized {
-    /// Whether its values stand in parentheses of their own; those of a variant serve as well.
+    /// True if its values stand in parentheses of their own; those of a variant serve as well.
     const IS_TUPLE: bool = false;
 
     /// Name of such a value in messages: `a number`.
     fn expected() -> Cow<'static, str>;
 
-    /// How one is written.
+    /// An example of a value.
     fn example() -> String;
 
-    /// What it looks like in JSON.
+    /// JSON schema of its values.
     fn schema(book: &mut Book) -> serde_json::Value;
 
     /// The value; where it cannot be read, the reader is told and the value is a placeholder.
@@ -44,27 +44,27 @@ pub(super) trait Decode: Sized {
     fn placeholder() -> Self;
 }
 
-/// Where reading has come to, and what was wrong on the way.
+/// State of the reader, and the faults found so far.
 pub(super) struct Reader<'a> {
     source: &'a Source,
     path: Vec<Step<'a>>,
     diagnostics: Vec<Diagnostic>,
     dropped: usize,
-    /// What formulas came to, by their first byte; none where that was nothing.
+    /// Values of formulas, by their first byte; none where there was no value.
     computed: HashMap<u32, Option<Param>>,
     /// Paths without a value, beside those of `diagnostics`.
     broken: Vec<String>,
     /// The scene, and the names of its parameters, for advice.
     tree: Option<&'a Node>,
     params: HashSet<String>,
-    /// How the value of the key at this depth is written.
+    /// Example of the value of the key at this depth.
     example: Option<(usize, &'static str)>,
 }
 
-/// What was wrong with a tree.
+/// Faults of a tree.
 pub(super) struct Findings {
     pub(super) diagnostics: Vec<Diagnostic>,
-    /// How many more errors there were.
+    /// Number of further errors.
     pub(super) dropped: usize,
     /// Paths without a value.
     pub(super) broken: Vec<String>,
@@ -85,7 +85,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What was wrong before reading started; `lost` is what names start with that cannot be known.
+    /// Adds faults found before reading; `lost` are the namespaces of files that could not be read.
     pub(super) fn start_with(&mut self, diagnostics: Vec<Diagnostic>, lost: &[String]) {
         for one in diagnostics {
             self.push(one);
@@ -93,12 +93,12 @@ impl<'a> Reader<'a> {
         self.broken.extend(lost.iter().take(BROKEN / 2).map(|lost| format!("include.{lost}")));
     }
 
-    /// Whether some included file could not be read: what is missing may stand there.
+    /// Returns whether some included file could not be read: missing names may stand there.
     fn has_lost_files(&self) -> bool {
         self.broken.iter().any(|path| path.starts_with("include."))
     }
 
-    /// What was wrong.
+    /// The faults.
     pub(super) fn finish(self) -> Findings {
         let Self { diagnostics, dropped, mut broken, .. } = self;
         let errors = diagnostics.iter().filter(|one| one.is_error());
@@ -147,14 +147,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether one more error can be kept; if not, it is counted.
+    /// Returns whether one more error can be kept; if not, it is counted.
     pub(super) fn has_room(&mut self) -> bool {
         let has_room = self.diagnostics.len() < ERRORS;
         self.dropped += usize::from(!has_room);
         has_room
     }
 
-    /// What the names of a node's file start with: nothing, or `birch.`.
+    /// Prefix of the names of a node's file: empty, or `birch.`.
     pub(super) fn namespace(&self, node: &Node) -> &'a str {
         self.source.namespace(node.span)
     }
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
         self.params = params.cloned().collect();
     }
 
-    /// What a formula came to; none where it was wrong, which has been reported.
+    /// Sets the value of a formula; none where it was wrong, which has been reported.
     pub(super) fn set_computed(&mut self, formula: &Node, value: Option<Param>) {
         self.computed.insert(formula.span.start, value);
     }

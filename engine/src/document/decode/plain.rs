@@ -49,7 +49,7 @@ impl Decode for f64 {
     }
 }
 
-/// Whether a float is a whole number that it holds exactly.
+/// Returns whether a float is a whole number that it holds exactly.
 fn is_whole(value: f64) -> bool {
     value.fract() == 0.0 && (0.0..=9e15).contains(&value)
 }

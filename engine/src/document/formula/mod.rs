@@ -25,7 +25,7 @@ const LENGTH: usize = 1000;
 /// Parentheses, signs and powers may nest so deep.
 const DEPTH: usize = 50;
 
-/// Why a formula has no value.
+/// Reason why a formula has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FormulaError {
     /// Bytes of the formula.
@@ -41,16 +41,16 @@ impl FormulaError {
     }
 }
 
-/// What the names in a formula mean.
+/// Meaning of the names in a formula.
 #[derive(Debug)]
 pub(super) struct Scope<'a> {
     /// Parameters that have been settled, by their full names; those without a value are NaN.
     pub(super) params: &'a IndexMap<String, Param>,
-    /// What the full names of the formula's own file start with.
+    /// Prefix of the full names of the formula's own file.
     pub(super) namespace: &'a str,
     /// Parameters that are settled later.
     pub(super) later: &'a HashSet<&'a str>,
-    /// What names of included files start with that could not be read.
+    /// Namespaces of included files that could not be read.
     pub(super) lost: &'a [String],
     /// Parameters that some formula has used.
     pub(super) used: &'a RefCell<HashSet<String>>,
@@ -143,7 +143,7 @@ impl Parser<'_> {
         })
     }
 
-    /// From the right: `2^3^2` is 2^9.
+    /// Power, evaluated from the right: `2^3^2` is 2^9.
     fn power(&mut self) -> Result {
         let base = self.atom()?;
         if self.take('^') { Ok(base.powf(self.signed()?)) } else { Ok(base) }

@@ -27,10 +27,10 @@ const DEPTH: usize = 32;
 /// A scene may include so many files.
 const FILES: usize = 1000;
 
-/// What including has come to.
+/// Result of including files.
 pub(super) struct Included {
     pub(super) diagnostics: Vec<Diagnostic>,
-    /// What names of files start with that could not be read.
+    /// Namespaces of files that could not be read.
     pub(super) lost: Vec<String>,
 }
 
@@ -65,7 +65,7 @@ struct Link {
 
 struct Including<'a> {
     source: &'a mut Source,
-    /// From the scene file to the file at hand.
+    /// Chain of files from the scene file to the current one.
     chain: Vec<Link>,
     files: usize,
     /// Keys of the scene, and the namespace that each was taken from.
@@ -294,7 +294,7 @@ fn take_includes(tree: &mut Node) -> Option<(Node, Vec<Span>)> {
     Some((includes, taken.map(|field| field.name_span).collect()))
 }
 
-/// What tells a file from all others, however it is called.
+/// Identity of a file, whatever path names it.
 fn real_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_not_there| path.to_owned())
 }

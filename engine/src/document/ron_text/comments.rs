@@ -1,4 +1,4 @@
-//! Where the comments of a text stand.
+//! Places of the comments of a text.
 
 use super::lexer::{Kind, Lexer};
 

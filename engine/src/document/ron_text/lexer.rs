@@ -38,7 +38,7 @@ impl Kind {
     }
 }
 
-/// Why the text is not RON.
+/// Reason why the text is not RON.
 #[derive(Clone, Debug)]
 pub(in super::super) struct SyntaxError {
     pub(in super::super) span: Span,
@@ -59,7 +59,7 @@ impl SyntaxError {
 
 type Result<T> = std::result::Result<T, SyntaxError>;
 
-/// Where reading has come to.
+/// State of the lexer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lexer<'a> {
     text: &'a str,

@@ -31,7 +31,7 @@ impl Span {
         Self { start: start as u32, end: end as u32 }
     }
 
-    /// The same bytes where the text stands behind so many others.
+    /// The span of the same bytes where the text follows this number of other bytes.
     pub(super) fn shifted(self, by: usize) -> Self {
         Self { start: self.start + by as u32, end: self.end + by as u32 }
     }
@@ -146,7 +146,7 @@ impl Node {
         }
     }
 
-    /// What of the node to underline: all of it on one line, else its first word or bracket.
+    /// Part of the node to underline: all of it on one line, else its first word or bracket.
     pub(super) fn head(&self, text: &str) -> Span {
         if text.get(self.span.range()).is_some_and(|own| own.contains('\n')) {
             self.opening()

@@ -7,28 +7,28 @@ choice! {
         Ellipsoid {
             /// Largest width, m.
             diameter_m: f64 => "3.0",
-            /// From its lowest to its highest point, m.
+            /// Height from its lowest to its highest point, m.
             height_m: f64 => "5.0",
         },
         /// Upright cone.
         Cone {
             /// Width at its base, m.
             diameter_m: f64 => "3.0",
-            /// From base to tip, m.
+            /// Height from base to tip, m.
             height_m: f64 => "5.0",
         },
         /// Upright cylinder.
         Cylinder {
             /// Width, m.
             diameter_m: f64 => "3.0",
-            /// From base to top, m.
+            /// Height from base to top, m.
             height_m: f64 => "5.0",
         },
         /// Upper half of an ellipsoid of revolution: a dome on a flat base.
         HalfEllipsoid {
             /// Width at its base, m.
             diameter_m: f64 => "3.0",
-            /// From base to top, m.
+            /// Height from base to top, m.
             height_m: f64 => "5.0",
         },
         /// Solid of revolution of radius `(diameter / 2) exp(-((z - widest) / s)² / 2)` at z above its
@@ -36,7 +36,7 @@ choice! {
         AsymmetricGaussian {
             /// Largest width, m.
             diameter_m: f64 => "3.0",
-            /// From base to top, which are flat, m.
+            /// Height from base to top, which are flat, m.
             height_m: f64 => "5.0",
             /// Height of the widest place above the base, m.
             widest_m: f64 => "1.5",
@@ -71,7 +71,7 @@ choice! {
         Plagiophile,
         /// g(θ) = (2/π)(1 + cos 4θ): mostly horizontal or vertical leaves.
         Extremophile,
-        /// As the surface of an ellipsoid of revolution with vertical axis; one of the two is written.
+        /// Normals of an ellipsoid of revolution with a vertical axis; one of the two keys is written.
         /// Source: Campbell (1990), Agric. For. Meteorol. 49, 173–176.
         Ellipsoidal {
             /// Its horizontal over its vertical semi-axis: 1 is spherical, more is flatter.
@@ -128,9 +128,9 @@ choice! {
 }
 
 choice! {
-    /// How leaf area changes with height. Only ratios count: `leaf_area_m2` is the whole.
+    /// Vertical profile of leaf area. Only ratios count: `leaf_area_m2` is the total.
     pub enum LeafProfile ("a leaf profile") {
-        /// The same leaf area in each cubic metre of the crown.
+        /// The same leaf area density everywhere in the crown.
         Even,
         /// Leaf area density, m² m⁻³, by height above the ground, m: linear between, 0 beyond.
         Density(Vec<(f64, f64)> => "[(2.0, 0.3), (5.0, 1.0), (7.0, 0.5)]"),
@@ -144,13 +144,13 @@ record! {
     /// Leaves gathered in clumps: ellipsoids that hold the same number of leaves each. What would
     /// stand out of the crown is put elsewhere in its clump.
     pub struct Clumps ("the clumps") {
-        /// How many.
+        /// Number of them.
         count: u32 => "80",
         /// Half of their width, m.
         radius_m: f64 => "0.4",
-        /// From their lowest to their highest point, m; as their width if absent.
+        /// Height from their lowest to their highest point, m; their width if absent.
         height_m: Option<f64> = None,
-        /// Whether their middles are on branches, rather than anywhere in the crown.
+        /// True if their middles are on branches; otherwise they are anywhere in the crown.
         on_branches: bool = false,
     }
 }
@@ -170,7 +170,7 @@ record! {
 record! {
     /// Branches of a generated tree, spread along the trunk within the crown.
     pub struct Branches ("the branches") {
-        /// How many.
+        /// Number of them.
         count: u32 => "12",
         /// Diameter at the trunk, m.
         diameter_m: f64 => "0.2",

@@ -14,7 +14,7 @@ choice! {
         Mesh {
             /// Its name among `meshes`.
             mesh: Ref<Prototype> => r#""hill""#,
-            /// Where its origin lies, m.
+            /// Position of its origin, m.
             at_m: (f64, f64, f64) = (0.0, 0.0, 0.0),
         },
     }
@@ -43,16 +43,16 @@ record! {
         material: Option<Ref<Material>> => r#""soil""# = None,
         /// Materials by class, in place of `material`.
         land_cover: Option<LandCover> = None,
-        /// How far the ground may lie above or below a cell's height, m; 0 keeps every cell.
+        /// Largest distance of the ground above or below a cell's height, m; 0 keeps every cell.
         tolerance_m: f64 = 0.0,
-        /// What the coordinates are, where the file does not say; degrees are refused without it.
+        /// Unit of the coordinates, where the file does not say; degrees are refused without it.
         coordinates: Option<Coordinates> = None,
         /// Part of the raster that is read, to whole cells; all of it if left out.
         window: Option<RasterWindow> = None,
         /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
         /// for feet. Without it, heights that the file says are in feet become metres.
         height_unit_m: Option<f64> => "0.01" = None,
-        /// What becomes of cells without data.
+        /// Treatment of cells without data.
         no_data: NoData = NoData::Refuse,
         /// South-west corner, m, in place of the file's.
         corner_m: Option<(f64, f64)> = None,
@@ -84,7 +84,7 @@ record! {
 }
 
 choice! {
-    /// What the coordinates of a raster are.
+    /// Unit of the coordinates of a raster.
     pub enum Coordinates ("coordinates") {
         /// Metres east and north.
         Metres,
@@ -94,7 +94,7 @@ choice! {
 }
 
 choice! {
-    /// What becomes of cells without data.
+    /// Treatment of cells without data.
     pub enum NoData ("what becomes of cells without data") {
         /// They are an error.
         Refuse,
@@ -108,9 +108,9 @@ choice! {
 }
 
 choice! {
-    /// What lies beyond the terrain's rectangle.
+    /// Surroundings of the terrain's rectangle.
     pub enum Boundary ("a boundary") {
-        /// The same scene again, without end.
+        /// Endless copies of the scene.
         Periodic,
         /// Nothing.
         Isolated,

@@ -1,4 +1,4 @@
-//! What stands on the ground.
+//! Instances of meshes on the ground.
 
 use std::borrow::Cow;
 
@@ -42,9 +42,9 @@ record! {
         /// north is so wide; where one of the two is missing, the mesh keeps its proportions.
         /// Columns of other names are let be.
         columns: Option<Vec<String>> = None,
-        /// Whether heights count from the terrain below each place.
+        /// True if heights count from the terrain below each place.
         on_terrain: bool = false,
-        /// What the coordinates are; if absent, whichever of the two lies on the terrain.
+        /// Origin of the coordinates; if absent, whichever of the two puts the stems on the terrain.
         coordinates: Option<TableCoordinates> = None,
         /// Name for `hide` and `select`.
         name: Option<InstancesName> = None,
@@ -62,7 +62,7 @@ record! {
         yaw_deg: Vec<f64> = Vec::new(),
         /// Scale of each; 1 if empty.
         scale: Vec<f64> = Vec::new(),
-        /// Whether heights count from the terrain below each place.
+        /// True if heights count from the terrain below each place.
         on_terrain: bool = false,
         /// Name for `hide` and `select`.
         name: Option<InstancesName> = None,
@@ -74,9 +74,9 @@ record! {
     pub struct Scatter ("scattered instances") {
         /// Meshes and their shares. One more leaves all stems in place: some become its own.
         of: IndexMap<Ref<Prototype>, f64> => r#"{ "oak": 0.7, "birch": 0.3 }"#,
-        /// How places are chosen.
+        /// Rule by which places are chosen.
         rule: Rule,
-        /// How many.
+        /// Number of stems.
         stems: Stems = Stems::Fill,
         /// Only in these; everywhere if empty.
         inside: Vec<Area> = Vec::new(),
@@ -94,7 +94,7 @@ record! {
         scale: Distribution = Distribution::Fixed(1.0),
         /// Further vertical scale; that of `scale` if absent.
         scale_vertical: Option<Distribution> = None,
-        /// How deep the mesh's origin lies below the terrain, m.
+        /// Depth of the mesh's origin below the terrain, m.
         sink_m: f64 = 0.0,
         /// Name for `hide` and `select`, and of the random numbers: with it, instances may come
         /// and go before these without moving them.
@@ -116,12 +116,12 @@ record! {
         /// Length of the unit of the heights, m, in place of the file's: 0.01 for centimetres, 0.3048
         /// for feet. Without it, heights that the file says are in feet become metres.
         height_unit_m: Option<f64> => "0.01" = None,
-        /// What is lower is no tree, m.
+        /// Minimum height of a tree, m; anything lower is none.
         min_height_m: f64 = 3.0,
         /// Two numbers a, b: of tops less than half of a m + b h² from one of height h m, only
         /// the highest counts.
         window: (f64, f64) = (2.51, 0.009),
-        /// How deep the mesh's origin lies below the terrain, m.
+        /// Depth of the mesh's origin below the terrain, m.
         sink_m: f64 = 0.0,
         /// Name for `hide` and `select`, and of the random numbers that turn the trees.
         name: Option<InstancesName> = None,
@@ -129,11 +129,11 @@ record! {
 }
 
 choice! {
-    /// How places are chosen.
+    /// Rule by which places are chosen.
     pub enum Rule ("a rule of placement") {
         /// Each place on its own, everywhere equally likely.
         Uniform,
-        /// The same, but for places too close to an earlier one. In a periodic scene the distance
+        /// Uniform places, without those too close to an earlier one. In a periodic scene the distance
         /// counts across the borders.
         PoissonDisc {
             /// Smallest distance between two stems, m.
@@ -145,14 +145,14 @@ choice! {
             spacing_m: (f64, f64) => "(3.0, 2.0)",
             /// Azimuth of the rows, clockwise from north, degrees.
             row_azimuth_deg: f64 = 0.0,
-            /// How far a stem may stand beside its place, to the east and to the north, m.
+            /// Largest displacement of a stem from its place, to the east and to the north, m.
             jitter_m: f64 = 0.0,
         },
     }
 }
 
 choice! {
-    /// How many stems there are.
+    /// Number of stems.
     pub enum Stems ("a choice of how many stems") {
         /// A number of them.
         Count(u32 => "500"),
@@ -167,15 +167,15 @@ choice! {
             /// Stems per hectare of a value of 1.
             factor: f64 = 1.0,
         },
-        /// As many as the rule has room for.
+        /// As many stems as the rule has room for.
         Fill,
     }
 }
 
 choice! {
-    /// How a quantity varies from stem to stem.
+    /// Distribution of a quantity over the stems.
     pub enum Distribution ("a distribution") {
-        /// The same for all.
+        /// One value for all stems.
         Fixed(f64 => "1.0"),
         /// Equally likely from the first value to the second.
         Uniform((f64, f64) => "0.8, 1.2"),
@@ -218,7 +218,7 @@ choice! {
         GeoJson {
             /// Path, relative to the scene file.
             file: FilePath => r#""stand.geojson""#,
-            /// Whether it holds eastings and northings: `frame.origin_m` is subtracted.
+            /// True if it holds eastings and northings: `frame.origin_m` is subtracted.
             georeferenced: bool = true,
         },
         /// Polygons from a text table: columns `x_m`, `y_m`, and perhaps `ring` (another number is
@@ -226,7 +226,7 @@ choice! {
         Table {
             /// Path, relative to the scene file.
             file: FilePath => r#""stand.csv""#,
-            /// Whether it holds eastings and northings: `frame.origin_m` is subtracted.
+            /// True if it holds eastings and northings: `frame.origin_m` is subtracted.
             georeferenced: bool = false,
         },
     }
@@ -236,10 +236,10 @@ choice! {
     /// Frame of the coordinates of a table.
     #[derive(Copy, Eq)]
     pub enum TableCoordinates ("coordinates of a table") {
-        /// Those of the map, as of rasters: `frame.origin_m` is subtracted, also from `z_m`, unless that
+        /// Map coordinates, as those of rasters: `frame.origin_m` is subtracted, also from `z_m`, unless that
         /// counts from the terrain.
         Map,
-        /// Those of the scene.
+        /// Coordinates of the local frame.
         Local,
     }
 }
@@ -248,9 +248,9 @@ choice! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SpeciesMeshes {
-    /// The same for all.
+    /// One value for all stems.
     One(Ref<Prototype>),
-    /// By the column `species`.
+    /// One mesh per species, by the column `species`.
     BySpecies(Map<Ref<Prototype>>),
 }
 

@@ -7,7 +7,7 @@ record! {
     pub struct Sun ("the sun") {
         /// Angle from the vertical, degrees, below 90.
         zenith_deg: Option<f64> => "30.0" = None,
-        /// Where the sun is, clockwise from north, degrees.
+        /// Azimuth of the sun, clockwise from north, degrees.
         azimuth_deg: f64 = 0.0,
         /// Place and time that say where the sun is, in place of both angles. Below the horizon it gives no light:
         /// an error, or in a sweep a row without data, unless a sky of its own or emission is left.
@@ -22,9 +22,9 @@ record! {
 }
 
 choice! {
-    /// How the sun's position is known.
+    /// Source of the sun's position.
     pub enum SunPosition ("a position of the sun") {
-        /// From place and time by the Solar Position Algorithm, good to 0.0003°.
+        /// Position from place and time by the Solar Position Algorithm, accurate to 0.0003°.
         ///
         /// Source: Reda and Andreas (2004), Solar Energy 76, 577-589.
         Spa(..Spa),

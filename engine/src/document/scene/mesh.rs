@@ -35,18 +35,18 @@ record! {
     pub struct Obj ("a mesh from an OBJ file") {
         /// Path, relative to the scene file.
         file: FilePath => r#""assets/tree.obj""#,
-        /// Which axis points up.
+        /// Axis that points up.
         up: Axis => "Z",
         /// Length of the file's unit, m.
         unit_m: f64 => "1.0",
         /// Material of each part. `*` in a name stands for any text: `"leaf*": "leaf"`. An exact name
         /// counts before patterns, of these the one with most other letters, then the first.
         parts: Map<Ref<Material>> = Map::new(),
-        /// What the parts are.
+        /// Statement of the file that names its parts.
         parts_by: PartsBy = PartsBy::Group,
         /// Material of the parts that `parts` does not name.
         material: Option<Ref<Material>> = None,
-        /// What becomes the origin.
+        /// Point that becomes the origin.
         origin: Origin = Origin::File,
     }
 }
@@ -56,7 +56,7 @@ record! {
     pub struct Gltf ("a mesh from a glTF file") {
         /// Path, relative to the scene file.
         file: FilePath => r#""assets/tree.glb""#,
-        /// Which axis points up (Y, if the file keeps to the standard).
+        /// Axis that points up (Y, if the file keeps to the standard).
         up: Axis => "Y",
         /// Length of the file's unit, m.
         unit_m: f64 => "1.0",
@@ -65,7 +65,7 @@ record! {
         parts: Map<Ref<Material>> = Map::new(),
         /// Material of the parts that `parts` does not name.
         material: Option<Ref<Material>> = None,
-        /// What becomes the origin.
+        /// Point that becomes the origin.
         origin: Origin = Origin::File,
     }
 }
@@ -75,7 +75,7 @@ record! {
 pub struct MeshFile<'a> {
     /// Path, relative to the scene file.
     pub file: &'a str,
-    /// Which axis points up.
+    /// Axis that points up.
     pub up: &'a Axis,
     /// Length of the file's unit, m.
     pub unit_m: f64,
@@ -83,7 +83,7 @@ pub struct MeshFile<'a> {
     pub parts: &'a Map<Ref<Material>>,
     /// Material of the parts that `parts` does not name.
     pub material: Option<&'a Ref<Material>>,
-    /// What becomes the origin.
+    /// Point that becomes the origin.
     pub origin: &'a Origin,
 }
 
@@ -137,7 +137,7 @@ record! {
         base_m: f64 => "2.0",
         /// One-sided area of all leaves, m²; 0 for none.
         leaf_area_m2: f64 => "30.0",
-        /// How leaf area changes with height.
+        /// Vertical profile of leaf area.
         leaf_profile: LeafProfile = LeafProfile::Even,
         /// Clumps that leaves are gathered in; without them each stands by itself.
         clumps: Option<Clumps> = None,
@@ -179,7 +179,7 @@ choice! {
 }
 
 choice! {
-    /// What the parts of an OBJ file are.
+    /// Statement of an OBJ file that names its parts.
     pub enum PartsBy ("a kind of part") {
         /// Groups (`g`, `o`), and within them materials: `crown`, or `crown/green` and `crown/brown` if
         /// the group has several materials.
@@ -190,7 +190,7 @@ choice! {
 }
 
 choice! {
-    /// What becomes the origin of a prototype.
+    /// Point of a file that becomes the origin of a prototype.
     pub enum Origin ("an origin") {
         /// The file's own origin.
         File,

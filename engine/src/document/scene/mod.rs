@@ -1,4 +1,4 @@
-//! What a scene file may say.
+//! Types of a scene file.
 
 mod crown;
 mod ground;
@@ -50,7 +50,7 @@ record! {
     pub struct Scene ("the scene") {
         /// Version of the language; this is version 1.
         format: u32 => "1",
-        /// What a person calls the scene.
+        /// Title of the scene.
         title: String = String::new(),
         /// Values that `"=expr"` strings may use. A text stands for a string: with `"leaf": "birch.csv"`,
         /// `file: "=leaf"` is `file: "birch.csv"`.
@@ -58,7 +58,7 @@ record! {
         /// Other files, whose definitions have names that start with the include's: `birch.leaf`.
         /// Reading a scene takes them into it and leaves nothing here.
         include: Map<Include> = Map::new(),
-        /// Where the local frame lies on Earth.
+        /// Position of the local frame on Earth.
         frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0), crs: None },
         /// Spectral bands, in the order of all band lists.
         bands: Vec<Band> => r#"[(name: "red", center_nm: 660.0, width_nm: 10.0)]"#,
@@ -70,24 +70,24 @@ record! {
         meshes: Map<Prototype> = Map::new(),
         /// The ground.
         terrain: Terrain => r#"Plane(size_m: (100.0, 100.0), material: "soil")"#,
-        /// What stands on it.
+        /// Instances that stand on the ground.
         instances: Vec<Instances> = Vec::new(),
-        /// Which of them are left out: patterns such as `"oak"` (a mesh) or `"plot 7/*"` (all that
+        /// Patterns of instances that are left out, such as `"oak"` (a mesh) or `"plot 7/*"` (all that
         /// stands by the instances of that name). The others stay where they are.
         hide: Vec<NamePattern> = Vec::new(),
-        /// Which of them are kept, by the same patterns; all if empty.
+        /// Patterns of instances that are kept, as those of `hide`; all if empty.
         select: Vec<NamePattern> = Vec::new(),
         /// The sun; without it only the sky lights the scene.
         sun: Option<Sun> = None,
         /// The sky.
         sky: Sky = Sky::None,
-        /// What the sky emits, in bands that hold emission.
+        /// Emission of the sky, in bands that hold emission.
         thermal_sky: ThermalSky = ThermalSky::None,
-        /// What lies beyond the terrain's rectangle.
+        /// Surroundings of the terrain's rectangle.
         boundary: Boundary = Boundary::Isolated,
-        /// What measures the light.
+        /// Sensors, by name.
         sensors: Map<Sensor> => r#"{ "brf": Directions(views: PrincipalPlane) }"#,
-        /// How light is traced.
+        /// Options of the light transport.
         transport: Transport = Transport::default(),
         /// Named sets of changes to `params`.
         variants: Map<Map<Param>> = Map::new(),
@@ -117,7 +117,7 @@ record! {
         center_nm: f64 => "660.0",
         /// Full width, nm; 0 means the centre wavelength alone.
         width_nm: f64 = 0.0,
-        /// Where the radiance in it comes from.
+        /// Sources of its radiance.
         source: BandSource = BandSource::Auto,
     }
 }

@@ -12,9 +12,9 @@ use super::super::ron_text::{Node, Text, Value};
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(untagged)]
 pub enum Param {
-    /// For formulas.
+    /// Number, for formulas.
     Number(f64),
-    /// For places of strings: `file: "=leaf_file"`.
+    /// Text, in the place of a string: `file: "=leaf_file"`.
     Text(String),
 }
 
@@ -28,7 +28,7 @@ impl Param {
         }
     }
 
-    /// Whether it can be used: all but numbers that are not finite.
+    /// Returns whether it can be used: numbers must be finite.
     #[must_use]
     pub fn is_lawful(&self) -> bool {
         self.number().is_none_or(f64::is_finite)
@@ -60,7 +60,7 @@ impl From<&str> for Param {
     }
 }
 
-/// As a person writes it on the command line.
+/// Form of the value on the command line.
 impl fmt::Display for Param {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

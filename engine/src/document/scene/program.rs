@@ -1,4 +1,4 @@
-//! What makes a scene a program: files that it includes, and points that it runs over.
+//! Included files, and the points of a sweep.
 
 use super::super::leaves::{LeafValue, visit_leaves};
 use super::super::path::path_of;
@@ -57,7 +57,7 @@ impl Scene {
 }
 
 impl Sweep {
-    /// How many points there are.
+    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -68,7 +68,7 @@ impl Sweep {
         }
     }
 
-    /// Whether there is no point.
+    /// Returns whether there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -108,7 +108,7 @@ impl Sweep {
         }
     }
 
-    /// The same with each of these parameters at one value, where it varies them.
+    /// The sweep with each of these parameters at one value, where it varies them.
     #[must_use]
     pub fn fixed(&self, set: &[(String, Param)]) -> Self {
         let mut sweep = self.clone();

@@ -5,7 +5,7 @@ use super::{FilePath, Ref, Temperature};
 choice! {
     /// A quantity as a function of wavelength, or given band by band.
     pub enum Spectrum ("a spectrum") {
-        /// The same at every wavelength.
+        /// One value for all wavelengths.
         Constant(f64 => "0.3"),
         /// One value for each band of this scene.
         Bands(Vec<f64> => "[0.1, 0.2]"),
@@ -89,9 +89,9 @@ choice! {
     /// Unit of the reflectances or transmittances in a table.
     #[derive(Copy, Eq)]
     pub enum ValueUnit ("a unit of values") {
-        /// From 0 to 1.
+        /// Fractions from 0 to 1.
         Fraction,
-        /// From 0 to 100.
+        /// Percent from 0 to 100.
         Percent,
     }
 }
@@ -150,7 +150,7 @@ record! {
         reflectance: Spectrum => "Constant(0.3)",
         /// Reflectance of the back side.
         back_reflectance: Option<Spectrum> = None,
-        /// How warm it is; needed where a sensor measures what it emits.
+        /// Temperature; needed where a sensor measures its emission.
         temperature: Option<Temperature> = None,
     }
 }
@@ -166,7 +166,7 @@ record! {
         back_reflectance: Option<Spectrum> = None,
         /// Specular coating of both sides. Reflectance and transmittance are then those of the body beneath it.
         coating: Option<Coating> = None,
-        /// How warm it is; needed where a sensor measures what it emits.
+        /// Temperature; needed where a sensor measures its emission.
         temperature: Option<Temperature> = None,
     }
 }
@@ -192,7 +192,7 @@ record! {
         asymmetry: Spectrum => "Constant(-0.1)",
         /// Hot spot ρc: the smaller, the higher the hot spot; ρ0 if absent.
         rho_c: Option<Spectrum> = None,
-        /// How warm it is; needed where a sensor measures what it emits.
+        /// Temperature; needed where a sensor measures its emission.
         temperature: Option<Temperature> = None,
     }
 }
@@ -214,7 +214,7 @@ record! {
         b_prime: Spectrum = Spectrum::Constant(0.0),
         /// Second Legendre coefficient of the angle to the mirror direction, c'.
         c_prime: Spectrum = Spectrum::Constant(0.0),
-        /// How warm it is; needed where a sensor measures what it emits.
+        /// Temperature; needed where a sensor measures its emission.
         temperature: Option<Temperature> = None,
     }
 }

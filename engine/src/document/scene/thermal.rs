@@ -1,4 +1,4 @@
-//! What surfaces and the sky radiate by themselves.
+//! Emission of surfaces and of the sky.
 
 use super::{Band, ImageMeasure, Material, PhotonMeasure, Scene, Sensor, Spectrum};
 
@@ -6,13 +6,13 @@ use super::{Band, ImageMeasure, Material, PhotonMeasure, Scene, Sensor, Spectrum
 const THERMAL_NM: f64 = 3000.0;
 
 choice! {
-    /// Where the radiance in a band comes from.
+    /// Sources of the radiance in a band.
     pub enum BandSource ("a source of a band's radiance") {
         /// Sun and sky up to 3000 nm, `Emission` where the centre lies beyond.
         Auto,
-        /// What is reflected of sun and sky alone.
+        /// Reflected light of sun and sky alone.
         Sunlight,
-        /// What surfaces and `thermal_sky` emit, and reflect of that, alone.
+        /// Emission of surfaces and of `thermal_sky`, with its reflections, alone.
         Emission,
         /// Their sum; for 3 to 5 µm by day.
         Both,
@@ -22,15 +22,15 @@ choice! {
 choice! {
     /// A temperature, K.
     pub enum Temperature ("a temperature") {
-        /// The same everywhere.
+        /// One temperature everywhere.
         Uniform(f64 => "300.0"),
         /// One where the sun's disc is visible from the point, on whichever side of the surface, and one where
         /// it is not: both sides of a sunlit leaf have its sunlit temperature. In the penumbra each counts by
         /// the visible fraction of the disc. `FourComponents` count by the side that is seen.
         SunlitShaded {
-            /// Where the sun is visible from either side, K.
+            /// Temperature where the sun is visible from either side, K.
             sunlit_k: f64 => "305.0",
-            /// Where it is visible from neither, K.
+            /// Temperature where it is visible from neither, K.
             shaded_k: f64 => "295.0",
         },
         /// Sunlit `mean_k + delta_k / 2`, shaded `mean_k - delta_k / 2`.
@@ -44,7 +44,7 @@ choice! {
 }
 
 choice! {
-    /// What the sky emits.
+    /// Emission of the sky.
     pub enum ThermalSky ("a thermal sky") {
         /// Nothing.
         None,
@@ -56,7 +56,7 @@ choice! {
 }
 
 impl Temperature {
-    /// Where the sun is visible and where it is not, K.
+    /// Temperatures where the sun is visible and where it is not, K.
     #[must_use]
     pub fn sunlit_and_shaded(&self) -> (f64, f64) {
         match *self {
@@ -66,7 +66,7 @@ impl Temperature {
         }
     }
 
-    /// Whether it takes a sun to tell which of two it is.
+    /// Returns whether sunlit and shaded temperatures differ, so that a sun is needed.
     #[must_use]
     pub fn needs_sun(&self) -> bool {
         let (sunlit, shaded) = self.sunlit_and_shaded();
@@ -75,7 +75,7 @@ impl Temperature {
 }
 
 impl Band {
-    /// Whether its radiance holds what surfaces emit.
+    /// Returns whether its radiance includes emission.
     #[must_use]
     pub fn emits(&self) -> bool {
         match self.source {
@@ -85,7 +85,7 @@ impl Band {
         }
     }
 
-    /// Whether its radiance holds what is reflected of sun and sky.
+    /// Returns whether its radiance includes reflected light of sun and sky.
     #[must_use]
     pub fn reflects(&self) -> bool {
         matches!(self.source, BandSource::Both) || !self.emits()
@@ -106,7 +106,7 @@ impl Material {
 }
 
 impl Scene {
-    /// Whether any sensor measures emitted radiance.
+    /// Returns whether any sensor measures emitted radiance.
     #[must_use]
     pub fn measures_emission(&self) -> bool {
         self.bands.iter().any(Band::emits)
@@ -120,7 +120,7 @@ impl Scene {
 }
 
 impl ImageMeasure {
-    /// Whether it needs the radiance, emitted or reflected, whichever the bands hold.
+    /// Returns whether it needs the radiance of the band's own sources.
     #[must_use]
     pub const fn is_radiance(&self) -> bool {
         matches!(self, Self::Radiance | Self::BrightnessTemperature)
@@ -128,13 +128,13 @@ impl ImageMeasure {
 }
 
 impl PhotonMeasure {
-    /// Whether it is a radiance.
+    /// Returns whether it is a radiance.
     #[must_use]
     pub const fn is_radiance(&self) -> bool {
         matches!(self, Self::RadianceCells(_) | Self::RadianceViews(_) | Self::RadianceCones(_))
     }
 
-    /// Whether it holds light in absolute units, emitted or reflected, whichever the bands hold.
+    /// Returns whether it is in absolute units, from the band's own sources.
     #[must_use]
     pub const fn is_absolute(&self) -> bool {
         self.is_radiance() || matches!(self, Self::Exitance | Self::Fluxes { .. })

@@ -1,11 +1,11 @@
-//! How light is traced.
+//! Options of the light transport.
 
 record! {
-    /// How light is traced.
+    /// Options of the light transport.
     pub struct Transport ("`transport`") {
         /// Another number is another, independent estimate.
         seed: u64 = 1,
-        /// How weak paths end.
+        /// Russian roulette of weak paths.
         roulette: Roulette = Roulette::default(),
         /// Count light that was scattered once, and no more.
         first_order_only: bool = false,
@@ -15,7 +15,7 @@ record! {
 }
 
 impl Transport {
-    /// How often light may be scattered that counts.
+    /// Maximum number of scattering events of light that counts.
     #[must_use]
     pub fn most_orders(&self) -> u32 {
         if self.first_order_only { 1 } else { self.max_order.unwrap_or(u32::MAX) }

@@ -1,4 +1,4 @@
-//! When a measurement is good enough.
+//! Criteria that end a measurement.
 
 use std::borrow::Cow;
 
@@ -12,12 +12,12 @@ use super::super::ron_text::{Node, Text, Value};
 use super::Map;
 
 choice! {
-    /// When a measurement is good enough.
+    /// Criteria that end a measurement.
     pub enum StopCriterion ("an end of the measurement") {
         /// The median relative standard error of each product that the sensor reports is at most this;
         /// of an image it is that of its pixels.
         RelError(f64 => "0.005"),
-        /// That of each of these products is at most this: the names are those in `summary.json`.
+        /// The median relative standard error of each of these products is at most this: names as in `summary.json`.
         RelErrors(Map<f64> => "{ \"brf\": 0.005 }"),
         /// It has run for this number of seconds.
         Seconds(f64 => "60.0"),

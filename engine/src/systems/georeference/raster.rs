@@ -1,4 +1,4 @@
-//! What holds for every raster, whatever its values are: its unit, its coordinate reference system,
+//! Checks of every raster, whatever its values are: its unit, its coordinate reference system,
 //! the unit of heights, and values that stand for no data without being named.
 
 use glam::DVec2;

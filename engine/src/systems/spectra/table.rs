@@ -14,7 +14,7 @@ const NOISE: f64 = 0.05;
 /// A value further below 0 than this is a mark for no data, not noise.
 const MARK: f64 = -0.5;
 
-/// So is one beyond this, in the file's unit.
+/// Values beyond this, in the file's unit, are implausible too.
 const HUGE: f64 = 1e5;
 
 /// Wavelengths, nm, where the water vapour of the air absorbs so much that spectra of the field are

@@ -46,7 +46,7 @@ pub trait Film {
     /// Rays traced.
     fn rays(&self) -> u64;
 
-    /// For photon packets, the largest fraction of the incident energy that is not accounted for.
+    /// Largest fraction of the incident energy of photon packets that is not accounted for.
     fn imbalance(&self) -> Option<f64> {
         None
     }
@@ -56,7 +56,7 @@ pub trait Film {
 /// so that a resumed run ends where one long run would have ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Schedule {
-    /// At the ends of blocks.
+    /// Ends of blocks.
     Blocks,
     /// After any sample; errors are evaluated from this number on.
     Samples(u64),

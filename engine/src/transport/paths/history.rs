@@ -104,7 +104,7 @@ impl History {
 mod tests {
     use super::*;
 
-    /// In every block of bands, radiance is the sum of the events' terms, band by band.
+    /// Radiance in every block of bands is the sum of the events' terms, band by band.
     #[test]
     fn blocks_of_bands_hold_the_light_of_all_events() {
         for bands in [1, 8, 63, 64, 65, 200_usize] {

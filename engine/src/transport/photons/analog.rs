@@ -45,7 +45,7 @@ impl Packet<'_> {
         self.tally.flush(band..band + 1);
     }
 
-    /// At each surface a photon is reflected with the probability `ρ`, transmitted with `τ`, and absorbed
+    /// A photon is reflected at each surface with the probability `ρ`, transmitted with `τ`, and absorbed
     /// otherwise: as a whole, without weights, expected values or roulette.
     ///
     /// Directions of Lambertian surfaces are sampled exactly: the weight of a sample, `f |cos θ| / pdf` over

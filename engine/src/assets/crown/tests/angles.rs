@@ -128,7 +128,7 @@ fn ellipsoidal_leaves_cast_the_shadow_of_an_ellipsoid() {
     }
 }
 
-/// Of 200 000 leaves, each time within four standard errors.
+/// Means of 200 000 leaves lie within four standard errors.
 #[test]
 fn ellipsoidal_leaves_have_the_mean_that_was_asked_for() {
     for mean_deg in [20.0_f64, 35.0, 57.3, 80.0] {

@@ -7,17 +7,17 @@ record! {
     pub struct Perspective ("a perspective image") {
         /// Columns and rows.
         size_px: (u32, u32) => "(256, 192)",
-        /// Where the camera is, m.
+        /// Position of the camera, m.
         position_m: (f64, f64, f64) => "(0.0, -50.0, 30.0)",
-        /// What lies in the middle of the image, m.
+        /// Point in the middle of the image, m.
         target_m: (f64, f64, f64) => "(50.0, 50.0, 5.0)",
-        /// What is up in the image; it need not be perpendicular to the view.
+        /// Direction that is up in the image; it need not be perpendicular to the view.
         up: (f64, f64, f64) = (0.0, 0.0, 1.0),
         /// Full angles of view across and down the image, degrees, each its own.
         fov_deg: (f64, f64) => "(40.0, 30.0)",
-        /// Whether heights of position and target are above the ground below each.
+        /// True if heights of position and target count from the ground below each.
         above_ground: bool = false,
-        /// Whether the camera sees the sky where nothing stands before it; otherwise there is no
+        /// True if pixels without a hit show the sky; otherwise they hold no
         /// data.
         sees_sky: bool = false,
         /// Samples per pixel.
@@ -32,19 +32,19 @@ record! {
     pub struct Fisheye ("a fisheye image") {
         /// Columns and rows.
         size_px: (u32, u32) => "(256, 256)",
-        /// Where the camera is, m.
+        /// Position of the camera, m.
         position_m: (f64, f64, f64) => "(50.0, 50.0, 1.5)",
-        /// What lies in the middle of the image.
+        /// Direction or point in the middle of the image.
         look: Look = Look::Up,
-        /// What is up in the image; north if it looks `Up` or `Down`, the vertical if not.
+        /// Direction that is up in the image; north if it looks `Up` or `Down`, the vertical if not.
         up: Option<(f64, f64, f64)> = None,
         /// Full angle of view, degrees: the disc's edge shows half of it off the axis.
         fov_deg: f64 = 180.0,
-        /// How angles off the axis become distances from the middle.
+        /// Mapping of angles off the axis to distances from the middle.
         projection: FisheyeProjection = FisheyeProjection::Equisolid,
-        /// Whether heights of position and target are above the ground below each.
+        /// True if heights of position and target count from the ground below each.
         above_ground: bool = false,
-        /// Whether the camera sees the sky where nothing stands before it; otherwise there is no
+        /// True if pixels without a hit show the sky; otherwise they hold no
         /// data.
         sees_sky: bool = true,
         /// Samples per pixel.
@@ -55,20 +55,20 @@ record! {
 }
 
 choice! {
-    /// Where a fisheye camera looks.
+    /// Direction or point that a fisheye camera looks at.
     pub enum Look ("where a camera looks") {
         /// Straight up; north is at the top of the image and east on its left, as in a photograph.
         Up,
         /// Straight down; north is at the top of the image.
         Down,
-        /// In a direction.
+        /// A direction.
         Towards {
             /// Angle of the view from the upward vertical, degrees: 90 is the horizon.
             zenith_deg: f64 => "90.0",
-            /// Where the camera looks, clockwise from north, degrees.
+            /// Azimuth of the direction, clockwise from north, degrees.
             azimuth_deg: f64 = 0.0,
         },
-        /// At a point.
+        /// A point.
         Target {
             /// The point, m.
             at_m: (f64, f64, f64) => "(0.0, 0.0, 0.0)",
@@ -77,16 +77,16 @@ choice! {
 }
 
 choice! {
-    /// How angles off the axis become distances from the middle of a fisheye image.
+    /// Mapping of an angle θ off the axis to the distance from the middle of a fisheye image.
     #[derive(Copy, Eq)]
     pub enum FisheyeProjection ("a fisheye projection") {
-        /// As sin(θ/2): equal areas of the image are equal solid angles.
+        /// Proportional to sin(θ/2): equal areas of the image are equal solid angles.
         Equisolid,
-        /// As θ.
+        /// Proportional to θ.
         Equidistant,
-        /// As sin θ: equal areas of the image are equal shares of the irradiance.
+        /// Proportional to sin θ: equal areas of the image are equal fractions of the irradiance.
         Orthographic,
-        /// As tan(θ/2): circles stay circles.
+        /// Proportional to tan(θ/2): circles stay circles.
         Stereographic,
     }
 }

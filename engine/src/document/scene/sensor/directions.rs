@@ -5,15 +5,15 @@ use super::{Ends, ImageMeasure, StopCriterion, System};
 record! {
     /// Mean radiance or reflectance of the scene towards each of many directions.
     pub struct Directions ("directions") {
-        /// Where the sensors are.
+        /// Directions towards the sensors.
         views: Views => "PrincipalPlane",
-        /// When it is good enough.
+        /// Criteria that end the measurement.
         until: Ends = Ends::from(StopCriterion::RelError(0.005)),
-        /// What to report.
+        /// Quantities to report.
         measure: Vec<ImageMeasure> = vec![ImageMeasure::Brf],
         /// Only light that leaves through it counts; it is what is seen.
         virtual_plane: Option<VirtualPlane> = None,
-        /// Which transport system estimates it; if absent the one that takes fewer rays: photon packets
+        /// Transport system that estimates it; if absent the one that takes fewer rays: photon packets
         /// for what a whole scene reflects in several directions, paths from the sensor for the rest.
         system: Option<System> = None,
     }
@@ -34,14 +34,14 @@ record! {
 choice! {
     /// Directions towards sensors.
     pub enum Views ("views") {
-        /// In the sun's vertical plane; positive angles are on the sun's side.
+        /// Directions in the sun's vertical plane; positive angles are on the sun's side.
         PrincipalPlane {
             /// Largest zenith angle, degrees.
             max_deg: f64 = 75.0,
             /// Step, degrees.
             step_deg: f64 = 5.0,
         },
-        /// In the plane perpendicular to it; positive angles are 90° clockwise of the sun.
+        /// Directions in the plane perpendicular to it; positive angles are 90° clockwise of the sun.
         CrossPlane {
             /// Largest zenith angle, degrees.
             max_deg: f64 = 75.0,

@@ -1,17 +1,17 @@
-//! What all images have in common, and images by parallel projection.
+//! Keys that all images share, and images by parallel projection.
 
 use super::{Band, Ends, Scene, System, VirtualPlane};
 
 record! {
     /// Keys that all images have.
     pub struct ImageOptions ("options of an image") {
-        /// When it is good enough; the number of samples then is no limit.
+        /// Criteria that end the measurement; the number of samples then is no limit.
         until: Option<Ends> = None,
-        /// What to report.
+        /// Quantities to report.
         measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
-        /// How its PNG is coloured.
+        /// Colours of its PNG.
         picture: Picture = Picture::Quicklook,
-        /// Which transport system estimates it.
+        /// Transport system that estimates it.
         system: System = System::Backward,
     }
 }
@@ -32,7 +32,7 @@ record! {
         center_m: Option<(f64, f64)> = None,
         /// Zenith angle of the sensor, degrees.
         zenith_deg: f64 = 0.0,
-        /// Where the sensor is, clockwise from north, degrees. A nadir image has north up at 180.
+        /// Azimuth of the sensor, clockwise from north, degrees. A nadir image has north up at 180.
         azimuth_deg: f64 = 180.0,
         /// Samples per pixel; 64 if neither this nor `samples_per_m2` is written.
         samples_per_px: Option<u32> = None,
@@ -47,9 +47,9 @@ record! {
 }
 
 choice! {
-    /// What an orthographic image covers where it is no rectangle of its own.
+    /// Area that an orthographic image covers, in place of a rectangle.
     pub enum Cover ("what an image covers") {
-        /// All that stands on the terrain's rectangle, from whichever side.
+        /// Everything that stands on the terrain's rectangle, from whichever side.
         WholeScene,
     }
 }
@@ -62,7 +62,7 @@ choice! {
         Radiance,
         /// Bidirectional reflectance factor; under a sky it is the HDRF and is named so.
         Brf,
-        /// The same, split as RAMI does: `brf_uc` (scattered once, by the ground), `brf_co_sgl`
+        /// The BRF, split as RAMI does: `brf_uc` (scattered once, by the ground), `brf_co_sgl`
         /// (once, by anything else) and `brf_mlt` (more often).
         Orders,
         /// Temperature of the black body of this radiance, K, in bands that hold emission.
@@ -105,9 +105,9 @@ impl ImageMeasure {
 }
 
 choice! {
-    /// How the PNG of an image is coloured. The numbers are in the other files.
+    /// Colours of the PNG of an image. The numbers are in the other files.
     pub enum Picture ("a picture") {
-        /// For a first look: bands chosen by wavelength, each stretched.
+        /// Quick look: bands chosen by wavelength, each stretched.
         Quicklook,
         /// Three bands.
         Bands {
@@ -121,7 +121,7 @@ choice! {
             /// automatic if absent.
             exposure_stops: Option<f64> = None,
         },
-        /// What a person would see in daylight, from ten bands or more between 380 and 780 nm.
+        /// Colours as the eye sees them in daylight, from ten bands or more between 380 and 780 nm.
         Cie {
             /// Stops over the exposure that shows a white surface on the horizontal as white;
             /// automatic if absent.

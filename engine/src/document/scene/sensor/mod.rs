@@ -1,4 +1,4 @@
-//! What measures the light, and how it is traced.
+//! Sensors and their transport systems.
 
 mod camera;
 mod directions;
@@ -46,7 +46,7 @@ impl Sensor {
         }
     }
 
-    /// What an image or a list of directions is to report; `None` for photons.
+    /// Quantities that an image or a list of directions reports; `None` for photons.
     #[must_use]
     pub fn image_measures(&self) -> Option<&[ImageMeasure]> {
         match self {
@@ -90,9 +90,8 @@ impl Sensor {
         }
     }
 
-    /// The same sensor, and of what it is to report in a scene as much as a system can measure; `None`
-    /// if that is nothing. Where that is not all, the loosest of limits to the errors of single products
-    /// holds for every one that is left.
+    /// The sensor with the quantities that a transport system can measure in a scene; `None` if there are none.
+    /// Where it drops some, the largest limit of single products holds for all that are left.
     #[must_use]
     pub fn measured_by(&self, by: System, scene: &Scene) -> Option<Self> {
         let mut sensor = self.clone();
@@ -159,7 +158,7 @@ impl Sensor {
         }
     }
 
-    /// When it is good enough, if that is written.
+    /// Criteria that end its measurement, if any are written.
     #[must_use]
     pub fn until(&self) -> &[StopCriterion] {
         self.ends().map_or(&[], |ends| &ends.0)

@@ -1,4 +1,4 @@
-//! Photon packets and what they are counted for.
+//! Photon packets and the quantities that they are counted for.
 
 use std::borrow::Cow;
 
@@ -17,20 +17,20 @@ record! {
         /// Packets per m² of the terrain's rectangle; of emitted light, lines through the
         /// scene along each of which several start.
         per_m2: f64 = 1000.0,
-        /// When it is good enough; `per_m2` then is no limit.
+        /// Criteria that end the measurement; `per_m2` then is no limit.
         until: Option<Ends> = None,
-        /// What to count them for.
+        /// Quantities to report.
         measure: Vec<PhotonMeasure> = vec![PhotonMeasure::Albedo],
         /// Only light that leaves through it counts as reflected, and only what lies below it
         /// absorbs; all is normalised to its area.
         virtual_plane: Option<VirtualPlane> = None,
-        /// Whether packets are followed (`Forward`) or photons (`Analog`).
+        /// Transport system: packets (`Forward`) or photons (`Analog`).
         system: System = System::Forward,
     }
 }
 
 choice! {
-    /// What photons are counted for.
+    /// Quantity that photons are counted for.
     pub enum PhotonMeasure ("a measure of photons") {
         /// BRF in this number of equal-area cells of the hemisphere.
         BrfCells(u32 => "150"),
@@ -43,9 +43,9 @@ choice! {
         /// Radiance in this number of equal-area cells of the hemisphere, W m⁻² sr⁻¹ nm⁻¹, from the sources
         /// that the band names; of an isolated scene, over the terrain's rectangle.
         RadianceCells(u32 => "150"),
-        /// The same towards directions, by virtual photons.
+        /// Radiance towards directions, by virtual photons.
         RadianceViews(Views => "PrincipalPlane"),
-        /// The same within cones: (zenith, azimuth, full opening angle), degrees.
+        /// Radiance within cones: (zenith, azimuth, full opening angle), degrees.
         RadianceCones(Vec<(f64, f64, f64)> => "[(30.0, 90.0, 5.0)]"),
         /// Flux density that leaves upwards, W m⁻² nm⁻¹, from the sources that the band names.
         Exitance,
@@ -80,7 +80,7 @@ choice! {
 }
 
 impl PhotonMeasure {
-    /// Whether a transport system estimates it: photons that are followed as a whole never leave in
+    /// Returns whether a transport system estimates it: photons that are followed as a whole never leave in
     /// the very direction of a view.
     #[must_use]
     pub const fn is_measured_by(&self, system: System) -> bool {

@@ -13,8 +13,8 @@ pub struct AbsorbedCounter {
     pub plane: ReferencePlane,
     /// Number of instances.
     pub instances: usize,
-    /// Where the triangles of each instance start among all, and where the last one's end; empty if
-    /// they are not counted.
+    /// First of the triangles of each instance among all, then their number; empty if they are not
+    /// counted.
     starts: Vec<usize>,
 }
 
@@ -26,7 +26,7 @@ impl AbsorbedCounter {
         Self { plane, instances: inventory.instances.len(), starts }
     }
 
-    /// Whether triangles and discs are counted.
+    /// Returns whether triangles and discs are counted.
     #[must_use]
     pub const fn has_faces(&self) -> bool {
         !self.starts.is_empty()
