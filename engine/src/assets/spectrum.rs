@@ -174,21 +174,7 @@ fn find_columns(
     let find = |name: &str, key: &'static str| {
         let mut places = names.iter().enumerate().filter(|(_, n)| *n == name);
         let unknown = || {
-            let known: Vec<&str> = names.iter().map(String::as_str).collect();
-            let is_abscissa = |name: &&&str| {
-                let lower = name.to_lowercase();
-                let has_word =
-                    ["wav", "wl", "wvl", "lambda"].iter().any(|word| lower.contains(word));
-                has_word || unit_of_name(name).is_some()
-            };
-            let abscissa = known.iter().find(is_abscissa).filter(|_| key == "wavelength");
-            // The column of wavelengths is no column of values.
-            let others: Vec<&str> = match key {
-                "value" => known.iter().copied().filter(|n| *n != columns.wavelength).collect(),
-                _ => known.clone(),
-            };
-            let nearest =
-                abscissa.map_or_else(|| nearest(name, &others), |&abscissa| abscissa.to_owned());
+            let nearest = nearest_column(names, columns, name, key);
             let (file, column) = (file.clone(), name.to_owned());
             AssetError::NoSuchColumn { file, line, column, found: names.clone(), key, nearest }
         };
@@ -221,6 +207,28 @@ fn find_columns(
     let column =
         |(place, name): (usize, &String)| Column { name: name.clone(), content: content(place) };
     Ok((names.iter().enumerate().map(column).collect(), names[ordinate].clone()))
+}
+
+/// Column that was most likely meant by a name that no column has.
+fn nearest_column(
+    names: &[String],
+    columns: &SpectrumColumns<'_>,
+    name: &str,
+    key: &str,
+) -> String {
+    let known: Vec<&str> = names.iter().map(String::as_str).collect();
+    let is_abscissa = |name: &&&str| {
+        let lower = name.to_lowercase();
+        let has_word = ["wav", "wl", "wvl", "lambda"].iter().any(|word| lower.contains(word));
+        has_word || unit_of_name(name).is_some()
+    };
+    let abscissa = known.iter().find(is_abscissa).filter(|_| key == "wavelength");
+    // The column of wavelengths is no column of values.
+    let others: Vec<&str> = match key {
+        "value" => known.iter().copied().filter(|n| *n != columns.wavelength).collect(),
+        _ => known.clone(),
+    };
+    abscissa.map_or_else(|| nearest(name, &others), |&abscissa| abscissa.to_owned())
 }
 
 /// Names of the columns that may hold values, in the order of the file.

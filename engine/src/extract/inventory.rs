@@ -44,19 +44,15 @@ pub struct Face {
 }
 
 impl Inventory {
-    /// Inventory of instances, the terrain's first; `None` unless a sensor reports their absorbed power.
+    /// Inventory of instances, the terrain's first; `meshes` are those after the terrain's.
     pub(super) fn new(
         world: &World,
         terrain: &TerrainPatch,
         placed: &[Instance],
         instances: &[InstanceInput],
-        prototypes: &[(&SceneId, &Mesh)],
-    ) -> Option<Self> {
-        let finest = |sensor: &ResolvedSensor| match sensor {
-            ResolvedSensor::Photons(photons) => photons.products.iter().filter_map(per).max(),
-            ResolvedSensor::Image(_) | ResolvedSensor::Directions(_) => None,
-        };
-        let per = world.query::<&ResolvedSensor>().iter().filter_map(finest).max()?;
+        meshes: &[&Mesh],
+        per: Per,
+    ) -> Self {
         let mut query = world.query::<(&SceneId, &Name, &Mesh)>();
         let names: BTreeMap<u32, &str> =
             query.iter().map(|(id, name, _)| (id.0, name.0.as_str())).collect();
@@ -72,13 +68,13 @@ impl Inventory {
             let InstanceInput { mesh, linear, translation: origin } = *one;
             PlacedInstance { name, mesh, linear, origin }
         };
-        let meshes = std::iter::once(&terrain.mesh).chain(prototypes.iter().map(|&(_, mesh)| mesh));
+        let meshes = std::iter::once(&terrain.mesh).chain(meshes.iter().copied());
         let meshes = if per == Per::Triangle { meshes.cloned().collect() } else { Vec::new() };
-        Some(Self {
+        Self {
             instances: names.zip(instances).map(standing).collect(),
             meshes,
             ground: terrain.first_cut.min(terrain.mesh.triangles.len() as u32) as usize,
-        })
+        }
     }
 
     /// Index of the first primitive of each instance, counted over all instances, and the total number; shape
@@ -129,11 +125,17 @@ impl Inventory {
     }
 }
 
-fn per(product: &PhotonProduct) -> Option<Per> {
-    match product.measure {
+/// Resolution at which sensors report absorbed power, the finest that any asks for; `None` if none does.
+pub(super) fn reported_absorption(world: &World) -> Option<Per> {
+    let per = |product: &PhotonProduct| match product.measure {
         PhotonMeasure::Absorbed { per } => Some(per),
         _ => None,
-    }
+    };
+    let finest = |sensor: &ResolvedSensor| match sensor {
+        ResolvedSensor::Photons(photons) => photons.products.iter().filter_map(per).max(),
+        ResolvedSensor::Image(_) | ResolvedSensor::Directions(_) => None,
+    };
+    world.query::<&ResolvedSensor>().iter().filter_map(finest).max()
 }
 
 /// Corners of a regular octagon in place of a disc. That of circumradius `R` has the area

@@ -5,6 +5,7 @@ mod light;
 mod stage;
 mod thermal;
 
+use std::cell::LazyCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -15,6 +16,8 @@ use crate::components::{
     Instance, MaterialId, Mesh, Name, PartMaterials, SceneId, SurfaceOptics, TerrainPatch,
 };
 use crate::scattering::SurfaceModels;
+
+use inventory::reported_absorption;
 
 pub use inventory::{Face, Inventory, PlacedInstance};
 pub use light::{Beam, Dome, Light, SunDisc};
@@ -53,34 +56,19 @@ pub fn extract(
     let mut terrains = world.query::<&TerrainPatch>();
     let terrain = terrains.iter().next().expect("a scene has a terrain");
     let placed = Instance::in_order(world);
-    let used: BTreeMap<u32, u32> = {
-        let mut prototypes: Vec<u32> = placed.iter().map(|one| one.placement.prototype.0).collect();
-        prototypes.sort_unstable();
-        prototypes.dedup();
-        // Mesh 0 of the stage is the ground.
-        prototypes.into_iter().zip(1..).collect()
-    };
+    let mesh_of = mesh_numbers(&placed);
     let mut query = world.query::<(&SceneId, &Mesh, &PartMaterials)>();
-    let mut prototypes: Vec<_> = query.iter().filter(|(id, ..)| used.contains_key(&id.0)).collect();
+    let mut prototypes: Vec<_> =
+        query.iter().filter(|(id, ..)| mesh_of.contains_key(&id.0)).collect();
     prototypes.sort_unstable_by_key(|&(id, ..)| *id);
-    assert_eq!(prototypes.len(), used.len(), "every instance has its prototype");
+    assert_eq!(prototypes.len(), mesh_of.len(), "every instance has its prototype");
 
     let mut surfaces = SurfaceIds::default();
-    let ground_surfaces: Vec<u32> = terrain.materials.0.iter().map(|&id| surfaces.id(id)).collect();
-    let part_surfaces: Vec<Vec<u32>> = prototypes
-        .iter()
-        .map(|(_, _, materials)| materials.0.iter().map(|&id| surfaces.id(id)).collect())
-        .collect();
-    let mut instances = vec![InstanceInput {
-        mesh: 0,
-        linear: terrain.world_from_object(),
-        translation: terrain.origin(),
-    }];
-    instances.extend(placed.iter().map(|Instance { placement, .. }| InstanceInput {
-        mesh: used[&placement.prototype.0],
-        linear: placement.world_from_object(),
-        translation: placement.position,
-    }));
+    let ground_surfaces = surfaces.of_parts(&terrain.materials);
+    let part_surfaces: Vec<Vec<u32>> =
+        prototypes.iter().map(|(_, _, materials)| surfaces.of_parts(materials)).collect();
+    // A matrix per instance: computed only for new trees of the ray engine and for reports of each instance.
+    let instances = LazyCell::new(|| instance_inputs(terrain, &placed, &mesh_of));
     let geometry = if let Some(geometry) = built {
         geometry
     } else {
@@ -93,6 +81,10 @@ pub fn extract(
         let domain = Domain { min, max, boundary: setting.boundary };
         Arc::new(accel::Scene::build(&meshes, &instances, domain)?)
     };
+    let inventory = reported_absorption(world).map(|per| {
+        let meshes: Vec<_> = prototypes.iter().map(|&(_, mesh, _)| mesh).collect();
+        Arc::new(Inventory::new(world, terrain, &placed, &instances, &meshes, per))
+    });
     let (mut models, surface_names) = surfaces.models(world, setting.bands);
     let thermal = Thermal::from_world(world, &surfaces.ordered, &mut models.spectra);
     let light = Light::from_world(world, &mut models.spectra);
@@ -110,16 +102,36 @@ pub fn extract(
         models,
         surface_names,
         light,
-        inventory: Inventory::new(
-            world,
-            terrain,
-            &placed,
-            &instances,
-            &prototypes.iter().map(|&(id, mesh, _)| (id, mesh)).collect::<Vec<_>>(),
-        )
-        .map(Arc::new),
+        inventory,
         geometry,
     })
+}
+
+/// Number of the stage's mesh for each prototype that has instances; mesh 0 is the ground.
+fn mesh_numbers(placed: &[Instance]) -> BTreeMap<u32, u32> {
+    let mut prototypes: Vec<u32> = placed.iter().map(|one| one.placement.prototype.0).collect();
+    prototypes.sort_unstable();
+    prototypes.dedup();
+    prototypes.into_iter().zip(1..).collect()
+}
+
+/// Transformations of the ground and of all instances.
+fn instance_inputs(
+    terrain: &TerrainPatch,
+    placed: &[Instance],
+    mesh_of: &BTreeMap<u32, u32>,
+) -> Vec<InstanceInput> {
+    let ground = InstanceInput {
+        mesh: 0,
+        linear: terrain.world_from_object(),
+        translation: terrain.origin(),
+    };
+    let trees = placed.iter().map(|Instance { placement, .. }| InstanceInput {
+        mesh: mesh_of[&placement.prototype.0],
+        linear: placement.world_from_object(),
+        translation: placement.position,
+    });
+    std::iter::once(ground).chain(trees).collect()
 }
 
 /// Ids of surfaces: materials, numbered in the order in which parts ask for them.
@@ -130,6 +142,11 @@ struct SurfaceIds {
 }
 
 impl SurfaceIds {
+    /// Surface of each part of a mesh.
+    fn of_parts(&mut self, materials: &PartMaterials) -> Vec<u32> {
+        materials.0.iter().map(|&id| self.id(id)).collect()
+    }
+
     fn id(&mut self, material: MaterialId) -> u32 {
         *self.ids.entry(material).or_insert_with(|| {
             self.ordered.push(material);

@@ -6,7 +6,7 @@ mod files;
 use hecs::{Component, Entity, World};
 
 use crate::components::{Name, SceneId};
-use crate::document::{self, Map, Material, Scene, Terrain};
+use crate::document::{self, Map, Material, Prototype, Scene, Terrain};
 use crate::systems::{Changes, Resources};
 
 pub use files::missing_files;
@@ -44,45 +44,57 @@ pub fn spawn(scene: &Scene, world: &mut World, resources: &mut Resources) -> Cha
         resources.sun = world.spawn(());
         resources.sky = world.spawn(());
     }
-    let mut changes = if is_first { Changes::ALL } else { Changes::NONE };
-    let mut note = |has_changed: bool, kind: Changes| {
-        if has_changed {
-            changes |= kind;
-        }
-    };
-    note(set(&mut resources.frame, frame), Changes::FRAME);
-    note(set(&mut resources.boundary, boundary), Changes::BOUNDARY);
-    note(set(&mut resources.seed, &transport.seed), Changes::SEED);
-    note(set(&mut resources.bands, bands), Changes::BANDS);
-    note(set(&mut resources.spectra, spectra), Changes::SPECTRA);
-    note(set(&mut resources.hide, hide), Changes::PATTERNS);
-    note(set(&mut resources.select, select), Changes::PATTERNS);
-    note(
-        set(&mut resources.measures_emission, &scene.measures_emission()),
-        Changes::MEASURES_EMISSION,
-    );
+    let mut changes = Changes::ALL.only_if(is_first);
+    let measures_emission = scene.measures_emission();
+    changes |= Changes::FRAME.only_if(set(&mut resources.frame, frame));
+    changes |= Changes::BOUNDARY.only_if(set(&mut resources.boundary, boundary));
+    changes |= Changes::SEED.only_if(set(&mut resources.seed, &transport.seed));
+    changes |= Changes::BANDS.only_if(set(&mut resources.bands, bands));
+    changes |= Changes::SPECTRA.only_if(set(&mut resources.spectra, spectra));
+    changes |= Changes::PATTERNS.only_if(set(&mut resources.hide, hide));
+    changes |= Changes::PATTERNS.only_if(set(&mut resources.select, select));
+    changes |= Changes::MEASURES_EMISSION
+        .only_if(set(&mut resources.measures_emission, &measures_emission));
+    changes |= spawn_materials(world, resources, materials);
+    changes |= spawn_prototypes(world, resources, meshes, terrain);
+    changes |= Changes::TERRAIN.only_if(set_component(world, resources.terrain, Some(terrain)));
+    changes |=
+        Changes::PLANTINGS.only_if(spawn_plantings(world, &mut resources.plantings, instances));
+    changes |= Changes::SUN.only_if(set_component(world, resources.sun, sun.as_ref()));
+    changes |= Changes::SKY.only_if(set_component(world, resources.sky, Some(sky)));
+    changes |= Changes::SKY.only_if(set_component(world, resources.sky, Some(thermal_sky)));
+    let sensor_changes = spawn_named::<document::Sensor>(world, &mut resources.sensors, sensors);
+    changes |= Changes::SENSORS.only_if(sensor_changes.any());
+    changes
+}
 
+/// Sets the materials; returns which kinds have changed.
+fn spawn_materials(
+    world: &mut World,
+    resources: &mut Resources,
+    materials: &Map<Material>,
+) -> Changes {
     let old_leaves = leaves(world, &resources.materials);
-    let material_changes = spawn_named(world, &mut resources.materials, materials);
-    note(material_changes.any(), Changes::MATERIALS);
-    note(material_changes.have_other_names, Changes::MATERIAL_NAMES);
-    note(leaves(world, &resources.materials) != old_leaves, Changes::LEAVES);
+    let changed = spawn_named(world, &mut resources.materials, materials);
+    Changes::MATERIALS.only_if(changed.any())
+        | Changes::MATERIAL_NAMES.only_if(changed.have_other_names)
+        | Changes::LEAVES.only_if(leaves(world, &resources.materials) != old_leaves)
+}
 
-    let mesh_changes = spawn_named(world, &mut resources.meshes, meshes);
-    note(mesh_changes.any(), Changes::MESHES);
+/// Sets the mesh prototypes, one of which may be the terrain; returns which kinds have changed.
+fn spawn_prototypes(
+    world: &mut World,
+    resources: &mut Resources,
+    meshes: &Map<Prototype>,
+    terrain: &Terrain,
+) -> Changes {
+    let changed = spawn_named(world, &mut resources.meshes, meshes);
     let is_of_ground = |entity: &Entity| match terrain {
         Terrain::Mesh { mesh, .. } => resources.meshes.get(mesh.as_str()) == Some(entity),
         Terrain::Plane(_) | Terrain::Raster(_) => false,
     };
-    note(mesh_changes.entities.iter().any(is_of_ground), Changes::TERRAIN);
-    note(set_component(world, resources.terrain, Some(terrain)), Changes::TERRAIN);
-    note(spawn_plantings(world, &mut resources.plantings, instances), Changes::PLANTINGS);
-    note(set_component(world, resources.sun, sun.as_ref()), Changes::SUN);
-    note(set_component(world, resources.sky, Some(sky)), Changes::SKY);
-    note(set_component(world, resources.sky, Some(thermal_sky)), Changes::SKY);
-    let sensor_changes = spawn_named::<document::Sensor>(world, &mut resources.sensors, sensors);
-    note(sensor_changes.any(), Changes::SENSORS);
-    changes
+    Changes::MESHES.only_if(changed.any())
+        | Changes::TERRAIN.only_if(changed.entities.iter().any(is_of_ground))
 }
 
 /// Sets a value; returns whether it has changed.

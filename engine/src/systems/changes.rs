@@ -10,6 +10,12 @@ impl Changes {
     /// All kinds.
     pub const ALL: Self = Self(u32::MAX);
 
+    /// These kinds if something has happened; else none.
+    #[must_use]
+    pub const fn only_if(self, has_happened: bool) -> Self {
+        if has_happened { self } else { Self::NONE }
+    }
+
     // Raw components and resources, which `spawn` writes.
 
     /// Anchor of the local frame on the map.

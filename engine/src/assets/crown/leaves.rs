@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::angles::Normals;
+use super::apart::Flat;
 use super::places::Places;
 use super::stream::{Purpose, Stream};
 use super::wood::golden_angle;
@@ -61,80 +62,138 @@ pub(super) fn grow(
 ) -> Result<Mesh, CrownError> {
     // All leaves change alike, by the root of what the count's rounding left over.
     let scale = (crown.leaf_area_m2 / (count as f64 * area(&crown.leaf))).sqrt();
-    let leaves = (0..count as u64).into_par_iter();
-    let center = |leaf| places.of(leaf) + DVec3::Z * crown.base_m;
-    let normal = |leaf| normals.draw(&mut Stream::new(crown.seed, Purpose::Normal, leaf));
-    // Normal, and two unit vectors across it.
-    let frame = |leaf| {
-        let normal = normal(leaf);
-        let (right, up) = normal.any_orthonormal_pair();
-        let turn = TAU * Stream::new(crown.seed, Purpose::Turn, leaf).uniform();
-        let along = right * turn.cos() + up * turn.sin();
-        (normal, along, normal.cross(along))
-    };
-    let rhombi = |[length, width]: [f64; 2]| -> Result<Vec<[Vec3; 4]>, CrownError> {
-        let (half_length, half_width) = (0.5 * scale * length, 0.5 * scale * width);
-        let rhombus = |leaf| {
-            let (_, along, across) = frame(leaf);
-            let (long, wide) = (half_length * along, half_width * across);
-            move |center: DVec3| {
-                let corners = [center + long, center + wide, center - long, center - wide];
-                [corners.map(DVec3::as_vec3)]
-            }
-        };
-        if !crown.has_independent_leaves() {
-            return apart::place(crown, count, places, rhombus);
-        }
-        let rhombi = leaves.clone().map(|leaf| rhombus(leaf)(center(leaf)));
-        Ok(rhombi.collect::<Vec<_>>().into_flattened())
-    };
+    let foliage = Foliage { crown, count, places, normals };
     match crown.leaf {
         LeafShape::Disc { radius_m } => {
-            let radius = (scale * radius_m) as f32;
-            let disc = |leaf| {
-                let normal = normal(leaf).as_vec3();
-                move |center: DVec3| [Disc { center: center.as_vec3(), normal, radius }]
-            };
-            let discs = if crown.has_independent_leaves() {
-                let discs = leaves.map(|leaf| disc(leaf)(center(leaf)));
-                discs.collect::<Vec<_>>().into_flattened()
-            } else {
-                apart::place(crown, count, places, disc)?
-            };
+            let discs = foliage.discs((scale * radius_m) as f32)?;
             Ok(Mesh { discs, ..Mesh::default() })
         }
         // A square is the rhombus of equal diagonals.
-        LeafShape::Square { side_m } => Ok(quads(rhombi([side_m * 2_f64.sqrt(); 2])?)),
-        LeafShape::Rhombus { length_m, width_m } => Ok(quads(rhombi([length_m, width_m])?)),
+        LeafShape::Square { side_m } => Ok(quads(
+            foliage.rhombi([side_m * 2_f64.sqrt(); 2].map(|length| 0.5 * scale * length))?,
+        )),
+        LeafShape::Rhombus { length_m, width_m } => {
+            Ok(quads(foliage.rhombi([length_m, width_m].map(|length| 0.5 * scale * length))?))
+        }
         LeafShape::Shoot {
             length_m,
             needles,
             needle_length_m,
             needle_width_m,
             needle_angle_deg,
-        } => {
-            let (sin, cos) = needle_angle_deg.to_radians().sin_cos();
-            let half_width = 0.5 * scale * needle_width_m;
-            let shoot = |leaf| {
-                let (normal, along, across) = frame(leaf);
-                move |center: DVec3| {
-                    (0..needles).map(move |needle| -> [Vec3; 4] {
-                        let part = (f64::from(needle) + 0.5) / f64::from(needles) - 0.5;
-                        let (sin_turn, cos_turn) = (golden_angle() * f64::from(needle)).sin_cos();
-                        let outwards = cos_turn * normal + sin_turn * across;
-                        let base = center + scale * length_m * part * along;
-                        let tip = base + scale * needle_length_m * (cos * along + sin * outwards);
-                        let wide = half_width * along.cross(outwards);
-                        [base + wide, base - wide, tip - wide, tip + wide].map(DVec3::as_vec3)
-                    })
-                }
-            };
-            Ok(quads(if crown.has_independent_leaves() {
-                leaves.flat_map_iter(|leaf| shoot(leaf)(center(leaf))).collect()
-            } else {
-                apart::place(crown, count, places, shoot)?
-            }))
+        } => Ok(quads(foliage.shoots(Needles {
+            count: needles,
+            twig: scale * length_m,
+            length: scale * needle_length_m,
+            half_width: 0.5 * scale * needle_width_m,
+            angle: needle_angle_deg.to_radians(),
+        })?)),
+    }
+}
+
+/// Leaves of a crown: where they are, and how they are turned.
+struct Foliage<'a> {
+    crown: &'a CrownSpec,
+    count: usize,
+    places: &'a Places<'a>,
+    normals: &'a Normals,
+}
+
+impl Foliage<'_> {
+    fn leaves(&self) -> impl IndexedParallelIterator<Item = u64> {
+        (0..self.count).into_par_iter().map(|leaf| leaf as u64)
+    }
+
+    fn center(&self, leaf: u64) -> DVec3 {
+        self.places.of(leaf) + DVec3::Z * self.crown.base_m
+    }
+
+    fn normal(&self, leaf: u64) -> DVec3 {
+        self.normals.draw(&mut Stream::new(self.crown.seed, Purpose::Normal, leaf))
+    }
+
+    /// Normal, and two unit vectors across it.
+    fn frame(&self, leaf: u64) -> [DVec3; 3] {
+        let normal = self.normal(leaf);
+        let (right, up) = normal.any_orthonormal_pair();
+        let turn = TAU * Stream::new(self.crown.seed, Purpose::Turn, leaf).uniform();
+        let along = right * turn.cos() + up * turn.sin();
+        [normal, along, normal.cross(along)]
+    }
+
+    /// Leaves of one flat piece each.
+    fn single_pieces<F, L>(&self, leaf: impl Fn(u64) -> L + Sync) -> Result<Vec<F>, CrownError>
+    where
+        F: Flat + Send,
+        L: Fn(DVec3) -> [F; 1],
+    {
+        if !self.crown.has_independent_leaves() {
+            return apart::place(self.crown, self.count, self.places, leaf);
         }
+        let pieces = self.leaves().map(|index| leaf(index)(self.center(index)));
+        Ok(pieces.collect::<Vec<_>>().into_flattened())
+    }
+
+    fn discs(&self, radius: f32) -> Result<Vec<Disc>, CrownError> {
+        self.single_pieces(|leaf| {
+            let normal = self.normal(leaf).as_vec3();
+            move |center: DVec3| [Disc { center: center.as_vec3(), normal, radius }]
+        })
+    }
+
+    /// Rhombi with these halves of their diagonals, m.
+    fn rhombi(&self, [half_length, half_width]: [f64; 2]) -> Result<Vec<[Vec3; 4]>, CrownError> {
+        self.single_pieces(|leaf| {
+            let [_, along, across] = self.frame(leaf);
+            let (long, wide) = (half_length * along, half_width * across);
+            move |center: DVec3| {
+                let corners = [center + long, center + wide, center - long, center - wide];
+                [corners.map(DVec3::as_vec3)]
+            }
+        })
+    }
+
+    fn shoots(&self, needles: Needles) -> Result<Vec<[Vec3; 4]>, CrownError> {
+        let shoot = |leaf| {
+            let frame = self.frame(leaf);
+            move |center: DVec3| needles.corners(frame, center)
+        };
+        if !self.crown.has_independent_leaves() {
+            return apart::place(self.crown, self.count, self.places, shoot);
+        }
+        Ok(self.leaves().flat_map_iter(|leaf| shoot(leaf)(self.center(leaf))).collect())
+    }
+}
+
+/// Needles of a shoot: flat rectangles in a spiral around a twig. Lengths in m.
+#[derive(Clone, Copy)]
+struct Needles {
+    count: u32,
+    /// Length of the twig.
+    twig: f64,
+    length: f64,
+    half_width: f64,
+    /// Angle between needle and twig, rad.
+    angle: f64,
+}
+
+impl Needles {
+    /// Corners of the needles of a shoot with this normal, twig and vector across it.
+    fn corners(
+        self,
+        [normal, along, across]: [DVec3; 3],
+        center: DVec3,
+    ) -> impl Iterator<Item = [Vec3; 4]> {
+        let (sin, cos) = self.angle.sin_cos();
+        (0..self.count).map(move |needle| {
+            let part = (f64::from(needle) + 0.5) / f64::from(self.count) - 0.5;
+            let (sin_turn, cos_turn) = (golden_angle() * f64::from(needle)).sin_cos();
+            let outwards = cos_turn * normal + sin_turn * across;
+            let base = center + self.twig * part * along;
+            let tip = base + self.length * (cos * along + sin * outwards);
+            let wide = self.half_width * along.cross(outwards);
+            [base + wide, base - wide, tip - wide, tip + wide].map(DVec3::as_vec3)
+        })
     }
 }
 

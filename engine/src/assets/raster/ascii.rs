@@ -158,12 +158,50 @@ fn is_number(word: &str) -> bool {
     word.parse::<f64>().is_ok() || word.contains('#') && parse_no_data(word).is_some()
 }
 
+/// Reads the values of a grid of this number of columns and rows; returns those in the window. `first` is the first of
+/// them, if the header's end was only seen by it.
+fn read_values(
+    words: &mut WordReader<impl BufRead>,
+    first: Option<String>,
+    (columns, rows): (usize, usize),
+    window: &CellWindow,
+    path: &Path,
+) -> Result<Vec<f64>, AssetError> {
+    let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
+    let mut values = Vec::with_capacity(window.len());
+    let mut read = 0;
+    let mut take = |line: usize, word: &str| {
+        let value = if word.contains('#') { parse_no_data(word) } else { word.parse().ok() };
+        let value: f64 =
+            value.ok_or_else(|| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
+        if read == columns * rows {
+            return Err(wrong(RasterError::Long { line, columns, rows }));
+        }
+        if window.columns.contains(&(read % columns)) && window.rows.contains(&(read / columns)) {
+            values.push(value);
+        }
+        read += 1;
+        Ok(())
+    };
+    if let Some(first) = first {
+        take(words.line, &first)?;
+    }
+    let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
+    while let Some((line, word)) = words.next().map_err(unreadable)? {
+        take(line, word)?;
+    }
+    if read < columns * rows {
+        return Err(wrong(RasterError::Short { columns, rows, found: read }));
+    }
+    Ok(values)
+}
+
+/// Reads an ESRI ASCII grid, or the part of it that an extent reaches.
 pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster, AssetError> {
     let file = open(path)?;
     let bytes = length(&file);
     let mut words =
         WordReader { reader: BufReader::with_capacity(1 << 16, file), line: 1, word: Vec::new() };
-    let unreadable = |cause| AssetError::Unreadable { file: path.to_owned(), cause };
     let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
     let (header, first) = read_header(&mut words, path)?;
     let columns = header.needed("ncols", "ncols 100").map_err(wrong)? as u64;
@@ -190,32 +228,8 @@ pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster,
     let band = BandMetadata { no_data, ..BandMetadata::default() }.or(auxiliary);
     let no_data = band.no_data.or(Some(DEFAULT_NO_DATA));
     let band = BandMetadata { no_data, ..band };
-    let count = count as usize;
-    let (columns, rows) = (columns as usize, rows as usize);
-    let mut values = Vec::with_capacity(window.len());
-    let mut read = 0;
-    let mut take = |line: usize, word: &str| {
-        let value = if word.contains('#') { parse_no_data(word) } else { word.parse().ok() };
-        let value: f64 =
-            value.ok_or_else(|| wrong(RasterError::AsciiNumber { line, found: excerpt(word) }))?;
-        if read == count {
-            return Err(wrong(RasterError::Long { line, columns, rows }));
-        }
-        if window.columns.contains(&(read % columns)) && window.rows.contains(&(read / columns)) {
-            values.push(value);
-        }
-        read += 1;
-        Ok(())
-    };
-    if let Some(first) = first {
-        take(words.line, &first)?;
-    }
-    while let Some((line, word)) = words.next().map_err(unreadable)? {
-        take(line, word)?;
-    }
-    if read < count {
-        return Err(wrong(RasterError::Short { columns, rows, found: read }));
-    }
+    let size = (columns as usize, rows as usize);
+    let mut values = read_values(&mut words, first, size, &window, path)?;
     let assumed = band.apply(&mut values);
     let of_crs = place.as_ref().and_then(|place| place.crs.heights.as_ref());
     let heights = band.heights(of_crs).map_err(wrong)?;

@@ -20,7 +20,7 @@ pub(super) fn check_orthographic(
         size_px,
         pixel_m,
         extent_m,
-        cover,
+        cover: _,
         center_m,
         zenith_deg,
         azimuth_deg,
@@ -36,6 +36,24 @@ pub(super) fn check_orthographic(
         report.above_zero(&at("extent_m[0]"), *width);
         report.above_zero(&at("extent_m[1]"), *height);
     }
+    check_cover(path, sensor, report);
+    if let Some((x, y)) = center_m {
+        report.finite(&at("center_m"), &[*x, *y]);
+    }
+    report.zenith(&at("zenith_deg"), *zenith_deg);
+    report.azimuth(&at("azimuth_deg"), *azimuth_deg);
+    if let Some(samples) = samples_per_px {
+        check_samples(path, *samples, report);
+    }
+    if let Some(density) = samples_per_m2 {
+        check_sample_density(path, *density, sensor, report);
+    }
+}
+
+/// Checks that the image covers either a rectangle or the whole scene.
+fn check_cover(path: &str, sensor: &Orthographic, report: &mut Report<'_>) {
+    let Orthographic { extent_m, cover, center_m, .. } = sensor;
+    let at = |key: &str| format!("{path}.{key}");
     match (extent_m, cover) {
         (None, None) => {
             let message = "the image covers nothing: it has neither `extent_m` nor `cover`";
@@ -54,16 +72,13 @@ pub(super) fn check_orthographic(
         }
         _ => {}
     }
-    if let Some((x, y)) = center_m {
-        report.finite(&at("center_m"), &[*x, *y]);
-    }
-    report.zenith(&at("zenith_deg"), *zenith_deg);
-    report.azimuth(&at("azimuth_deg"), *azimuth_deg);
-    if let Some(samples) = samples_per_px {
-        check_samples(path, *samples, report);
-    }
-    let Some(density) = samples_per_m2 else { return };
-    report.above_zero(&at("samples_per_m2"), *density);
+}
+
+/// Checks the number of samples per square metre.
+fn check_sample_density(path: &str, density: f64, sensor: &Orthographic, report: &mut Report<'_>) {
+    let Orthographic { size_px, pixel_m, extent_m, samples_per_px, .. } = sensor;
+    let at = |key: &str| format!("{path}.{key}");
+    report.above_zero(&at("samples_per_m2"), density);
     if samples_per_px.is_some() {
         let message = "`samples_per_m2` and `samples_per_px` both say how many samples";
         report.error(&at("samples_per_m2"), message, "take one of the two out");

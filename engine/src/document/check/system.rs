@@ -15,42 +15,13 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
             report.error(&format!("{path}.measure[{index}]"), WHOLE, help);
         }
     }
-    if let Some(measures) = sensor.image_measures()
-        && system == System::FirstOrder
-    {
-        let other = measures.iter().position(|one| !one.is_measured_by(system, scene));
-        if let Some(index) = other {
-            let measure = &measures[index];
-            let is_light = matches!(measure, ImageMeasure::Brf | ImageMeasure::Radiance);
-            let (message, help) = if is_light && scene.transport.most_orders() > 1 {
-                let message = format!(
-                    "`{measure:?}` is of light of all orders, and `FirstOrder` measures what was scattered once"
-                );
-                (
-                    message,
-                    "write `measure: [Orders]` for `brf_uc` and `brf_co_sgl`, or `transport: (first_order_only: true)`",
-                )
-            } else {
-                let message = format!("`{measure:?}` is not of light that was scattered once");
-                (message, "measure `Orders`, or take `system: FirstOrder` out")
-            };
-            report.error(&format!("{path}.measure[{index}]"), message, help);
-        }
-    }
-    if let Some(measures) = sensor.image_measures()
-        && system == System::Reference
-    {
-        let first_hit = [ImageMeasure::FourComponents, ImageMeasure::GapFraction];
-        let other = measures
-            .iter()
-            .position(|one| !one.is_measured_by(system, scene) && !first_hit.contains(one));
-        if let Some(index) = other {
-            let measure = &measures[index];
-            let message = format!("`Reference` does not measure `{measure:?}` in this scene");
-            let help =
-                "measure `Brf`, or `Radiance` without emission, or take `system: Reference` out";
-            report.error(&format!("{path}.measure[{index}]"), message, help);
-        }
+    let measures = sensor.image_measures().unwrap_or_default();
+    let refused = measures.iter().enumerate().find_map(|(index, measure)| {
+        let is_measured = measure.is_measured_by(system, scene);
+        refusal(*measure, system, scene).filter(|_| !is_measured).map(|refusal| (index, refusal))
+    });
+    if let Some((index, (message, help))) = refused {
+        report.error(&format!("{path}.measure[{index}]"), message, help);
     }
     if sensor.systems().contains(&system) {
         return;
@@ -67,6 +38,38 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
         _ => (WHOLE, "take `system: Analog` out; it is for `Photons`"),
     };
     report.error(&format!("{path}.system"), message, help);
+}
+
+/// Message and help for a measure that a transport system does not estimate; `None` for the first surface along each ray, which paths measure beside it, and where another check reports.
+fn refusal(measure: ImageMeasure, system: System, scene: &Scene) -> Option<(String, &'static str)> {
+    match system {
+        System::FirstOrder => {
+            let is_of_all_orders = matches!(measure, ImageMeasure::Brf | ImageMeasure::Radiance)
+                && scene.transport.most_orders() > 1;
+            Some(if is_of_all_orders {
+                (
+                    format!(
+                        "`{measure:?}` is of light of all orders, and `FirstOrder` measures what was scattered once"
+                    ),
+                    "write `measure: [Orders]` for `brf_uc` and `brf_co_sgl`, or `transport: (first_order_only: true)`",
+                )
+            } else {
+                (
+                    format!("`{measure:?}` is not of light that was scattered once"),
+                    "measure `Orders`, or take `system: FirstOrder` out",
+                )
+            })
+        }
+        System::Reference
+            if !matches!(measure, ImageMeasure::FourComponents | ImageMeasure::GapFraction) =>
+        {
+            Some((
+                format!("`Reference` does not measure `{measure:?}` in this scene"),
+                "measure `Brf`, or `Radiance` without emission, or take `system: Reference` out",
+            ))
+        }
+        _ => None,
+    }
 }
 
 const WHOLE: &str =

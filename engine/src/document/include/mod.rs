@@ -114,7 +114,7 @@ impl Including<'_> {
                 let help = "start with a letter, go on with letters, digits and `_`";
                 self.error(node.span, &at, message, help.to_owned());
                 self.included.lost.push(full);
-            } else if self.one(include, passed, &node, &full, scene).is_none() {
+            } else if self.include_file(include, passed, &node, &full, scene).is_none() {
                 self.included.lost.push(full);
             }
         }
@@ -125,8 +125,8 @@ impl Including<'_> {
         self.included.diagnostics.push(Diagnostic::error(path, message).help(help).at(place));
     }
 
-    /// One file, and those that it includes.
-    fn one(
+    /// Includes a file, and those that it includes.
+    fn include_file(
         &mut self,
         include: &Include,
         passed: Passed,
@@ -135,17 +135,37 @@ impl Including<'_> {
         scene: &mut Vec<Field>,
     ) -> Option<()> {
         let at = format!("include.{}", namespace.trim_end_matches('.'));
-        let (includer, depth) = (self.chain.last()?, self.chain.len());
-        let folder = Path::new(&includer.shown).parent().unwrap_or(Path::new(""));
+        let folder = Path::new(&self.chain.last()?.shown).parent().unwrap_or(Path::new(""));
         let path = folder.join(&include.file);
         let link = Link { real: real_path(&path), shown: path.display().to_string() };
+        self.check_chain(&link, entry, &at)?;
+        let mut tree = self.parse_file(&path, &link, entry, namespace)?;
+        let inner = take_includes(&mut tree).map(|(inner, repeated)| {
+            self.refuse_repeated(&repeated);
+            inner
+        });
+        names::qualify(&mut tree, namespace);
+        self.pass(&mut tree, include, passed, entry, namespace)?;
+        let fields = fields(&mut tree).map(std::mem::take)?;
+        self.merge(fields, namespace, scene);
+        if let Some(inner) = inner {
+            self.chain.push(link);
+            self.entries(&inner, namespace, scene);
+            self.chain.pop();
+        }
+        Some(())
+    }
+
+    /// Refuses a file that includes itself, and files beyond the limits.
+    fn check_chain(&mut self, link: &Link, entry: &Node, at: &str) -> Option<()> {
         if let Some(first) = self.chain.iter().position(|other| other.real == link.real) {
-            let circle = self.chain[first..].iter().chain([&link]);
+            let circle = self.chain[first..].iter().chain([link]);
             let circle: Vec<_> = circle.map(|link| link.shown.as_str()).collect();
             let message = format!("{} includes itself", link.shown);
-            self.error(entry.span, &at, message, format!("the circle: {}", circle.join(" -> ")));
+            self.error(entry.span, at, message, format!("the circle: {}", circle.join(" -> ")));
             return None;
         }
+        let depth = self.chain.len();
         self.files += 1;
         if depth > DEPTH || self.files > FILES {
             // One word of it is enough.
@@ -155,11 +175,23 @@ impl Including<'_> {
                 } else {
                     format!("more than {FILES} files are included")
                 };
-                self.error(entry.span, &at, message, "include fewer files".to_owned());
+                self.error(entry.span, at, message, "include fewer files".to_owned());
             }
             return None;
         }
-        let read = text_of_file(&path, true).and_then(|text| {
+        Some(())
+    }
+
+    /// Reads and parses a file, whose text joins the source; reports an error if it holds no definitions.
+    fn parse_file(
+        &mut self,
+        path: &Path,
+        link: &Link,
+        entry: &Node,
+        namespace: &str,
+    ) -> Option<Node> {
+        let at = format!("include.{}", namespace.trim_end_matches('.'));
+        let read = text_of_file(path, true).and_then(|text| {
             let bytes = (self.source.text().len() + text.len()) as u64;
             let file = link.shown.clone();
             if bytes > FILE_SIZE {
@@ -180,7 +212,7 @@ impl Including<'_> {
                 return None;
             }
         };
-        let folder = relative_folder(&self.chain[0].shown, &path);
+        let folder = relative_folder(&self.chain[0].shown, path);
         let start = self.source.add(&link.shown, &text, (namespace, &folder));
         let mut tree = match parse(&text) {
             Ok(tree) => tree,
@@ -199,20 +231,7 @@ impl Including<'_> {
             self.error(tree.opening(), &at, message, help.to_owned());
             return None;
         }
-        let inner = take_includes(&mut tree).map(|(inner, repeated)| {
-            self.refuse_repeated(&repeated);
-            inner
-        });
-        names::qualify(&mut tree, namespace);
-        self.pass(&mut tree, include, passed, entry, namespace)?;
-        let fields = fields(&mut tree).map(std::mem::take)?;
-        self.merge(fields, namespace, scene);
-        if let Some(inner) = inner {
-            self.chain.push(link);
-            self.entries(&inner, namespace, scene);
-            self.chain.pop();
-        }
-        Some(())
+        Some(tree)
     }
 
     /// Adds what a file defines and what no file closer to the scene does.

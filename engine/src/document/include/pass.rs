@@ -20,32 +20,7 @@ impl Including<'_> {
         namespace: &str,
     ) -> Option<()> {
         let at = format!("include.{}", namespace.trim_end_matches('.'));
-        if let Some(name) = &include.variant {
-            let full = format!("{namespace}{name}");
-            let Some((_, variant)) =
-                entries(key(tree, "variants")).find(|(variant, _)| *variant == full)
-            else {
-                let own = entries(key(tree, "variants"));
-                let own = own.map(|(name, _)| bare(name, namespace));
-                let error = unknown_name(format!("{at}.variant"), "variant", name, own);
-                let error = error.at(self.source.place_of(entry.span));
-                self.included.diagnostics.push(Diagnostic {
-                    message: format!("no variant `{name}` in {}", include.file),
-                    help: error.help.map(|help| help.replace("this scene", "that file")),
-                    ..error
-                });
-                return None;
-            };
-            if let Value::Map(changes) = &variant.inner().value {
-                let changes = changes.iter().filter(|(_, value)| plain(value).is_some());
-                passed.extend(changes.cloned().map(|(mut key, value)| {
-                    if let Value::Text(name) = &mut key.value {
-                        *name = bare(name, namespace).to_owned();
-                    }
-                    (key, value)
-                }));
-            }
-        }
+        passed.extend(self.changes_of_variant(tree, include, entry, namespace)?);
         let own: Vec<String> = entries(key(tree, "params"))
             .map(|(name, _)| bare(name, namespace).to_owned())
             .collect();
@@ -72,6 +47,42 @@ impl Including<'_> {
             }
         }
         Some(())
+    }
+
+    /// Parameters that the variant of an include sets; `None` after an error.
+    fn changes_of_variant(
+        &mut self,
+        tree: &mut Node,
+        include: &Include,
+        entry: &Node,
+        namespace: &str,
+    ) -> Option<Passed> {
+        let Some(name) = &include.variant else { return Some(Vec::new()) };
+        let full = format!("{namespace}{name}");
+        let Some((_, variant)) =
+            entries(key(tree, "variants")).find(|(variant, _)| *variant == full)
+        else {
+            let own = entries(key(tree, "variants"));
+            let own = own.map(|(name, _)| bare(name, namespace));
+            let path = format!("include.{}.variant", namespace.trim_end_matches('.'));
+            let error = unknown_name(path, "variant", name, own);
+            let error = error.at(self.source.place_of(entry.span));
+            self.included.diagnostics.push(Diagnostic {
+                message: format!("no variant `{name}` in {}", include.file),
+                help: error.help.map(|help| help.replace("this scene", "that file")),
+                ..error
+            });
+            return None;
+        };
+        let Value::Map(changes) = &variant.inner().value else { return Some(Vec::new()) };
+        let changes = changes.iter().filter(|(_, value)| plain(value).is_some());
+        let renamed = changes.cloned().map(|(mut key, value)| {
+            if let Value::Text(name) = &mut key.value {
+                *name = bare(name, namespace).to_owned();
+            }
+            (key, value)
+        });
+        Some(renamed.collect())
     }
 }
 

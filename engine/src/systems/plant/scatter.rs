@@ -1,3 +1,4 @@
+use glam::DVec2;
 use indexmap::IndexMap;
 
 use super::areas::region;
@@ -6,63 +7,23 @@ use crate::components::Placement;
 use crate::document::{Diagnostic, Prototype, Ref, Scatter, Stems};
 use crate::geometry::{Rectangle, place_text};
 use crate::placement::{Amount, Habit, Species, instantiate_trees, places};
+use crate::sampling::Key;
 use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
 use crate::terrain::{Cells, Ground};
 
 /// Instances that a rule of placement scatters; reports an error if there is no place for them.
 pub(super) fn scatter(scatter: &Scatter, ground: &Ground, site: &mut Site<'_>) -> Vec<Placement> {
-    let Scatter {
-        of,
-        rule,
-        stems,
-        inside,
-        outside,
-        yaw_deg,
-        tilt_deg,
-        tilt_azimuth_deg,
-        height_m,
-        scale,
-        scale_vertical,
-        sink_m,
-        name,
-        seed,
-    } = scatter;
-    let species = species(of, height_m.is_some(), site);
-    let terrain = rectangle_of(ground);
-    let Some(region) = region(terrain, inside, outside, site) else {
-        return Vec::new();
-    };
-    let stream = site.stream(name.as_deref(), *seed);
-    let is_periodic = site.resources.is_periodic();
-    let map;
-    let amount = match stems {
-        Stems::Count(count) => Amount::Count(*count),
-        Stems::PerHectare(density) => Amount::Density(density / 1e4),
-        Stems::Fill => Amount::Fill,
-        Stems::Raster { file, factor } => {
-            let Some(found) = densities(file, *factor, terrain, region.bounds(), site) else {
-                return Vec::new();
-            };
-            map = found;
-            Amount::Map(&map)
-        }
-    };
-    let places = places(rule, amount, &region, terrain, is_periodic, stream.path("places"));
-    let places = match places {
-        Ok(places) => places,
-        Err(error) => {
-            site.report(Diagnostic::error(site.path.clone(), error.to_string()));
-            return Vec::new();
-        }
-    };
+    let species = species(&scatter.of, scatter.height_m.is_some(), site);
+    let stream = site.stream(scatter.name.as_deref(), scatter.seed);
+    let Some(places) = stem_places(scatter, ground, stream, site) else { return Vec::new() };
     let habit = Habit {
-        yaw_deg,
-        tilt_deg,
-        tilt_azimuth_deg,
-        height_m: height_m.as_ref(),
-        scale,
-        scale_vertical: scale_vertical.as_ref(),
-        sink_m: *sink_m,
+        yaw_deg: &scatter.yaw_deg,
+        tilt_deg: &scatter.tilt_deg,
+        tilt_azimuth_deg: &scatter.tilt_azimuth_deg,
+        height_m: scatter.height_m.as_ref(),
+        scale: &scatter.scale,
+        scale_vertical: scatter.scale_vertical.as_ref(),
+        sink_m: scatter.sink_m,
     };
     let trees = instantiate_trees(&places, &species, &habit, |place| ground.height(place), stream);
     if trees.len() < places.len() && !species.is_empty() {
@@ -72,6 +33,36 @@ pub(super) fn scatter(scatter: &Scatter, ground: &Ground, site: &mut Site<'_>) -
         site.report(Diagnostic::warning(site.path.clone(), message).help(help));
     }
     trees
+}
+
+/// Places of stems by the rule, m, local frame; `None` after an error.
+fn stem_places(
+    scatter: &Scatter,
+    ground: &Ground,
+    stream: Key,
+    site: &mut Site<'_>,
+) -> Option<Vec<DVec2>> {
+    let terrain = rectangle_of(ground);
+    let region = region(terrain, &scatter.inside, &scatter.outside, site)?;
+    let map = match &scatter.stems {
+        Stems::Raster { file, factor } => {
+            Some(densities(file, *factor, terrain, region.bounds(), site)?)
+        }
+        Stems::Count(_) | Stems::PerHectare(_) | Stems::Fill => None,
+    };
+    let amount = match (&scatter.stems, &map) {
+        (_, Some(map)) => Amount::Map(map),
+        (Stems::Count(count), None) => Amount::Count(*count),
+        (Stems::PerHectare(density), None) => Amount::Density(density / 1e4),
+        (Stems::Fill | Stems::Raster { .. }, None) => Amount::Fill,
+    };
+    let is_periodic = site.resources.is_periodic();
+    let stream = stream.path("places");
+    places(&scatter.rule, amount, &region, terrain, is_periodic, stream)
+        .map_err(|error| {
+            site.report(Diagnostic::error(site.path.clone(), error.to_string()));
+        })
+        .ok()
 }
 
 /// Species that compete for each stem.

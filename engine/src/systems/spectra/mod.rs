@@ -131,43 +131,36 @@ fn resolve(
             let named = named.clone();
             resolve(&named, quantity, &format!("spectra.{name}"), visited, resources)
         }
-        &Spectrum::Prospect(Prospect {
-            n,
-            chlorophyll_ug_cm2,
-            carotenoid_ug_cm2,
-            anthocyanin_ug_cm2,
-            brown,
-            water_cm,
-            dry_matter_g_cm2,
-            protein_g_cm2,
-            carbon_g_cm2,
-        }) => {
-            let chemistry = LeafChemistry {
-                n,
-                chlorophyll: chlorophyll_ug_cm2,
-                carotenoid: carotenoid_ug_cm2,
-                anthocyanin: anthocyanin_ug_cm2,
-                brown,
-                water: water_cm,
-                dry_matter: dry_matter_g_cm2,
-                protein: protein_g_cm2,
-                carbon: carbon_g_cm2,
-            };
-            let leaf =
-                leaf_spectrum(&chemistry).map_err(|error| Box::new(problem(path, &error)))?;
-            match quantity {
-                Quantity::Reflectance => {
-                    mean_over_bands(&leaf.reflectance, quantity, path, resources)
-                }
-                Quantity::Transmittance => {
-                    mean_over_bands(&leaf.transmittance, quantity, path, resources)
-                }
-                Quantity::Irradiance | Quantity::Parameter { .. } => {
-                    let what = "Prospect gives reflectance and transmittance, no irradiance";
-                    let help = "write AstmG173, Constant, Bands, Points or Table";
-                    Err(Box::new(Diagnostic::error(path, what).help(help)))
-                }
-            }
+        Spectrum::Prospect(leaf) => prospect_means(leaf, quantity, path, resources),
+    }
+}
+
+/// Reflectance or transmittance of a leaf by PROSPECT in each band.
+fn prospect_means(
+    leaf: &Prospect,
+    quantity: Quantity,
+    path: &str,
+    resources: &mut Resources,
+) -> Result<Vec<f64>, Box<Diagnostic>> {
+    let chemistry = LeafChemistry {
+        n: leaf.n,
+        chlorophyll: leaf.chlorophyll_ug_cm2,
+        carotenoid: leaf.carotenoid_ug_cm2,
+        anthocyanin: leaf.anthocyanin_ug_cm2,
+        brown: leaf.brown,
+        water: leaf.water_cm,
+        dry_matter: leaf.dry_matter_g_cm2,
+        protein: leaf.protein_g_cm2,
+        carbon: leaf.carbon_g_cm2,
+    };
+    let leaf = leaf_spectrum(&chemistry).map_err(|error| Box::new(problem(path, &error)))?;
+    match quantity {
+        Quantity::Reflectance => mean_over_bands(&leaf.reflectance, quantity, path, resources),
+        Quantity::Transmittance => mean_over_bands(&leaf.transmittance, quantity, path, resources),
+        Quantity::Irradiance | Quantity::Parameter { .. } => {
+            let what = "Prospect gives reflectance and transmittance, no irradiance";
+            let help = "write AstmG173, Constant, Bands, Points or Table";
+            Err(Box::new(Diagnostic::error(path, what).help(help)))
         }
     }
 }

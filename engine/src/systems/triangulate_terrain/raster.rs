@@ -26,20 +26,49 @@ pub(super) fn raster_patch(
     map: &mut MapFrame,
     resources: &mut Resources,
 ) -> Option<TerrainPatch> {
-    let TerrainRaster {
-        file,
-        material,
-        land_cover,
-        tolerance_m,
-        coordinates,
-        no_data,
-        lowest_m,
-        window,
-        height_unit_m,
-        size_m,
-        ..
-    } = terrain;
-    let (east, north, up) = resources.frame.origin_m;
+    let (raster, rectangle) = read_heights(terrain, map, resources)?;
+    let up = resources.frame.origin_m.2;
+    let known = raster.values.iter().copied().filter(|height| !height.is_nan());
+    let lowest = known.reduce(f64::min).unwrap_or(0.0);
+    let shift = terrain.lowest_m.map_or(-up, |height| height - lowest);
+    let heights = Cells {
+        columns: raster.columns,
+        rows: raster.rows,
+        values: raster.values.iter().map(|height| height + shift).collect(),
+        corner: rectangle.min,
+        size: rectangle.size(),
+    };
+    warn_steepness(&heights, resources);
+    let (cover, parts) = match (&terrain.material, &terrain.land_cover) {
+        (Some(name), _) => {
+            (None, vec![(name.to_string(), resources.material(name, "terrain.material")?)])
+        }
+        (None, Some(cover)) => {
+            let (cells, parts) = land_cover_cells(cover, rectangle, map, resources)?;
+            (Some(cells), parts)
+        }
+        (None, None) => return None,
+    };
+    let periodic = resources.is_periodic();
+    let patch = terrain::raster(&heights, terrain.tolerance_m, cover.as_ref(), parts, periodic);
+    let Some(mut patch) = patch else {
+        let message = "none of its cells has data".to_owned();
+        resources.report(Diagnostic::error("terrain.file", message));
+        return None;
+    };
+    patch.projection =
+        frame_projection(map, resources).or_else(|| projection_of_raster(&raster, map, resources));
+    Some(patch)
+}
+
+/// Reads the heights of a terrain; returns them with their rectangle, m, local frame. Sets the transform of the map.
+fn read_heights(
+    terrain: &TerrainRaster,
+    map: &mut MapFrame,
+    resources: &mut Resources,
+) -> Option<(Raster, Rectangle)> {
+    let TerrainRaster { file, coordinates, no_data, window, height_unit_m, size_m, .. } = terrain;
+    let (east, north, _) = resources.frame.origin_m;
     let extent = window.as_ref().map(|window| {
         let corner = DVec2::from(window.corner_m) + DVec2::new(east, north);
         RasterExtent { min: corner, max: corner + DVec2::from(window.size_m) }
@@ -64,48 +93,15 @@ pub(super) fn raster_patch(
         is_given: source.has_size || coordinates.is_some(),
     });
     fill_no_data(&mut raster, no_data, resources)?;
-    let known = || raster.values.iter().filter(|height| !height.is_nan());
-    let beyond = known().find(|height| height.abs() > HIGHEST);
-    if let Some(height) = beyond {
+    if let Some(height) = raster.values.iter().find(|height| height.abs() > HIGHEST) {
         let message = format!("a height of {height} m is not of this Earth");
         let help = "if the heights are in centimetres, write `height_unit_m: 0.01` (0.1 for decimetres, \
-                        0.3048 for feet); if it stands for no data, name it in the file's header \
-                        (`gdal_edit.py -a_nodata`)";
+                    0.3048 for feet); if it stands for no data, name it in the file's header \
+                    (`gdal_edit.py -a_nodata`)";
         resources.report(Diagnostic::error("terrain.file", message).help(help));
         return None;
     }
-    let lowest = known().copied().reduce(f64::min).unwrap_or(0.0);
-    let shift = lowest_m.map_or(-up, |height| height - lowest);
-    let heights = Cells {
-        columns: raster.columns,
-        rows: raster.rows,
-        values: raster.values.iter().map(|height| height + shift).collect(),
-        corner,
-        size,
-    };
-    warn_steepness(&heights, resources);
-    let (cover, parts) = match (material, land_cover) {
-        (Some(name), _) => {
-            (None, vec![(name.to_string(), resources.material(name, "terrain.material")?)])
-        }
-        (None, Some(cover)) => {
-            let rectangle = Rectangle { min: corner, max: corner + size };
-            let (cells, parts) = land_cover_cells(cover, rectangle, map, resources)?;
-            (Some(cells), parts)
-        }
-        (None, None) => return None,
-    };
-    let periodic = resources.is_periodic();
-    let mut patch = terrain::raster(&heights, *tolerance_m, cover.as_ref(), parts, periodic);
-    if let Some(patch) = &mut patch {
-        patch.projection = frame_projection(map, resources)
-            .or_else(|| projection_of_raster(&raster, map, resources));
-    }
-    if patch.is_none() {
-        let message = "none of its cells has data".to_owned();
-        resources.report(Diagnostic::error("terrain.file", message));
-    }
-    patch
+    Some((raster, Rectangle { min: corner, max: corner + size }))
 }
 
 /// Projection of the raster's coordinates, if they are those of the scene beyond its anchor.
