@@ -198,6 +198,14 @@ fn broken_projects_are_told_by_file_and_line() {
             ],
             &[],
         ),
+        broken(
+            &[
+                (r#""albedo": "0.45,0.6""#, r#""albedo": "0.45,1""#),
+                (r#""landcover": "classes","#, ""),
+            ],
+            &[],
+        ),
+        broken(&[(r#""h2": "0.114""#, r#""h2": "0""#), (r#""landcover": "classes","#, "")], &[]),
         broken(&[(r#""sun_zenith": 40"#, r#""sun_zenith": "ninety""#)], &[]),
         broken(&[("660:10,865:20", "660:10,red")], &[]),
         broken(
@@ -262,28 +270,52 @@ fn the_default_projects_of_less_are_bare_soil() {
     }
 }
 
-/// SOILSPECT at nadir under a vertical sun, of isotropic scatterers without a hot spot, is
-/// `ω/8 H²`; over all directions it is a number between that and a perfect mirror's.
+/// *Scene*: a SOILSPECT plane without trees, imported, one albedo for both bands.
+/// *Expected*: the material `Soilspect` with LESS's parameters, and the BRF of the formula at nadir, where
+/// `g = g' = θs` and `BRF = ω / [4 (μs + 1)] {[1 + B] P + H(μs) H(1) - 1}`.
 #[test]
-fn a_soilspect_ground_is_imported_as_a_stand_in_that_says_so() {
+fn a_soilspect_ground_is_imported_with_its_parameters() {
     let folder = project(&[
+        (r#""terrain_type": "RASTER""#, r#""terrain_type": "PLANE""#),
         (r#""landcover": "classes","#, ""),
         (r#""albedo": "0.45,0.6""#, r#""albedo": "0.45""#),
+        (r#""percentage": "0.2,0.1""#, r#""percentage": "0,0""#),
+        (r#""obs_zenith": 10"#, r#""obs_zenith": 0"#),
+        (r#""RepetitiveScene": 15"#, r#""RepetitiveScene": 3"#),
     ]);
+    fs::write(folder.path().join("grove/Parameters/instances.txt"), "").unwrap();
     let printed = import(&folder);
-    assert!(printed.contains("STAND-IN: sunfleck has no SOILSPECT"), "{printed}");
+    assert!(!printed.contains("STAND-IN"), "{printed}");
     let scene = read(folder.path(), "imported/grove/scene.ron");
-    assert!(scene.contains("// ") && scene.contains("STAND-IN"), "{scene}");
-    // The parameters are those of both bands.
-    let line = scene.lines().find(|line| line.contains("\"soilspect stand-in\": ")).unwrap();
-    let at = scene.find(line).unwrap();
-    let values = &scene[at..][scene[at..].find('[').unwrap() + 1..];
-    let values: Vec<f64> = values[..values.find(']').unwrap()]
-        .split(',')
-        .map(|value| value.trim().parse().unwrap())
-        .collect();
-    assert!(values.len() == 2 && values[0] == values[1], "{values:?}");
-    assert!(values[0] > 0.1 && values[0] < 0.45, "{values:?}");
+    for key in [
+        "albedo: Bands([0.45, 0.45])",
+        "b: Bands([1.492, 1.492])",
+        "c: Bands([0.56, 0.56])",
+        "b_prime: Bands([0.238, 0.238])",
+        "c_prime: Bands([-0.06, -0.06])",
+        "hot_spot: Bands([1.0, 1.0])",
+        "roughness: Bands([0.114, 0.114])",
+    ] {
+        assert!(scene.contains(key), "{key}: {scene}");
+    }
+    let arguments = ["run", "imported/grove/scene.ron", "--out", "out"];
+    let (code, _, errors) = outcome(folder.path(), &arguments);
+    assert_eq!(code, 0, "{errors}");
+    let summary: serde_json::Value =
+        serde_json::from_str(&read(folder.path(), "out/summary.json")).unwrap();
+    let values = summary["sensors"]["image"]["brf"]["values"].as_array().unwrap();
+    let sun = 40.0_f64.to_radians();
+    let cosine = sun.cos();
+    let legendre = 0.5 * (3.0 * cosine * cosine - 1.0);
+    let phase = 1.0 + (1.492 + 0.238) * cosine + (0.56 - 0.06) * legendre;
+    let hot_spot = 1.0 / (1.0 + (0.5 * sun).tan() / 0.114);
+    let multiple = |x: f64| (1.0 + 2.0 * x) / (1.0 + 2.0 * x * 0.55_f64.sqrt());
+    let expected = 0.45 / (4.0 * (cosine + 1.0))
+        * ((1.0 + hot_spot) * phase + multiple(cosine) * multiple(1.0) - 1.0);
+    assert_eq!(values.len(), 2);
+    for value in values {
+        assert!((value.as_f64().unwrap() - expected).abs() < 1e-5, "{value} is not {expected}");
+    }
 }
 
 #[test]

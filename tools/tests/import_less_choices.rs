@@ -362,7 +362,7 @@ fn every_pair_of_choices_is_imported_checked_and_run() {
         let printed = imported(&folder, &shown);
         // A surface that stands in for another is never silent.
         let is_covered = value("ground") == "landcover" && value("terrain") != "MESH";
-        let stands_in = value("ground").contains("Soilspect") || value("ground") == "landalbedo";
+        let stands_in = value("ground") == "landalbedo";
         assert_eq!(printed.contains("STAND-IN"), stands_in && !is_covered, "{shown}: {printed}");
     }
 }

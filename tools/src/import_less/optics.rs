@@ -9,6 +9,7 @@ use sunfleck::document::nearest;
 use super::conf::{self, Node};
 use super::light::counted;
 use super::report::Report;
+use super::soil::Soil;
 use super::text::{list, quoted};
 
 /// Highest temperature that a scene may hold, K.
@@ -38,10 +39,26 @@ pub(super) struct Materials {
 /// An optical property.
 #[derive(Debug)]
 struct Optics {
-    /// Reflectance of front and back, and transmittance, shape `[3][bands]`.
-    sides: [Vec<f64>; 3],
+    surface: Surface,
     /// Remarks for the report if the property is used.
     remarks: Vec<Remark>,
+}
+
+/// A surface model with its parameters.
+#[derive(Debug)]
+enum Surface {
+    Lambertian(Sides),
+    Soilspect(Soil),
+}
+
+/// Spectra of a Lambertian surface, each of shape `[bands]`.
+#[derive(Debug)]
+struct Sides {
+    /// Reflectance of the front side.
+    front: Vec<f64>,
+    /// Reflectance of the back side.
+    back: Vec<f64>,
+    transmittance: Vec<f64>,
 }
 
 /// A mean and the range between sunlit and shaded, K.
@@ -88,15 +105,13 @@ impl Materials {
         matches!(self.optics.get(optics), Some(Ok(_)))
     }
 
-    /// Adds an opaque surface, and returns the name of its property.
-    pub(super) fn add_opaque(&mut self, name: &str, reflectance: Vec<f64>) -> String {
-        let mut name = name.to_owned();
+    /// Adds the SOILSPECT model of the ground, and returns the name of its property.
+    pub(super) fn add_soil(&mut self, soil: Soil) -> String {
+        let mut name = "soilspect".to_owned();
         while self.optics.contains_key(&name) {
             name.push('_');
         }
-        let through = vec![0.0; reflectance.len()];
-        let optics =
-            Optics { sides: [reflectance.clone(), reflectance, through], remarks: Vec::new() };
+        let optics = Optics { surface: Surface::Soilspect(soil), remarks: Vec::new() };
         self.optics.insert(name.clone(), Ok(optics));
         name
     }
@@ -174,18 +189,14 @@ impl Materials {
         }
         let mut text = "materials: {\n".to_owned();
         for ((optics, temperature), name) in &self.used {
-            let Some(Ok(Optics { sides: [front, back, through], .. })) = self.optics.get(optics)
-            else {
-                continue;
-            };
-            let is_leaf = through.iter().any(|&value| value > 0.0);
-            let kind = if is_leaf { "Leaf" } else { "Lambertian" };
-            write!(text, "{}: {kind}(reflectance: Bands({}), ", quoted(name), list(front))?;
-            if is_leaf {
-                write!(text, "transmittance: Bands({}), ", list(through))?;
-            }
-            if front != back {
-                write!(text, "back_reflectance: Bands({}), ", list(back))?;
+            let Some(Ok(Optics { surface, .. })) = self.optics.get(optics) else { continue };
+            write!(text, "{}: ", quoted(name))?;
+            match surface {
+                Surface::Lambertian(sides) => sides.write(&mut text)?,
+                Surface::Soilspect(soil) => {
+                    text += "Soilspect(";
+                    soil.write_keys(&mut text)?;
+                }
             }
             let temperature = temperature.as_ref().and_then(|name| self.temperatures.get(name));
             if let Some(Ok(Temperature { mean, range })) = temperature {
@@ -235,24 +246,40 @@ fn optics(name: &str, node: &Node, bands: usize) -> Result<Optics> {
             None => Ok(values),
         }
     };
-    let mut optics = Optics {
-        sides: [
-            read("reflectance of the front", front)?,
-            read("reflectance of the back", back)?,
-            read("transmittance", through)?,
-        ],
-        remarks: Vec::new(),
+    let mut sides = Sides {
+        front: read("reflectance of the front", front)?,
+        back: read("reflectance of the back", back)?,
+        transmittance: read("transmittance", through)?,
     };
-    optics.limit_sums(value)?;
-    optics.remark_on(name, node)?;
-    Ok(optics)
+    let mut remarks = sides.limit_sums(value)?;
+    sides.remark_on(name, node, &mut remarks)?;
+    Ok(Optics { surface: Surface::Lambertian(sides), remarks })
 }
 
-impl Optics {
-    /// Scales values whose sum is above 1 by rounding; refuses larger sums.
-    fn limit_sums(&mut self, node: &Node) -> Result<()> {
-        let [front, back, through] = &mut self.sides;
-        for (band, t) in through.iter_mut().enumerate() {
+impl Sides {
+    /// Writes the start of a material, up to its last spectrum.
+    fn write(&self, text: &mut String) -> Result<()> {
+        let Self { front, back, transmittance } = self;
+        let is_leaf = transmittance.iter().any(|&value| value > 0.0);
+        let kind = if is_leaf { "Leaf" } else { "Lambertian" };
+        write!(text, "{kind}(reflectance: Bands({}), ", list(front))?;
+        if is_leaf {
+            write!(text, "transmittance: Bands({}), ", list(transmittance))?;
+        }
+        if front != back {
+            write!(text, "back_reflectance: Bands({}), ", list(back))?;
+        }
+        Ok(())
+    }
+
+    /// Scales values whose sum is above 1 by rounding, and returns remarks on them.
+    ///
+    /// # Errors
+    /// A sum above [`ROUNDED_SUM`].
+    fn limit_sums(&mut self, node: &Node) -> Result<Vec<Remark>> {
+        let Self { front, back, transmittance } = self;
+        let mut remarks = Vec::new();
+        for (band, t) in transmittance.iter_mut().enumerate() {
             let (r, before) = (front[band].max(back[band]), *t);
             let sum = r + before;
             if sum <= 1.0 {
@@ -269,18 +296,18 @@ impl Optics {
                 "transmittance {before} of band {} taken as {t:?}: with reflectance {r} it sums to more than 1",
                 band + 1
             );
-            self.remarks.push((node.path.clone(), String::new(), what));
+            remarks.push((node.path.clone(), String::new(), what));
         }
-        Ok(())
+        Ok(remarks)
     }
 
-    fn remark_on(&mut self, name: &str, node: &Node) -> Result<()> {
+    fn remark_on(&self, name: &str, node: &Node, remarks: &mut Vec<Remark>) -> Result<()> {
         let mut remark = |path: &str, value: &str, what: &str| {
-            self.remarks.push((path.to_owned(), value.to_owned(), what.to_owned()));
+            remarks.push((path.to_owned(), value.to_owned(), what.to_owned()));
         };
         let path = &node.path;
         let is_dark = |side: &[f64]| side.iter().all(|&value| value <= 0.0);
-        let [front, back, through] = &self.sides;
+        let Self { front, back, transmittance } = self;
         let kind = node.get("Type").map(Node::text).transpose()?;
         match kind.as_deref() {
             Some("0") => {
@@ -293,7 +320,7 @@ impl Optics {
             }
             Some(other) => remark(path, other, "unknown type; the values as stored"),
         }
-        if name == BIRCH_LEAF && is_dark(through) {
+        if name == BIRCH_LEAF && is_dark(transmittance) {
             let what = "transmittance 0 as stored here; LESS's database has 0.056 at 600 nm and \
                         0.486 at 900 nm";
             remark(path, name, what);
@@ -309,7 +336,7 @@ impl Optics {
             let what = "not kept; `Prospect(..)` computes such spectra anew";
             remark(&prospect.path, &shown, what);
         }
-        if is_dark(back) && is_dark(through) && !is_dark(front) {
+        if is_dark(back) && is_dark(transmittance) && !is_dark(front) {
             let what = "black from behind, as in LESS; take out `back_reflectance` if not meant";
             remark(path, name, what);
         }

@@ -1,59 +1,99 @@
-//! The SOILSPECT model of soil, and the surface that stands in for it.
+//! SOILSPECT parameters of the ground.
 
-use std::f64::consts::PI;
+use std::fmt::Write as _;
 
 use anyhow::Result;
+use sunfleck::components::{DirectionalOptics, SoilspectParameters};
 
 use super::conf::Node;
 use super::light::counted;
 use super::report::Report;
+use super::text::list;
 
-/// Parameters of the model in one band.
-///
-/// Source: Jacquemoud, Baret and Hanocq (1992), Remote Sensing of Environment 41, 123-132.
-#[derive(Clone, Copy, Debug)]
-struct Soilspect {
-    /// Single scattering albedo ω.
-    albedo: f64,
-    /// Coefficients of the phase function.
-    c: [f64; 4],
-    /// Height and width of the hot spot.
-    h: [f64; 2],
+/// A parameter of the model.
+#[derive(Debug)]
+struct Parameter {
+    /// Key of a LESS project.
+    key: &'static str,
+    /// Key of a sunfleck material.
+    name: &'static str,
+    /// Value that LESS's window starts with.
+    default: f64,
+    /// Minimum and maximum.
+    range: [f64; 2],
 }
 
-/// Keys of LESS's window, and the values that it starts with.
-const KEYS: [(&str, f64); 7] = [
-    ("albedo", 0.537),
-    ("c1", 1.492),
-    ("c2", 0.56),
-    ("c3", 0.238),
-    ("c4", -0.06),
-    ("h1", 1.0),
-    ("h2", 0.114),
+const SIGNED: [f64; 2] = [-1000.0, 1000.0];
+
+const PARAMETERS: [Parameter; 7] = [
+    Parameter { key: "albedo", name: "albedo", default: 0.537, range: [0.0, 1.0] },
+    Parameter { key: "c1", name: "b", default: 1.492, range: SIGNED },
+    Parameter { key: "c2", name: "c", default: 0.56, range: SIGNED },
+    Parameter { key: "c3", name: "b_prime", default: 0.238, range: SIGNED },
+    Parameter { key: "c4", name: "c_prime", default: -0.06, range: SIGNED },
+    Parameter { key: "h1", name: "hot_spot", default: 1.0, range: [0.0, 1000.0] },
+    Parameter { key: "h2", name: "roughness", default: 0.114, range: [0.001, 1000.0] },
 ];
 
-/// Largest parameter; those of real soils are below 10.
-const LARGEST: f64 = 1000.0;
+/// SOILSPECT parameters in the order of [`PARAMETERS`], shape `[7][bands]`.
+///
+/// Source: Jacquemoud, Baret & Hanocq (1992), Remote Sens. Environ. 41, 123–132.
+#[derive(Debug)]
+pub(super) struct Soil([Vec<f64>; PARAMETERS.len()]);
 
-/// Directions in zenith and azimuth over which the reflectance is integrated.
-const STEPS: u32 = 180;
+impl Soil {
+    /// Reads `soilSpectParams` of the terrain.
+    ///
+    /// # Errors
+    /// A value outside its range, a wrong number of values, or a soil that reflects more light than it receives.
+    pub(super) fn read(terrain: &Node, bands: usize, report: &Report) -> Result<Self> {
+        let node = terrain.need("soilSpectParams")?;
+        let mut columns = [const { Vec::new() }; PARAMETERS.len()];
+        for (column, parameter) in columns.iter_mut().zip(&PARAMETERS) {
+            *column = parameter.read(node, bands, report)?;
+        }
+        let soil = Self(columns);
+        match DirectionalOptics::new((0..bands).map(|band| soil.in_band(band)).collect()) {
+            Ok(_) => Ok(soil),
+            Err(fault) => Err(node.wrong(&format!(
+                "the soil would reflect {:.1} % of the light from a zenith angle of {:.0}° in band {}: lower \
+                 `albedo`, or bring `c1` to `c4` nearer to 0",
+                100.0 * fault.dhr,
+                fault.zenith.to_degrees(),
+                fault.band + 1
+            ))),
+        }
+    }
 
-/// Reflectance over all directions, band by band, of the soil that `soilSpectParams` describes, for a
-/// sun at a zenith angle.
-pub(super) fn reflectance(
-    terrain: &Node,
-    bands: usize,
-    zenith_deg: f64,
-    report: &Report,
-) -> Result<Vec<f64>> {
-    let parameters = terrain.need("soilSpectParams")?;
-    let mut columns = Vec::new();
-    for (key, usual) in KEYS {
+    fn in_band(&self, band: usize) -> SoilspectParameters {
+        let [albedo, b, c, b_prime, c_prime, hot_spot, roughness] =
+            self.0.each_ref().map(|column| column[band] as f32);
+        SoilspectParameters {
+            albedo,
+            roughness,
+            hot_spot,
+            backward: [b, c],
+            forward: [b_prime, c_prime],
+        }
+    }
+
+    /// Writes the keys of a `Soilspect(..)`, each with a comma.
+    pub(super) fn write_keys(&self, text: &mut String) -> Result<()> {
+        for (parameter, values) in PARAMETERS.iter().zip(&self.0) {
+            write!(text, "{}: Bands({}), ", parameter.name, list(values))?;
+        }
+        Ok(())
+    }
+}
+
+impl Parameter {
+    /// Values by band. One value holds for all bands.
+    fn read(&self, parameters: &Node, bands: usize, report: &Report) -> Result<Vec<f64>> {
+        let &Self { key, default, range: [minimum, maximum], .. } = self;
         let Some(node) = parameters.get(key) else {
-            let what = format!("{usual}, as LESS has it");
+            let what = format!("{default}, as LESS has it");
             report.assumed(&parameters.path_of(key), parameters.lack_of(key), what);
-            columns.push(vec![usual; bands]);
-            continue;
+            return Ok(vec![default; bands]);
         };
         let mut values = node.numbers()?;
         if values.len() == 1 {
@@ -63,112 +103,11 @@ pub(super) fn reflectance(
             let values = counted(values.len());
             return Err(node.wrong(&format!("has {values}, `sensor.bands` has {bands}")));
         }
-        let is_valid = |value: &f64| match key {
-            "albedo" => (0.0..=1.0).contains(value),
-            "h2" => *value > 0.0 && *value <= LARGEST,
-            _ => value.abs() <= LARGEST,
-        };
-        if let Some(wrong) = values.iter().find(|value| !is_valid(value)) {
-            let range = match key {
-                "albedo" => "between 0 and 1",
-                "h2" => "above 0 and up to 1000",
-                _ => "between -1000 and 1000",
-            };
-            return Err(node.wrong(&format!("{wrong} is not {range}")));
-        }
-        columns.push(values);
-    }
-    let band = |band: usize| {
-        let value = |column: usize| columns[column][band];
-        let soil = Soilspect {
-            albedo: value(0),
-            c: [value(1), value(2), value(3), value(4)],
-            h: [value(5), value(6)],
-        };
-        let reflectance = soil.over_all_directions(zenith_deg.to_radians());
-        if (0.0..=1.0).contains(&reflectance) {
-            // Six digits are more than the integral is good for.
-            return Ok((reflectance * 1e6).round() / 1e6);
-        }
-        let what = format!(
-            "`albedo`, `c1` to `c4`, `h1` and `h2` make the soil reflect {reflectance:.3} of the light in band {}",
-            band + 1
-        );
-        Err(parameters.wrong(&what))
-    };
-    (0..bands).map(band).collect()
-}
-
-impl Soilspect {
-    /// Reflectance over all directions of a beam (directional-hemispherical), by the midpoint rule.
-    fn over_all_directions(&self, sun: f64) -> f64 {
-        let step = |steps: u32, range: f64, index: u32| {
-            range * (f64::from(index) + 0.5) / f64::from(steps)
-        };
-        let mut sum = 0.0;
-        for row in 0..STEPS {
-            // Even steps of sin² weigh directions by their cosine.
-            let view = step(STEPS, 1.0, row).sqrt().asin();
-            for column in 0..STEPS {
-                sum += self.factor(sun, view, step(STEPS, PI, column));
+        match values.iter().find(|&value| !(minimum..=maximum).contains(value)) {
+            Some(wrong) => {
+                Err(node.wrong(&format!("{wrong} is not between {minimum} and {maximum}")))
             }
+            None => Ok(values),
         }
-        sum / f64::from(STEPS * STEPS)
-    }
-
-    /// Bidirectional reflectance factor for zenith angles of sun and view and the angle between their
-    /// azimuths, radians.
-    fn factor(&self, sun: f64, view: f64, azimuth: f64) -> f64 {
-        let (mu_sun, mu_view) = (sun.cos(), view.cos());
-        let across = sun.sin() * view.sin() * azimuth.cos();
-        let phase = (mu_sun * mu_view + across).clamp(-1.0, 1.0);
-        let specular = (mu_sun * mu_view - across).clamp(-1.0, 1.0);
-        let legendre = |x: f64| 0.5 * (3.0 * x * x - 1.0);
-        let [c1, c2, c3, c4] = self.c;
-        let p = 1.0 + c1 * phase + c2 * legendre(phase) + c3 * specular + c4 * legendre(specular);
-        let [h1, h2] = self.h;
-        let b = h1 / (1.0 + (0.5 * phase.acos()).tan() / h2);
-        let many = |mu: f64| (1.0 + 2.0 * mu) / (1.0 + 2.0 * mu * (1.0 - self.albedo).sqrt());
-        0.25 * self.albedo / (mu_sun + mu_view)
-            * ((1.0 + b) * p + many(mu_sun) * many(mu_view) - 1.0)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CONSERVATIVE: Soilspect = Soilspect { albedo: 1.0, c: [0.0; 4], h: [0.0, 1.0] };
-
-    /// *Scene*: isotropic scatterers that absorb nothing, with no hot spot.
-    /// *Expected*: Hapke's approximation H(x) = 1 + 2x conserves energy to within a few percent.
-    #[test]
-    fn a_soil_that_absorbs_nothing_reflects_nearly_all() {
-        for zenith in [0.0_f64, 30.0, 60.0] {
-            let reflectance = CONSERVATIVE.over_all_directions(zenith.to_radians());
-            assert!((reflectance - 1.0).abs() < 0.05, "{reflectance} at {zenith}°");
-        }
-    }
-
-    /// The factor of isotropic scatterers at nadir is `ω / 8 H²`.
-    #[test]
-    fn the_factor_at_nadir_is_that_of_the_formula() {
-        let soil = Soilspect { albedo: 0.5, ..CONSERVATIVE };
-        let h = 3.0 / (1.0 + 2.0 * 0.5_f64.sqrt());
-        assert!((soil.factor(0.0, 0.0, 0.0) - 0.0625 * h * h).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_hot_spot_is_where_sun_and_view_agree() {
-        let soil = Soilspect { albedo: 0.5, c: [0.5, 0.2, 0.0, 0.0], h: [1.0, 0.1] };
-        let (sun, view) = (0.7, 0.7);
-        let hot = soil.factor(sun, view, 0.0);
-        for azimuth in [0.05, 0.3, 1.0, 2.0, 3.0] {
-            assert!(hot > soil.factor(sun, view, azimuth), "{azimuth}");
-        }
-        // Without the term of the hot spot, `B`, the peak is gone but for the phase function's slope.
-        let without = Soilspect { h: [0.0, 0.1], ..soil };
-        let peak = |soil: &Soilspect| soil.factor(sun, view, 0.0) / soil.factor(sun, view, 0.3);
-        assert!(peak(&soil) > 1.2 * peak(&without), "{} {}", peak(&soil), peak(&without));
     }
 }

@@ -9,8 +9,8 @@ use anyhow::{Context as _, Result, bail};
 use super::conf::Node;
 use super::objects::Obj;
 use super::project::{Project, Section};
-use super::settings::{Choice, Rule};
-use super::soil;
+use super::settings::Choice;
+use super::soil::Soil;
 use super::text::{self, quoted};
 
 /// Largest ENVI header, bytes.
@@ -93,7 +93,7 @@ impl Project {
             section.terrain = self.stretched(&file, &cover);
             return Ok(section);
         }
-        let material = quoted(&self.soil_material(temperature.as_deref())?);
+        let material = quoted(&self.soil_material(ground, temperature.as_deref())?);
         match ground {
             Ground::Plane => {
                 section.terrain = format!(
@@ -148,12 +148,12 @@ impl Project {
     }
 
     /// The material of a ground that has one.
-    fn soil_material(&mut self, temperature: Option<&str>) -> Result<String> {
+    fn soil_material(&mut self, ground: Ground, temperature: Option<&str>) -> Result<String> {
         let place = self.terrain()?.place.clone();
         let optics = match self.brdf()? {
             Brdf::Lambertian => self.usual_optics()?,
             Brdf::AlbedoMap => self.albedo_stand_in()?,
-            Brdf::Soilspect => self.soilspect_stand_in()?,
+            Brdf::Soilspect => self.soilspect(ground)?,
         };
         let place = self.terrain()?.get("optical").map_or(place, |node| node.place.clone());
         self.materials
@@ -212,25 +212,21 @@ impl Project {
         Ok(optics)
     }
 
-    /// SOILSPECT has no counterpart: a Lambertian surface that reflects as much stands in for it.
-    fn soilspect_stand_in(&mut self) -> Result<String> {
+    /// Reads the SOILSPECT parameters, and returns the name of their optical property.
+    fn soilspect(&mut self, ground: Ground) -> Result<String> {
         self.conf.ensure_object(&["scene", "terrain", "soilSpectParams"])?;
-        let sun = self.conf.need("illumination")?.need("sun")?;
-        let zenith = Rule::SUN_ZENITH.read(sun, "sun_zenith", &self.report)?;
         let terrain = self.terrain()?;
-        let reflectance = soil::reflectance(terrain, self.bands.len(), zenith, &self.report)?;
+        let soil = Soil::read(terrain, self.bands.len(), &self.report)?;
         for key in ["optical", "soilSpectParams"] {
             if let Some(node) = terrain.get(key) {
                 node.settle();
             }
         }
-        let what = format!(
-            "STAND-IN: sunfleck has no SOILSPECT; a Lambertian soil that reflects as much of a sun at \
-             {zenith}° over all directions ({}), with no hot spot",
-            text::list(&reflectance)
-        );
-        self.report.differs("scene.terrain.terrBRDFType", "Soilspect", what);
-        Ok(self.materials.add_opaque("soilspect stand-in", reflectance))
+        if ground == Ground::Mesh {
+            let what = "reflects on both sides of the mesh; in LESS on the front side only";
+            self.report.differs("scene.terrain.terrBRDFType", "Soilspect", what);
+        }
+        Ok(self.materials.add_soil(soil))
     }
 
     /// `land_cover` of the ground, if the project has classes.
