@@ -7,14 +7,14 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DMat3, DVec2, DVec3};
 use sunfleck::accel::{Boundary, Domain, InstanceInput, MeshInput, Ray, Scene};
-use sunfleck::assets::{CrownSpec, grow_crown};
+use sunfleck::assets::{GeneratedCrown, grow_crown};
 use sunfleck::components::Mesh;
 use sunfleck::document::{CrownShape, LeafAngle, LeafProfile, LeafShape};
 use sunfleck::sampling::{Key, sobol4};
 
 /// An ellipsoid of leaves, 4 m wide and 6 m high.
 fn crown(leaves: f64, leaf: LeafShape, leaf_area: f64) -> Mesh {
-    grow_crown(&CrownSpec {
+    grow_crown(&GeneratedCrown {
         shape: CrownShape::Ellipsoid { diameter_m: 4.0, height_m: 6.0 },
         base_m: 1.0,
         leaf_area_m2: leaves * leaf_area,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use sunfleck::assets::{CrownSpec, grow_crown};
+use sunfleck::assets::grow_crown;
 use sunfleck::document::{self, GeneratedCrown, Prototype, Scene, Sensor, System};
 use sunfleck::products::Report;
 use sunfleck::run::{Options, Unwatched, run};
@@ -134,7 +134,7 @@ fn nearest(mut centers: Vec<[f64; 3]>) -> f64 {
 fn floating_spheres_have_leaves_a_diameter_apart() {
     let scene = scene("het01.ron", &[], &[]);
     let Prototype::Crown(crown) = &scene.meshes["sphere"] else { panic!("a generated crown") };
-    let discs = grow_crown(&CrownSpec::from_document(crown)).expect("the leaves find room").discs;
+    let discs = grow_crown(crown).expect("the leaves find room").discs;
     let distance = nearest(discs.iter().map(|disc| disc.center.as_dvec3().to_array()).collect());
     assert!((0.2..0.201).contains(&distance), "{distance}");
     let Some(shared) = shared() else { return };

@@ -5,7 +5,7 @@
 //! | [`read_obj`], [`read_gltf`] | Wavefront OBJ, glTF 2.0 and GLB | [`Mesh`](crate::components::Mesh) |
 //! | [`read_discs`] | CSV or RAMI text | [`Mesh`](crate::components::Mesh) |
 //! | [`mesh_of_faces`] | polygons in the scene | [`Mesh`](crate::components::Mesh) |
-//! | [`grow_crown`] | a [`CrownSpec`] | [`Mesh`](crate::components::Mesh) |
+//! | [`grow_crown`] | a [`GeneratedCrown`](crate::document::GeneratedCrown) | [`Mesh`](crate::components::Mesh) |
 //! | [`read_instances`] | a text table | [`StemTable`] |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
 //! | [`read_raster`] | ESRI ASCII grid, ENVI, GeoTIFF | [`Raster`] |
@@ -31,7 +31,7 @@ mod table;
 mod text;
 
 pub use areas::{Areas, read_geojson, read_polygons};
-pub use crown::{CrownError, CrownSpec, grow_crown};
+pub use crown::{CrownError, grow_crown};
 pub use crs::{Axes, Crs, Heights, Length, TargetSystem, UtmZone};
 pub use discs::read_discs;
 pub use error::AssetError;

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::grid::{LeafGrid, Located};
 use super::stream::{Purpose, Stream};
-use super::{CrownError, CrownSpec, Places};
+use super::{CrownError, GeneratedCrown, Places};
 use crate::components::Disc;
 
 /// Places that a leaf is tried at, at most.
@@ -132,7 +132,7 @@ struct Settled<F> {
 }
 
 impl<F: Flat> Settled<F> {
-    fn new(crown: &CrownSpec, leaves: usize, leaf: &[F]) -> Self {
+    fn new(crown: &GeneratedCrown, leaves: usize, leaf: &[F]) -> Self {
         // All pieces are of one size but for rounding.
         let reach = MARGIN * leaf.iter().map(Flat::reach).fold(0.0, f64::max);
         let distance = crown.min_distance_m;
@@ -172,7 +172,7 @@ impl<F: Flat> Settled<F> {
 /// # Errors
 /// A leaf that finds no place.
 pub(super) fn place<F, L, P>(
-    crown: &CrownSpec,
+    crown: &GeneratedCrown,
     count: usize,
     places: &Places<'_>,
     leaf: impl Fn(u64) -> L,
@@ -210,7 +210,7 @@ where
     Ok(settled.map_or_else(Vec::new, |settled| settled.pieces.into_items()))
 }
 
-fn no_room(crown: &CrownSpec, placed: u64, count: u64) -> CrownError {
+fn no_room(crown: &GeneratedCrown, placed: u64, count: u64) -> CrownError {
     let distance = crown.min_distance_m;
     if distance == 0.0 {
         return CrownError::NoRoom { placed, count };

@@ -10,7 +10,7 @@ use super::apart::Flat;
 use super::places::Places;
 use super::stream::{Purpose, Stream};
 use super::wood::golden_angle;
-use super::{CrownError, CrownSpec, apart};
+use super::{CrownError, GeneratedCrown, apart, has_independent_leaves};
 use crate::components::{Disc, Mesh};
 use crate::document::LeafShape;
 
@@ -55,7 +55,7 @@ pub(super) fn pieces(leaf: &LeafShape) -> u32 {
 /// # Errors
 /// Leaves that find no place apart from the others.
 pub(super) fn grow(
-    crown: &CrownSpec,
+    crown: &GeneratedCrown,
     count: usize,
     places: &Places<'_>,
     normals: &Normals,
@@ -93,7 +93,7 @@ pub(super) fn grow(
 
 /// Leaves of a crown: where they are, and how they are turned.
 struct Foliage<'a> {
-    crown: &'a CrownSpec,
+    crown: &'a GeneratedCrown,
     count: usize,
     places: &'a Places<'a>,
     normals: &'a Normals,
@@ -127,7 +127,7 @@ impl Foliage<'_> {
         F: Flat + Send,
         L: Fn(DVec3) -> [F; 1],
     {
-        if !self.crown.has_independent_leaves() {
+        if !has_independent_leaves(self.crown) {
             return apart::place(self.crown, self.count, self.places, leaf);
         }
         let pieces = self.leaves().map(|index| leaf(index)(self.center(index)));
@@ -158,7 +158,7 @@ impl Foliage<'_> {
             let frame = self.frame(leaf);
             move |center: DVec3| needles.corners(frame, center)
         };
-        if !self.crown.has_independent_leaves() {
+        if !has_independent_leaves(self.crown) {
             return apart::place(self.crown, self.count, self.places, shoot);
         }
         Ok(self.leaves().flat_map_iter(|leaf| shoot(leaf)(self.center(leaf))).collect())

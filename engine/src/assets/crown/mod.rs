@@ -20,9 +20,7 @@ use places::Places;
 
 use super::AssetError;
 use crate::components::{Mesh, MeshPart};
-use crate::document::{
-    self, Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk,
-};
+use crate::document::{CrownShape, GeneratedCrown, LeafProfile, LeafShape};
 use crate::memory;
 
 /// Most leaves, or needles, of one crown.
@@ -40,74 +38,9 @@ const MOST_BRANCHES: u32 = 1_000_000;
 /// Lawful lengths, m: what lies outside was not meant in metres.
 const LENGTHS: RangeInclusive<f64> = 1e-6..=1e5;
 
-/// A generated crown, in the words of the scene language.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CrownSpec {
-    /// Outline; its axis is the vertical through the origin.
-    pub shape: CrownShape,
-    /// Height of the lowest point of the outline, m.
-    pub base_m: f64,
-    /// One-sided area of all leaves, m².
-    pub leaf_area_m2: f64,
-    /// Profile of leaf area over height.
-    pub leaf_profile: LeafProfile,
-    /// Clumps that leaves are gathered in, if any.
-    pub clumps: Option<Clumps>,
-    /// Distribution of leaf inclinations.
-    pub leaf_angle: LeafAngle,
-    /// Shape and size of a leaf.
-    pub leaf: LeafShape,
-    /// False if no leaf intersects another one.
-    pub overlap: bool,
-    /// Minimum distance of the centres of two leaves, m; 0 if there is none.
-    pub min_distance_m: f64,
-    /// Trunk from the ground up, if any.
-    pub trunk: Option<Trunk>,
-    /// Branches from the trunk into the crown, if any.
-    pub branches: Option<Branches>,
-    /// Another number is another crown of the same kind.
-    pub seed: u64,
-}
-
-impl CrownSpec {
-    /// Shape of the crown that a scene describes.
-    #[must_use]
-    pub fn from_document(crown: &document::GeneratedCrown) -> Self {
-        let document::GeneratedCrown {
-            shape,
-            base_m,
-            leaf_area_m2,
-            leaf_profile,
-            clumps,
-            leaf_angle,
-            leaf,
-            overlap,
-            min_distance_m,
-            trunk,
-            branches,
-            seed,
-            ..
-        } = crown;
-        Self {
-            shape: shape.clone(),
-            base_m: *base_m,
-            leaf_area_m2: *leaf_area_m2,
-            leaf_profile: leaf_profile.clone(),
-            clumps: clumps.clone(),
-            leaf_angle: leaf_angle.clone(),
-            leaf: leaf.clone(),
-            overlap: *overlap,
-            min_distance_m: *min_distance_m,
-            trunk: trunk.clone(),
-            branches: branches.clone(),
-            seed: *seed,
-        }
-    }
-
-    /// Returns whether the place of each leaf is independent of all others.
-    fn has_independent_leaves(&self) -> bool {
-        self.overlap && self.min_distance_m == 0.0
-    }
+/// Returns whether the place of each leaf is independent of all others.
+fn has_independent_leaves(crown: &GeneratedCrown) -> bool {
+    crown.overlap && crown.min_distance_m == 0.0
 }
 
 /// A crown as a mesh with the parts `leaf` and `wood`, as far as it has them.
@@ -129,7 +62,7 @@ impl CrownSpec {
 ///
 /// # Errors
 /// [`AssetError::Crown`] for what cannot grow: see [`CrownError`].
-pub fn grow_crown(crown: &CrownSpec) -> Result<Mesh, AssetError> {
+pub fn grow_crown(crown: &GeneratedCrown) -> Result<Mesh, AssetError> {
     let count = check(crown)?;
     let (places, normals) = (Places::new(crown)?, Normals::new(&crown.leaf_angle)?);
     let mut mesh = leaves::grow(crown, count, &places, &normals)?;
@@ -151,7 +84,7 @@ pub fn grow_crown(crown: &CrownSpec) -> Result<Mesh, AssetError> {
 }
 
 /// Number of leaves of a lawful crown.
-fn check(crown: &CrownSpec) -> Result<usize, CrownError> {
+fn check(crown: &GeneratedCrown) -> Result<usize, CrownError> {
     for (what, value) in
         shape::lengths(&crown.shape).into_iter().chain(leaves::lengths(&crown.leaf))
     {
@@ -208,7 +141,7 @@ fn check_length(what: &'static str, value: f64) -> Result<(), CrownError> {
     Err(CrownError::BadLength { what, value, least: *LENGTHS.start(), most: *LENGTHS.end() })
 }
 
-fn check_trunk(crown: &CrownSpec) -> Result<(), CrownError> {
+fn check_trunk(crown: &GeneratedCrown) -> Result<(), CrownError> {
     let Some(trunk) = &crown.trunk else { return Ok(()) };
     check_length("trunk.height_m", trunk.height_m)?;
     check_length("trunk.diameter_m", trunk.diameter_m)?;
@@ -223,7 +156,7 @@ fn check_trunk(crown: &CrownSpec) -> Result<(), CrownError> {
     Ok(())
 }
 
-fn check_branches(crown: &CrownSpec) -> Result<(), CrownError> {
+fn check_branches(crown: &GeneratedCrown) -> Result<(), CrownError> {
     let Some(branches) = &crown.branches else { return Ok(()) };
     let Some(trunk) = &crown.trunk else { return Err(CrownError::BranchesWithoutTrunk) };
     check_length("branches.diameter_m", branches.diameter_m)?;
@@ -240,7 +173,7 @@ fn check_branches(crown: &CrownSpec) -> Result<(), CrownError> {
     Ok(())
 }
 
-fn check_clumps(crown: &CrownSpec) -> Result<(), CrownError> {
+fn check_clumps(crown: &GeneratedCrown) -> Result<(), CrownError> {
     let Some(clumps) = &crown.clumps else { return Ok(()) };
     check_length("clumps.radius_m", clumps.radius_m)?;
     check_length("clumps.height_m", clumps.height_m.unwrap_or(clumps.radius_m))?;

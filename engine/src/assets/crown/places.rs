@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::heights::HeightDistribution;
 use super::stream::{Purpose, Stream};
-use super::{CrownError, CrownSpec, shape, wood};
+use super::{CrownError, GeneratedCrown, shape, wood};
 use crate::document::Clumps;
 
 /// Times that a leaf looks for a place in its clump that is in the crown too.
@@ -12,13 +12,13 @@ const ATTEMPTS: u32 = 64;
 
 /// Middles of leaves, above the crown's base.
 pub(super) struct Places<'a> {
-    crown: &'a CrownSpec,
+    crown: &'a GeneratedCrown,
     heights: Option<HeightDistribution>,
     clumps: Option<(&'a Clumps, Vec<DVec3>)>,
 }
 
 impl<'a> Places<'a> {
-    pub(super) fn new(crown: &'a CrownSpec) -> Result<Self, CrownError> {
+    pub(super) fn new(crown: &'a GeneratedCrown) -> Result<Self, CrownError> {
         let heights = HeightDistribution::new(&crown.shape, &crown.leaf_profile, crown.base_m)?;
         let mut places = Self { crown, heights, clumps: None };
         if let Some(clumps) = &crown.clumps {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{CrownSpec, shape};
+use super::{GeneratedCrown, shape};
 use crate::components::Mesh;
 use crate::document::Trunk;
 
@@ -21,7 +21,7 @@ const REACH: f64 = 0.9;
 const TAPER: f64 = 0.2;
 
 /// Adds trunk and branches of the crown to a mesh.
-pub(super) fn grow(crown: &CrownSpec, mesh: &mut Mesh) {
+pub(super) fn grow(crown: &GeneratedCrown, mesh: &mut Mesh) {
     let Some(trunk) = &crown.trunk else { return };
     let radii = [0.5 * trunk.diameter_m, 0.5 * trunk.tip_diameter_m];
     prism([DVec3::ZERO, DVec3::Z * trunk.height_m], radii, TRUNK_SIDES, mesh);
@@ -47,7 +47,7 @@ pub(super) fn golden_angle() -> f64 {
 }
 
 /// The branches of a crown, from the lowest up.
-pub(super) fn branches(crown: &CrownSpec) -> Vec<Branch> {
+pub(super) fn branches(crown: &GeneratedCrown) -> Vec<Branch> {
     let (Some(trunk), Some(branches)) = (&crown.trunk, &crown.branches) else { return Vec::new() };
     let (sin, cos) = branches.zenith_deg.to_radians().sin_cos();
     let (low, high) = (crown.base_m.max(0.0), trunk.height_m);

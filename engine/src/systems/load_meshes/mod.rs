@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Resources;
 use super::hide_and_select::needed_meshes;
-use crate::assets::{self, AssetError, CrownSpec, Import, Loaded};
+use crate::assets::{self, AssetError, Import, Loaded};
 use crate::components::{Mesh, PartMaterials};
 use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj};
 
@@ -83,7 +83,7 @@ pub(super) fn load(mesh: &document::Prototype, folder: &Path) -> Result<Loaded<M
         document::Prototype::Discs { file, .. } => assets::read_discs(&folder.join(file)),
         document::Prototype::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),
         document::Prototype::Crown(crown) => {
-            let value = assets::grow_crown(&CrownSpec::from_document(crown))?;
+            let value = assets::grow_crown(crown)?;
             Ok(Loaded { value, warnings: Vec::new() })
         }
     }

@@ -150,7 +150,7 @@ fn unlawful_distributions_are_errors() {
         (LeafAngle::Beta { mu: 0.0, nu: 1.0 }, "leaf_angle.mu is 0"),
         (LeafAngle::Beta { mu: 1.0, nu: 1e9 }, "leaf_angle.nu is 1000000000"),
     ] {
-        let crown = CrownSpec { leaf_angle: angle, ..spec(shapes()[0].clone(), DISC) };
+        let crown = GeneratedCrown { leaf_angle: angle, ..spec(shapes()[0].clone(), DISC) };
         let error = grow_crown(&crown).unwrap_err().to_string();
         assert!(error.contains(message), "{error} / {message}");
     }

@@ -8,8 +8,8 @@ const SQUARE: LeafShape = LeafShape::Square { side_m: 0.1 };
 
 const RHOMBUS: LeafShape = LeafShape::Rhombus { length_m: 0.2, width_m: 0.05 };
 
-fn apart(shape: CrownShape, leaf: LeafShape, leaf_area_m2: f64) -> CrownSpec {
-    CrownSpec { leaf_area_m2, overlap: false, ..spec(shape, leaf) }
+fn apart(shape: CrownShape, leaf: LeafShape, leaf_area_m2: f64) -> GeneratedCrown {
+    GeneratedCrown { leaf_area_m2, overlap: false, ..spec(shape, leaf) }
 }
 
 /// Returns whether a segment passes through a disc or a triangle: independent of how crowns decide.
@@ -78,7 +78,7 @@ fn no_leaf_intersects_another_whatever_its_shape() {
     for shape in shapes() {
         let disc = LeafShape::Disc { radius_m: 0.2 };
         let crown = apart(shape.clone(), disc.clone(), 100.0);
-        let overlapping = grow_crown(&CrownSpec { overlap: true, ..crown.clone() }).unwrap();
+        let overlapping = grow_crown(&GeneratedCrown { overlap: true, ..crown.clone() }).unwrap();
         let mesh = grow_crown(&crown).unwrap();
         assert_eq!(mesh.discs.len(), number(&disc, 100.0));
         assert!(meeting(&overlapping.discs, 1, discs_meet) > 100, "{shape:?}");
@@ -91,7 +91,7 @@ fn no_leaf_intersects_another_whatever_its_shape() {
     }
     for leaf in [SQUARE, RHOMBUS] {
         let crown = apart(shapes()[0].clone(), leaf.clone(), 25.0);
-        let overlapping = grow_crown(&CrownSpec { overlap: true, ..crown.clone() }).unwrap();
+        let overlapping = grow_crown(&GeneratedCrown { overlap: true, ..crown.clone() }).unwrap();
         let mesh = grow_crown(&crown).unwrap();
         assert_eq!(quads(&mesh).len(), number(&leaf, 25.0));
         assert!(meeting(&quads(&overlapping), 1, quads_meet) > 20, "{leaf:?}");
@@ -99,7 +99,7 @@ fn no_leaf_intersects_another_whatever_its_shape() {
     }
     let small = CrownShape::Ellipsoid { diameter_m: 2.0, height_m: 2.0 };
     let crown = apart(small, SHOOT, 1.2);
-    let overlapping = grow_crown(&CrownSpec { overlap: true, ..crown.clone() }).unwrap();
+    let overlapping = grow_crown(&GeneratedCrown { overlap: true, ..crown.clone() }).unwrap();
     let mesh = grow_crown(&crown).unwrap();
     assert_eq!(quads(&mesh).len(), 30 * number(&SHOOT, 1.2));
     assert!(meeting(&quads(&overlapping), 30, quads_meet) > 10);
@@ -141,7 +141,7 @@ fn leaves_apart_keep_area_angles_and_density() {
 fn crowns_without_room_are_errors_soon() {
     // 40 m² of discs of 1 m in 50 m³, and a hundred leaves in one small clump.
     let crowded = apart(shapes()[0].clone(), LeafShape::Disc { radius_m: 1.0 }, 400.0);
-    let clumped = CrownSpec {
+    let clumped = GeneratedCrown {
         clumps: Some(Clumps { count: 1, radius_m: 0.05, height_m: None, on_branches: false }),
         ..apart(shapes()[0].clone(), DISC, 4.0)
     };
@@ -166,8 +166,8 @@ fn centers(mesh: &Mesh) -> Vec<DVec3> {
 #[test]
 fn centers_of_leaves_keep_their_minimum_distance() {
     for shape in shapes() {
-        let independent = CrownSpec { leaf_area_m2: 1.0, ..spec(shape.clone(), DISC) };
-        let crown = CrownSpec { min_distance_m: 0.2, ..independent.clone() };
+        let independent = GeneratedCrown { leaf_area_m2: 1.0, ..spec(shape.clone(), DISC) };
+        let crown = GeneratedCrown { min_distance_m: 0.2, ..independent.clone() };
         let (mesh, all) = (grow_crown(&crown).unwrap(), grow_crown(&independent).unwrap());
         assert_eq!(mesh.discs.len(), all.discs.len());
         assert!(nearest(&centers(&all)) < 0.1, "{shape:?}");
@@ -178,15 +178,18 @@ fn centers_of_leaves_keep_their_minimum_distance() {
         assert!(mesh.discs.iter().zip(&all.discs).all(|(a, b)| a.normal == b.normal));
     }
     // Squares of 0.1 m, whose centres are the means of their corners.
-    let crown =
-        CrownSpec { leaf_area_m2: 5.0, min_distance_m: 0.25, ..spec(shapes()[0].clone(), SQUARE) };
+    let crown = GeneratedCrown {
+        leaf_area_m2: 5.0,
+        min_distance_m: 0.25,
+        ..spec(shapes()[0].clone(), SQUARE)
+    };
     let centers: Vec<DVec3> = quads(&grow_crown(&crown).unwrap())
         .iter()
         .map(|[a, b, c, d]| 0.25 * (a + b + c + d).as_dvec3())
         .collect();
     assert!((0.2499..0.26).contains(&nearest(&centers)), "{}", nearest(&centers));
     // With both conditions neither fails.
-    let crown = CrownSpec {
+    let crown = GeneratedCrown {
         min_distance_m: 0.2,
         ..apart(shapes()[0].clone(), LeafShape::Disc { radius_m: 0.2 }, 60.0)
     };
@@ -197,7 +200,7 @@ fn centers_of_leaves_keep_their_minimum_distance() {
 
 #[test]
 fn distances_without_room_are_errors_with_one_that_has_room() {
-    let crown = CrownSpec { min_distance_m: 0.5, ..spec(shapes()[0].clone(), DISC) };
+    let crown = GeneratedCrown { min_distance_m: 0.5, ..spec(shapes()[0].clone(), DISC) };
     let error = grow_crown(&crown).unwrap_err();
     let AssetError::Crown(CrownError::NoRoomAtDistance { placed, count, possible, .. }) = error
     else {
@@ -206,10 +209,10 @@ fn distances_without_room_are_errors_with_one_that_has_room() {
     assert!((100..count).contains(&placed), "{placed} of {count}");
     let text = error.to_string();
     assert!(text.contains("min_distance_m is 0.5, and only"), "{text}");
-    grow_crown(&CrownSpec { min_distance_m: possible, ..crown.clone() }).unwrap();
-    assert!(grow_crown(&CrownSpec { min_distance_m: 1.25 * possible, ..crown }).is_err());
+    grow_crown(&GeneratedCrown { min_distance_m: possible, ..crown.clone() }).unwrap();
+    assert!(grow_crown(&GeneratedCrown { min_distance_m: 1.25 * possible, ..crown }).is_err());
     for bad in [-0.1, f64::NAN, 1e-9] {
-        let crown = CrownSpec { min_distance_m: bad, ..spec(shapes()[0].clone(), DISC) };
+        let crown = GeneratedCrown { min_distance_m: bad, ..spec(shapes()[0].clone(), DISC) };
         assert!(grow_crown(&crown).unwrap_err().to_string().contains("min_distance_m is"), "{bad}");
     }
 }

@@ -16,7 +16,7 @@ fn gaps_of_a_ball_of_spherical_leaves_follow_beer() {
     for direction in [DVec3::Z, DVec3::new(sin, 0.0, cos)] {
         let (right, up) = direction.any_orthonormal_pair();
         let excess = (0..CROWNS).map(|seed| {
-            let mesh = grow_crown(&CrownSpec {
+            let mesh = grow_crown(&GeneratedCrown {
                 seed,
                 base_m: -radius,
                 leaf_area_m2: 40.0,

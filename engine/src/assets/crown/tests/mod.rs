@@ -9,24 +9,12 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 
 use super::*;
+use crate::document::{Branches, Clumps, LeafAngle, Trunk};
 
 const SEED: u64 = 20_261_122;
 
-fn spec(shape: CrownShape, leaf: LeafShape) -> CrownSpec {
-    CrownSpec {
-        shape,
-        base_m: 2.0,
-        leaf_area_m2: 40.0,
-        leaf_profile: LeafProfile::Even,
-        clumps: None,
-        leaf_angle: LeafAngle::Spherical,
-        leaf,
-        overlap: true,
-        min_distance_m: 0.0,
-        trunk: None,
-        branches: None,
-        seed: SEED,
-    }
+fn spec(shape: CrownShape, leaf: LeafShape) -> GeneratedCrown {
+    GeneratedCrown { seed: SEED, ..GeneratedCrown::new(shape, 2.0, 40.0, leaf, "leaf".into()) }
 }
 
 fn shapes() -> [CrownShape; 6] {
@@ -56,8 +44,8 @@ const SHOOT: LeafShape = LeafShape::Shoot {
     needle_angle_deg: 50.0,
 };
 
-fn tree(shape: CrownShape) -> CrownSpec {
-    CrownSpec {
+fn tree(shape: CrownShape) -> GeneratedCrown {
+    GeneratedCrown {
         trunk: Some(Trunk { height_m: 7.0, diameter_m: 0.4, tip_diameter_m: 0.05 }),
         branches: Some(Branches { count: 25, diameter_m: 0.1, zenith_deg: 60.0 }),
         ..spec(shape, DISC)
@@ -186,7 +174,7 @@ fn normals_follow_the_leaf_angle_distribution() {
         (LeafAngle::Plagiophile, None, 0.0, -0.5),
         (LeafAngle::Extremophile, None, 0.0, 0.5),
     ] {
-        let crown = CrownSpec { leaf_angle, ..spec(shapes()[0].clone(), DISC) };
+        let crown = GeneratedCrown { leaf_angle, ..spec(shapes()[0].clone(), DISC) };
         let mesh = grow_crown(&crown).unwrap();
         let normals: Vec<DVec3> = mesh.discs.iter().map(|d| d.normal.as_dvec3()).collect();
         assert!(normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
@@ -224,11 +212,11 @@ fn a_crown_depends_on_its_seed_and_nothing_else() {
     let crown = spec(shapes()[1].clone(), DISC);
     let mesh = grow_crown(&crown).unwrap();
     assert_eq!(mesh, grow_crown(&crown).unwrap());
-    let other = grow_crown(&CrownSpec { seed: SEED + 1, ..crown.clone() }).unwrap();
+    let other = grow_crown(&GeneratedCrown { seed: SEED + 1, ..crown.clone() }).unwrap();
     let same = mesh.discs.iter().zip(&other.discs).filter(|(a, b)| a.center == b.center).count();
     assert_eq!(same, 0);
     // More leaves leave the first ones where they are.
-    let more = grow_crown(&CrownSpec { leaf_area_m2: 50.0, ..crown }).unwrap();
+    let more = grow_crown(&GeneratedCrown { leaf_area_m2: 50.0, ..crown }).unwrap();
     assert!(mesh.discs.iter().zip(&more.discs).all(|(a, b)| a.center == b.center));
 }
 
@@ -292,7 +280,7 @@ fn branches_start_on_the_trunk_and_end_within_the_crown() {
 
 #[test]
 fn winter_trees_have_wood_alone() {
-    let crown = CrownSpec { leaf_area_m2: 0.0, ..tree(shapes()[0].clone()) };
+    let crown = GeneratedCrown { leaf_area_m2: 0.0, ..tree(shapes()[0].clone()) };
     let mesh = grow_crown(&crown).unwrap();
     assert_eq!(mesh.parts.len(), 1);
     assert_eq!(mesh.parts[0].name, "wood");
@@ -300,7 +288,7 @@ fn winter_trees_have_wood_alone() {
     let names: Vec<_> = tree.parts.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["leaf", "wood"]);
     assert_eq!(tree.parts[1].discs.start as usize, tree.discs.len());
-    let bare = CrownSpec { trunk: None, branches: None, ..crown };
+    let bare = GeneratedCrown { trunk: None, branches: None, ..crown };
     assert_eq!(grow_crown(&bare).unwrap().bounds(), None, "neither leaves nor wood");
 }
 
@@ -312,75 +300,45 @@ fn what_cannot_grow_is_an_error() {
     let branches = |count, diameter_m, zenith_deg| Some(Branches { count, diameter_m, zenith_deg });
     let nan = f64::NAN;
     for (crown, fragment) in [
-        (CrownSpec { leaf_area_m2: nan, ..good.clone() }, "leaf_area_m2 is NaN"),
-        (CrownSpec { leaf_area_m2: -1.0, ..good.clone() }, "leaf_area_m2 is -1"),
-        (CrownSpec { leaf_area_m2: f64::INFINITY, ..good.clone() }, "leaf_area_m2 is inf"),
-        (CrownSpec { leaf_area_m2: 1e6, ..good.clone() }, "more than 5e7"),
-        (CrownSpec { leaf_area_m2: 1e-4, ..good.clone() }, "less than half of one leaf"),
-        (CrownSpec { base_m: nan, ..good.clone() }, "base_m is NaN"),
+        (GeneratedCrown { leaf_area_m2: nan, ..good.clone() }, "leaf_area_m2 is NaN"),
+        (GeneratedCrown { leaf_area_m2: -1.0, ..good.clone() }, "leaf_area_m2 is -1"),
+        (GeneratedCrown { leaf_area_m2: f64::INFINITY, ..good.clone() }, "leaf_area_m2 is inf"),
+        (GeneratedCrown { leaf_area_m2: 1e6, ..good.clone() }, "more than 5e7"),
+        (GeneratedCrown { leaf_area_m2: 1e-4, ..good.clone() }, "less than half of one leaf"),
+        (GeneratedCrown { base_m: nan, ..good.clone() }, "base_m is NaN"),
         (
-            CrownSpec { leaf: LeafShape::Disc { radius_m: 0.0 }, ..good.clone() },
+            GeneratedCrown { leaf: LeafShape::Disc { radius_m: 0.0 }, ..good.clone() },
             "leaf.radius_m is 0",
         ),
         (
-            CrownSpec { shape: CrownShape::Box { size_m: (1.0, -2.0, 3.0) }, ..good.clone() },
+            GeneratedCrown { shape: CrownShape::Box { size_m: (1.0, -2.0, 3.0) }, ..good.clone() },
             "shape.size_m.1 is -2",
         ),
-        (CrownSpec { trunk: trunk(8.5, 0.3, 0.1), ..good.clone() }, "above the crown's top at 8 m"),
-        (CrownSpec { trunk: trunk(2.0, 0.3, 0.1), ..good.clone() }, "below the crown's base"),
-        (CrownSpec { trunk: trunk(7.0, 0.3, 0.4), ..good.clone() }, "trunk.tip_diameter_m is 0.4"),
-        (CrownSpec { trunk: trunk(nan, 0.3, 0.1), ..good.clone() }, "trunk.height_m is NaN"),
-        (CrownSpec { trunk: None, ..good.clone() }, "branches need a trunk"),
         (
-            CrownSpec { branches: branches(5, 0.1, 200.0), ..good.clone() },
+            GeneratedCrown { trunk: trunk(8.5, 0.3, 0.1), ..good.clone() },
+            "above the crown's top at 8 m",
+        ),
+        (GeneratedCrown { trunk: trunk(2.0, 0.3, 0.1), ..good.clone() }, "below the crown's base"),
+        (
+            GeneratedCrown { trunk: trunk(7.0, 0.3, 0.4), ..good.clone() },
+            "trunk.tip_diameter_m is 0.4",
+        ),
+        (GeneratedCrown { trunk: trunk(nan, 0.3, 0.1), ..good.clone() }, "trunk.height_m is NaN"),
+        (GeneratedCrown { trunk: None, ..good.clone() }, "branches need a trunk"),
+        (
+            GeneratedCrown { branches: branches(5, 0.1, 200.0), ..good.clone() },
             "branches.zenith_deg is 200",
         ),
         (
-            CrownSpec { branches: branches(u32::MAX, 0.1, 60.0), ..good.clone() },
+            GeneratedCrown { branches: branches(u32::MAX, 0.1, 60.0), ..good.clone() },
             "more than 1000000",
         ),
         (
-            CrownSpec { branches: branches(5, -0.1, 60.0), ..good.clone() },
+            GeneratedCrown { branches: branches(5, -0.1, 60.0), ..good.clone() },
             "branches.diameter_m is -0.1",
         ),
     ] {
         let error = grow_crown(&crown).unwrap_err().to_string();
         assert!(error.contains(fragment), "{error} / {fragment}");
     }
-}
-
-#[test]
-fn the_scene_language_describes_the_same_crown() {
-    let crown = CrownSpec { overlap: false, min_distance_m: 0.05, ..tree(shapes()[2].clone()) };
-    let CrownSpec {
-        shape,
-        base_m,
-        leaf_area_m2,
-        leaf_profile,
-        clumps,
-        leaf_angle,
-        leaf,
-        overlap,
-        min_distance_m,
-        trunk,
-        branches,
-        seed,
-    } = crown.clone();
-    let mesh = document::GeneratedCrown {
-        shape,
-        base_m,
-        leaf_area_m2,
-        leaf_profile,
-        clumps,
-        leaf_angle,
-        leaf,
-        overlap,
-        min_distance_m,
-        leaf_material: "leaf".into(),
-        trunk,
-        branches,
-        wood_material: None,
-        seed,
-    };
-    assert_eq!(CrownSpec::from_document(&mesh), crown);
 }

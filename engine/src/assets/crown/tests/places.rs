@@ -3,7 +3,7 @@
 use super::*;
 
 /// Heights above the ground of all leaf centres.
-fn heights(crown: &CrownSpec) -> Vec<f64> {
+fn heights(crown: &GeneratedCrown) -> Vec<f64> {
     grow_crown(crown).unwrap().discs.iter().map(|disc| f64::from(disc.center.z)).collect()
 }
 
@@ -21,8 +21,8 @@ fn assert_distribution(what: &str, mut sample: Vec<f64>, cdf: impl Fn(f64) -> f6
     assert!(statistic < 2.2, "{what}: {statistic}");
 }
 
-fn with_profile(shape: &CrownShape, leaf_profile: LeafProfile) -> CrownSpec {
-    CrownSpec { leaf_profile, ..spec(shape.clone(), DISC) }
+fn with_profile(shape: &CrownShape, leaf_profile: LeafProfile) -> GeneratedCrown {
+    GeneratedCrown { leaf_profile, ..spec(shape.clone(), DISC) }
 }
 
 #[test]
@@ -57,8 +57,10 @@ fn leaf_area_density_is_per_volume() {
     // What is the same everywhere is what no profile is.
     for shape in shapes() {
         let even = with_profile(&shape, LeafProfile::Density(vec![(0.0, 5.0), (100.0, 5.0)]));
-        let (found, expected) =
-            (heights(&even), heights(&CrownSpec { seed: SEED + 1, ..spec(shape.clone(), DISC) }));
+        let (found, expected) = (
+            heights(&even),
+            heights(&GeneratedCrown { seed: SEED + 1, ..spec(shape.clone(), DISC) }),
+        );
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let spread = |values: &[f64]| {
             let mean = mean(values);
@@ -104,7 +106,7 @@ fn clumps_hold_equal_numbers_of_leaves_within_the_crown() {
     for shape in shapes() {
         for on_branches in [false, true] {
             let clumps = Clumps { count: 37, radius_m: 0.3, height_m: Some(0.2), on_branches };
-            let crown = CrownSpec { clumps: Some(clumps), ..tree(shape.clone()) };
+            let crown = GeneratedCrown { clumps: Some(clumps), ..tree(shape.clone()) };
             let mesh = grow_crown(&crown).unwrap();
             let centers: Vec<DVec3> =
                 mesh.discs.iter().map(|d| d.center.as_dvec3() - 2.0 * DVec3::Z).collect();
@@ -131,7 +133,7 @@ fn clumps_hold_equal_numbers_of_leaves_within_the_crown() {
 #[test]
 fn clumps_on_branches_are_on_branches() {
     let clumps = Clumps { count: 500, radius_m: 1e-6, height_m: None, on_branches: true };
-    let crown = CrownSpec { clumps: Some(clumps), ..tree(shapes()[0].clone()) };
+    let crown = GeneratedCrown { clumps: Some(clumps), ..tree(shapes()[0].clone()) };
     let branches = wood::branches(&crown);
     for disc in &grow_crown(&crown).unwrap().discs {
         let center = disc.center.as_dvec3();
@@ -147,7 +149,7 @@ fn clumps_on_branches_are_on_branches() {
 
 #[test]
 fn needles_stand_around_their_twig_at_their_angle() {
-    let crown = CrownSpec { leaf_area_m2: 0.5, ..spec(shapes()[0].clone(), SHOOT) };
+    let crown = GeneratedCrown { leaf_area_m2: 0.5, ..spec(shapes()[0].clone(), SHOOT) };
     let mesh = grow_crown(&crown).unwrap();
     let middle = |a: Vec3, b: Vec3| 0.5 * (a.as_dvec3() + b.as_dvec3());
     for shoot in mesh.vertices.chunks(4 * 30) {
@@ -173,7 +175,7 @@ fn needles_stand_around_their_twig_at_their_angle() {
 fn profiles_and_clumps_that_cannot_be_are_errors() {
     let good = tree(shapes()[0].clone());
     let area = |points: &[(f64, f64)]| LeafProfile::Area(points.to_vec());
-    let with = |leaf_profile| CrownSpec { leaf_profile, ..good.clone() };
+    let with = |leaf_profile| GeneratedCrown { leaf_profile, ..good.clone() };
     let clumps = |count, radius_m, on_branches| {
         Some(Clumps { count, radius_m, height_m: None, on_branches })
     };
@@ -198,22 +200,34 @@ fn profiles_and_clumps_that_cannot_be_are_errors() {
         (with(area(&[(4.0, 1.0), (3.0, 1.0)])), "leaf_profile[1] is lower"),
         (with(area(&[(8.0, 1.0), (9.0, 1.0)])), "no leaves within the crown, from 2 to 8 m"),
         (with(area(&[(3.0, 0.0), (5.0, 0.0)])), "no leaves within the crown"),
-        (CrownSpec { clumps: clumps(0, 0.1, false), ..good.clone() }, "clumps.count is 0"),
-        (CrownSpec { clumps: clumps(u32::MAX, 0.1, false), ..good.clone() }, "clumps.count is"),
-        (CrownSpec { clumps: clumps(5, -0.1, false), ..good.clone() }, "clumps.radius_m is -0.1"),
+        (GeneratedCrown { clumps: clumps(0, 0.1, false), ..good.clone() }, "clumps.count is 0"),
         (
-            CrownSpec { clumps: clumps(5, 0.1, true), branches: None, ..good.clone() },
+            GeneratedCrown { clumps: clumps(u32::MAX, 0.1, false), ..good.clone() },
+            "clumps.count is",
+        ),
+        (
+            GeneratedCrown { clumps: clumps(5, -0.1, false), ..good.clone() },
+            "clumps.radius_m is -0.1",
+        ),
+        (
+            GeneratedCrown { clumps: clumps(5, 0.1, true), branches: None, ..good.clone() },
             "needs branches",
         ),
         (
-            CrownSpec { clumps: clumps(5, 0.1, true), ..with(area(&[(3.0, 1.0), (4.0, 1.0)])) },
+            GeneratedCrown {
+                clumps: clumps(5, 0.1, true),
+                ..with(area(&[(3.0, 1.0), (4.0, 1.0)]))
+            },
             "exclude each other",
         ),
-        (CrownSpec { leaf: shoot(0, 50.0), ..good.clone() }, "leaf.needles is 0"),
-        (CrownSpec { leaf: shoot(9, 91.0), ..good.clone() }, "needle_angle_deg is 91"),
-        (CrownSpec { leaf: shoot(99, 50.0), leaf_area_m2: 1e3, ..good.clone() }, "more than 5e7"),
+        (GeneratedCrown { leaf: shoot(0, 50.0), ..good.clone() }, "leaf.needles is 0"),
+        (GeneratedCrown { leaf: shoot(9, 91.0), ..good.clone() }, "needle_angle_deg is 91"),
         (
-            CrownSpec { shape: widest, trunk: None, branches: None, ..good.clone() },
+            GeneratedCrown { leaf: shoot(99, 50.0), leaf_area_m2: 1e3, ..good.clone() },
+            "more than 5e7",
+        ),
+        (
+            GeneratedCrown { shape: widest, trunk: None, branches: None, ..good.clone() },
             "widest_m is 6.5",
         ),
     ] {
