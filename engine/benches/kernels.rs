@@ -7,28 +7,16 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DMat3, DVec2, DVec3};
 use sunfleck::accel::{Boundary, Domain, InstanceInput, MeshInput, Ray, Scene};
-use sunfleck::assets::{GeneratedCrown, grow_crown};
+use sunfleck::assets::grow_crown;
 use sunfleck::components::Mesh;
-use sunfleck::document::{CrownShape, LeafAngle, LeafProfile, LeafShape};
+use sunfleck::document::{CrownShape, GeneratedCrown, LeafShape};
 use sunfleck::sampling::{Key, sobol4};
 
 /// An ellipsoid of leaves, 4 m wide and 6 m high.
 fn crown(leaves: f64, leaf: LeafShape, leaf_area: f64) -> Mesh {
-    grow_crown(&GeneratedCrown {
-        shape: CrownShape::Ellipsoid { diameter_m: 4.0, height_m: 6.0 },
-        base_m: 1.0,
-        leaf_area_m2: leaves * leaf_area,
-        leaf_profile: LeafProfile::Even,
-        clumps: None,
-        leaf_angle: LeafAngle::Spherical,
-        leaf,
-        overlap: true,
-        min_distance_m: 0.0,
-        trunk: None,
-        branches: None,
-        seed: 1,
-    })
-    .expect("a lawful crown")
+    let shape = CrownShape::Ellipsoid { diameter_m: 4.0, height_m: 6.0 };
+    grow_crown(&GeneratedCrown::new(shape, 1.0, leaves * leaf_area, leaf, "leaf".into()))
+        .expect("a lawful crown")
 }
 
 fn scene(mesh: &Mesh) -> Scene {
