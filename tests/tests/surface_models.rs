@@ -138,6 +138,41 @@ fn systems_agree_on_models_that_depend_on_directions() {
     }
 }
 
+/// *Scene*: a wall of coated leaf over black ground, lit from the east. *Expected*: photons as quanta leave it to the
+/// west in the directions that packets leave it in. The coating holds light back at grazing angles, so the cone
+/// near the wall receives less than Lambert's law says.
+#[test]
+fn light_through_a_coated_leaf_leaves_by_its_bsdf() {
+    let cones = "per_m2: 2e5, measure: [BrfCones([(15.0, 270.0, 20.0), (75.0, 270.0, 20.0)])]";
+    let text = format!(
+        r#"Scene(
+    format: 1,
+    bands: [(name: "a", center_nm: 865.0)],
+    materials: {{
+        "black": Lambertian(reflectance: Constant(0.0)),
+        "leaf": Leaf(reflectance: Constant(0.0), transmittance: Constant(0.9),
+            coating: Some((refractive_index: 2.0, roughness: 0.3))),
+    }},
+    meshes: {{ "wall": Faces(faces_m: [[(0.0, -2.0, 0.5), (0.0, 2.0, 0.5), (0.0, 2.0, 4.5), (0.0, -2.0, 4.5)]],
+        material: "leaf") }},
+    terrain: Plane(size_m: (5.0, 5.0), material: "black"),
+    instances: [List(of: "wall", at_m: [(2.5, 2.5, 0.0)])],
+    sun: (zenith_deg: 60.0, azimuth_deg: 90.0, irradiance: Constant(1.0)),
+    boundary: Isolated,
+    sensors: {{ "packets": Photons({cones}), "photons": Photons(system: Analog, {cones}) }},
+)"#
+    );
+    let report = measure(&text, Path::new("."), &Options::default());
+    for cone in 0..2 {
+        let [packets, photons] = ["packets", "photons"]
+            .map(|sensor| Estimate::of(product(&report, sensor, "brf_cones"), cone));
+        assert!(packets.error < 0.03 * packets.value, "cone {cone}: {packets:?}");
+        assert!(photons.error < 0.03 * photons.value, "cone {cone}: {photons:?}");
+        let z = packets.z_against(photons);
+        assert!(z.abs() < 4.0, "cone {cone}: {packets:?}, {photons:?}, z = {z:.2}");
+    }
+}
+
 /// *Scene*: bare ground that emits into a cold sky. *Expected*: radiance `(1 - DHR(θ)) B(T)` by Kirchhoff's law, which
 /// differs by direction, from paths and from packets alike.
 #[test]

@@ -4,7 +4,7 @@ use super::counters::{Event, Visited};
 use super::packet::{Packet, fly, report};
 use crate::accel::Ray;
 use crate::sampling::Sampler;
-use crate::scattering::{Importance, Lobe, LobeSpectrum, SceneSpectra};
+use crate::scattering::{Importance, Lobe, SceneSpectra};
 
 /// Order after which a photon ends where nothing is absorbed and nothing escapes; the rest of its power counts as
 /// removed by the limit of orders.
@@ -48,8 +48,8 @@ impl Packet<'_> {
     /// A photon is reflected at each surface with the probability `ρ`, transmitted with `τ`, and absorbed
     /// otherwise: as a whole, without weights, expected values or roulette.
     ///
-    /// Directions of Lambertian surfaces are sampled exactly: the weight of a sample, `f |cos θ| / pdf` over
-    /// `ρ + τ`, is 1. Photons carry the weight of a sample of other models.
+    /// Directions of diffuse surfaces are sampled exactly: the weight of a sample, `f |cos θ| / pdf` over
+    /// `ρ + τ`, is 1. Photons carry the weight of a sample of other models, whose mean is 1.
     fn follow_in(
         &mut self,
         band: usize,
@@ -86,7 +86,7 @@ impl Packet<'_> {
             };
             *rays += report(stage, counters, tally, &event);
             let Some(sample) = sample.filter(|_| !is_last) else { return };
-            if !matches!(sample.weight.spectrum, LobeSpectrum::Table(_)) {
+            if !surface.is_diffuse() {
                 let weight = stage.models.value(&sample.weight, band) / scattered;
                 tally.scatter(Lobe::ONE.scaled(weight));
             }
