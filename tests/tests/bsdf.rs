@@ -206,7 +206,7 @@ fn every_model_samples_its_density() {
             for index in 0..n {
                 // Events from the fifth on are plain random numbers, as the test assumes.
                 let mut sampler = Sampler::new(Key::new(9), index);
-                let [a, b, c, _] = (0..5).map(|_| sampler.next_event()).last().expect("five");
+                let [a, b, c, _] = (0..5).map(|_| sampler.next_4d()).last().expect("five");
                 let Some(sample) = at.sample_f(importance, [a, b, c]) else {
                     masked += 1.0;
                     continue;

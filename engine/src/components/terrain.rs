@@ -72,7 +72,7 @@ impl TerrainPatch {
     pub fn mean_height(&self) -> f64 {
         let lowest = self.lowest();
         let (mut volume, mut area) = (0.0, 0.0);
-        for (horizontal, height) in self.ground() {
+        for (horizontal, height) in self.ground_triangles() {
             // Above the lowest ground, so that a level plain keeps its height to the last bit.
             volume += horizontal * (self.base + self.unit * height - lowest);
             area += horizontal;
@@ -83,12 +83,12 @@ impl TerrainPatch {
     /// Returns whether the ground leaves out some of the rectangle, by more than the rounding of its corners.
     #[must_use]
     pub fn has_holes(&self) -> bool {
-        self.ground().map(|(horizontal, _)| horizontal).sum::<f64>() < 1.0 - 1e-6
+        self.ground_triangles().map(|(horizontal, _)| horizontal).sum::<f64>() < 1.0 - 1e-6
     }
 
     /// Horizontal area, as a fraction of the rectangle, and mean height in the mesh's units of each
     /// triangle of the ground.
-    fn ground(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    fn ground_triangles(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let triangles = self.mesh.triangles.iter().take(self.first_cut as usize);
         triangles.map(|triangle| {
             let [a, b, c] = triangle.map(|v| self.mesh.vertices[v as usize].as_dvec3());

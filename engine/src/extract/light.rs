@@ -1,5 +1,3 @@
-use std::f64::consts::PI;
-
 use glam::{DVec2, DVec3};
 use hecs::World;
 
@@ -75,7 +73,7 @@ impl Beam {
     /// a surface with the normal `n` the irradiance `E |n·ω| / ω_z`.
     pub fn towards(&self, sampler: &mut Sampler) -> DVec3 {
         self.disc.as_ref().map_or(self.direction, |disc| {
-            let [u, v, ..] = sampler.next_event();
+            let [u, v, ..] = sampler.next_4d();
             disc.direction(u, v)
         })
     }
@@ -123,7 +121,4 @@ impl Light {
             irradiance,
         }
     }
-
-    /// Radiance of the sky over its share of the irradiance, sr⁻¹.
-    pub const RADIANCE_OF_SHARE: f64 = 1.0 / PI;
 }

@@ -84,7 +84,8 @@ pub fn places(
         Amount::Map(cells) => {
             let distance = match *rule {
                 Rule::PoissonDisc { min_distance_m } => min_distance_m,
-                _ => 0.0,
+                // `document::check` refuses a density map for a grid.
+                Rule::Uniform | Rule::Grid { .. } => 0.0,
             };
             return map::map(cells, region, tile, distance, stream);
         }

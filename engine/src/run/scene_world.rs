@@ -15,9 +15,9 @@ pub struct SceneWorld {
     pub world: World,
     /// Settings, entities by name, and messages.
     pub resources: Resources,
-    /// Trees of the ray engine; `None` until they are built, and after a change of the geometry.
-    pub(super) trees: Option<Arc<accel::Scene>>,
-    /// Number of times that the trees were built.
+    /// Ray engine of the scene; `None` until it is built, and after a change of the geometry.
+    pub(super) geometry: Option<Arc<accel::Scene>>,
+    /// Number of times that the ray engine was built.
     pub(super) builds: usize,
     /// Names of the systems that the last change made run.
     pub ran: Vec<&'static str>,
@@ -28,7 +28,7 @@ impl SceneWorld {
     #[must_use]
     pub fn new(folder: &Path) -> Self {
         let (world, resources) = (World::new(), Resources::new(folder));
-        Self { world, resources, trees: None, builds: 0, ran: Vec::new() }
+        Self { world, resources, geometry: None, builds: 0, ran: Vec::new() }
     }
 
     /// World of a scene.
@@ -59,7 +59,7 @@ impl SceneWorld {
         let changes = spawn(scene, &mut self.world, &mut self.resources);
         let run = run_schedule(&mut self.world, &mut self.resources, changes);
         if run.changes.intersects(Changes::GEOMETRY) {
-            self.trees = None;
+            self.geometry = None;
         }
         self.ran = run.ran;
         let diagnostics = self.diagnostics();

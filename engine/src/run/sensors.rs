@@ -14,8 +14,8 @@ use crate::extract::Stage;
 use crate::products::{self, Context, Extent, Product, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
-    Camera, ComponentsFilm, DirectionsFilm, DirectionsSettings, ImageFilm, ImageTiles,
-    LightSettings, LightSource, RANDOMISATIONS, ReferencePlane, Schedule, image_components_film,
+    Camera, DirectionsFilm, DirectionsSettings, FirstSurfaceFilm, ImageFilm, ImageTiles,
+    LightSettings, LightSource, RANDOMISATIONS, ReferencePlane, Schedule, image_first_surface_film,
 };
 
 /// Scene that sensors measure, and the data that products are made with.
@@ -214,7 +214,7 @@ fn image<'a>(
     let emitted = needs_emission(&sensor.measure, context)
         .then(|| film(LightSource::Emitted, false, key.path("emission")));
     let components = (!sensor.measure.iter().all(ImageMeasure::is_light))
-        .then(|| image_components_film(stage, &camera, key.path("components")));
+        .then(|| image_first_surface_film(stage, &camera, key.path("components")));
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
     let run = |pace| ImageRun { sensor, scene, reflected, emitted, components, pace };
     if sensor.system == System::Forward {
@@ -282,7 +282,7 @@ struct DirectionsRun<'a> {
     context: &'a Context,
     reflected: Option<DirectionsFilm<'a>>,
     emitted: Option<DirectionsFilm<'a>>,
-    components: Option<ComponentsFilm<'a>>,
+    components: Option<FirstSurfaceFilm<'a>>,
 }
 
 fn directions<'a>(
@@ -305,7 +305,7 @@ fn directions<'a>(
     let emitted = needs_emission(&sensor.measure, context)
         .then(|| film(LightSource::Emitted, false, key.path("emission")));
     let components = (!sensor.measure.iter().all(ImageMeasure::is_light))
-        .then(|| ComponentsFilm::new(stage, views, plane, key.path("components")));
+        .then(|| FirstSurfaceFilm::new(stage, views, plane, key.path("components")));
     let until = at_quality(&sensor.until, quality);
     let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
     let measurement = Box::new(DirectionsRun { sensor, context, reflected, emitted, components });

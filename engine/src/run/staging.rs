@@ -16,7 +16,7 @@ use crate::systems::{Resources, place_of_instance};
 /// # Errors
 /// If the trees of the ray engine take more memory than there is, or it refuses a mesh or an instance.
 pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result<Stage, Failure> {
-    let built = world.trees.clone();
+    let built = world.geometry.clone();
     if built.is_none() {
         if let Some(problem) = check_memory(&world.resources.extents, free) {
             return Err(Failure::Problems(vec![problem]));
@@ -25,7 +25,7 @@ pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result
     }
     let stage = extract(&world.world, &setting(scene), built)
         .map_err(|error| Failure::Problems(vec![located(&error, world)]))?;
-    world.trees = Some(stage.geometry.clone());
+    world.geometry = Some(stage.geometry.clone());
     Ok(stage)
 }
 

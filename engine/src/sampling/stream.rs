@@ -58,33 +58,34 @@ impl Key {
 pub struct Sampler {
     randomisation: Key,
     index: u64,
-    event: u32,
+    /// Number of draws so far.
+    draw: u32,
 }
 
-/// Events of a path that draw from Sobol' points. Later ones depend on so many earlier draws that
-/// stratification no longer lowers their variance.
-const SOBOL_EVENTS: u32 = 4;
+/// Draws of a path that take Sobol' points: the position in the pixel, a point of the solar disc and each scattering
+/// event are one draw each. Later ones depend on so many earlier ones that stratification no longer lowers their
+/// variance.
+const SOBOL_DRAWS: u32 = 4;
 
 impl Sampler {
     /// Sampler of path `index` of a randomisation.
     #[must_use]
     pub const fn new(randomisation: Key, index: u64) -> Self {
-        Self { randomisation, index, event: 0 }
+        Self { randomisation, index, draw: 0 }
     }
 
-    /// A number beside those of the next event, uniform in (0, 1), for what is decided about that
-    /// event and not about the path.
+    /// A number beside those of the next draw, uniform in (0, 1), for decisions that do not change the path.
     #[must_use]
     pub fn aside(&self) -> f64 {
-        self.randomisation.index(!u64::from(self.event)).uniform(self.index)
+        self.randomisation.index(!u64::from(self.draw)).uniform(self.index)
     }
 
-    /// Numbers of the path's next event, each uniform in (0, 1).
-    pub fn next_event(&mut self) -> [f64; 4] {
-        let event = self.event;
-        self.event += 1;
-        let stream = self.randomisation.index(event.into());
-        if event < SOBOL_EVENTS {
+    /// The next four numbers of the path, each uniform in (0, 1).
+    pub fn next_4d(&mut self) -> [f64; 4] {
+        let draw = self.draw;
+        self.draw += 1;
+        let stream = self.randomisation.index(draw.into());
+        if draw < SOBOL_DRAWS {
             // Indices beyond 2³² start a new scrambling.
             let seed = stream.bits(self.index >> 32);
             sobol4(self.index as u32, seed)
@@ -117,9 +118,9 @@ mod tests {
             let mut sums = [0.0; 4];
             for index in 0..n {
                 let mut sampler = Sampler::new(Key::new(7), index);
-                let mut draw = sampler.next_event();
+                let mut draw = sampler.next_4d();
                 for _ in 0..event {
-                    draw = sampler.next_event();
+                    draw = sampler.next_4d();
                 }
                 for (sum, u) in sums.iter_mut().zip(draw) {
                     assert!(u > 0.0 && u < 1.0);

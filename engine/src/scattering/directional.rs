@@ -11,8 +11,12 @@ use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SceneSpectra, S
 use crate::components::DirectionalOptics;
 use crate::sampling::cosine_direction;
 
-/// Reflection in one band, alike on both sides of a surface, `f(wi, wo) = f(wo, wi)`.
+/// Reflection in one band of an opaque surface: isotropic, alike on both sides, reciprocal, `f(wi, wo) = f(wo, wi)`, and
+/// without narrow peaks beside the hot spot, as directions are sampled by the cosine.
 pub trait BandModel: Copy + Sync {
+    /// Cosines of zenith angles at which `f` has a kink: panels of the integration of its fractions end there.
+    const KINKS: &'static [f64] = &[];
+
     /// `π f`, at least 0.
     fn f(&self, angles: &Angles) -> f32;
 }
@@ -173,11 +177,12 @@ const GAUSS: [(f64, f64); 8] = [
 /// Directional-hemispherical reflectance `∫ f cos θi dωi` for light from a zenith angle.
 ///
 /// Panels of a Gauss-Legendre rule over `cos² θi` meet at the angle of the light, where models have their hot
-/// spot, and where RPV's cosines are limited; azimuths are denser towards the hot spot.
-fn dhr(band: &impl BandModel, cosine: f64) -> f64 {
+/// spot, and at the kinks of the model; azimuths are denser towards the hot spot.
+fn dhr<B: BandModel>(band: &B, cosine: f64) -> f64 {
     let cosine = cosine.max(1e-6);
     let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
-    let mut borders = [0.0, super::rpv::LEAST_COSINE.powi(2), cosine * cosine, 1.0];
+    let kinks = B::KINKS.iter().map(|kink| kink * kink);
+    let mut borders: Vec<f64> = [0.0, cosine * cosine, 1.0].into_iter().chain(kinks).collect();
     borders.sort_by(f64::total_cmp);
     let mut sum = 0.0;
     for panel in borders.windows(2) {

@@ -29,7 +29,7 @@ pub enum LobeSpectrum {
     Table(SpectrumId),
     /// `Σ c S` of two spectra of the scene.
     Sum([(SpectrumId, f32); 2]),
-    /// `π f` of the model of a surface for a pair of directions.
+    /// `π f` of the model of a surface for a pair of directions; of models that `Bsdf::evaluate` knows alone.
     Model(SurfaceId, Angles),
 }
 

@@ -2,7 +2,7 @@
 //! one file a model.
 //!
 //! `wo` points to where a path came from and `wi` to where it continues; both are unit vectors that point
-//! away from the surface. BSDF values exclude the cosine. A path carries all bands: values are [`Lobe`]s,
+//! away from the surface. Every `f` here returns `π f`, a reflectance factor, without the cosine. A path carries all bands: values are [`Lobe`]s,
 //! which are evaluated in blocks of lanes: bands, padded with zeros to whole groups of [`LANES`].
 
 mod bilambertian;
@@ -173,28 +173,13 @@ impl<'m> Interaction<'m> {
     pub fn sample_f(&self, importance: Importance<'_>, u: [f64; 3]) -> Option<BsdfSample> {
         match self.bsdf() {
             Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
-            model => self.sample_directional(model, importance, u),
-        }
-    }
-
-    /// Samples a model that is not diffuse: out of line, so that the result for diffuse surfaces stays in
-    /// registers.
-    #[cold]
-    #[inline(never)]
-    fn sample_directional(
-        &self,
-        model: &Bsdf,
-        importance: Importance<'_>,
-        u: [f64; 3],
-    ) -> Option<BsdfSample> {
-        match model {
-            Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
             Bsdf::GlossyLeaf(model) => model.sample_f(self, importance, u),
             Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::sample_f(self, u),
         }
     }
 
-    /// Density of [`Self::sample_f`], sr⁻¹.
+    /// Density of [`Self::sample_f`], sr⁻¹. Tests hold it against the samples; no estimator needs it, as none combines
+    /// two ways to sample a direction.
     #[must_use]
     pub fn pdf(&self, importance: Importance<'_>, wi: DVec3) -> f64 {
         match self.bsdf() {
@@ -240,7 +225,10 @@ impl<'m> Interaction<'m> {
     /// Returns whether `f` and the fractions depend on directions by their sides of the surface alone.
     #[must_use]
     pub fn is_diffuse(&self) -> bool {
-        matches!(self.bsdf(), Bsdf::BiLambertian(_))
+        match self.bsdf() {
+            Bsdf::BiLambertian(_) => true,
+            Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) => false,
+        }
     }
 
     /// Returns whether a direction lies on the side of the surface that `wo` lies on.

@@ -126,6 +126,11 @@ fn parameters(
     (found.len() == spectra.len()).then_some(found)
 }
 
+/// Parameter of a material in a band.
+fn parameter(values: &BTreeMap<&'static str, Vec<f64>>, key: &str, band: usize) -> f32 {
+    values.get(key).expect("`Material::spectra` lists every parameter of a model")[band] as f32
+}
+
 fn rpv(
     surface: &Rpv,
     material: &Material,
@@ -135,7 +140,7 @@ fn rpv(
     let values = parameters(material, path, resources)?;
     let rho_c = if surface.rho_c.is_some() { "rho_c" } else { "rho0" };
     let band = |band: usize| {
-        let value = |key: &str| values[key][band] as f32;
+        let value = |key: &str| parameter(&values, key, band);
         RpvParameters {
             rho0: value("rho0"),
             k: value("k"),
@@ -153,7 +158,7 @@ fn soilspect(
 ) -> Option<Vec<SoilspectParameters>> {
     let values = parameters(material, path, resources)?;
     let band = |band: usize| {
-        let value = |key: &str| values[key][band] as f32;
+        let value = |key: &str| parameter(&values, key, band);
         SoilspectParameters {
             albedo: value("albedo"),
             roughness: value("roughness"),

@@ -30,18 +30,22 @@ use super::warn_seams::warn_seams;
 use super::warn_sensor_heights::warn_sensor_heights;
 use super::{Changes, Resources};
 
-/// A system with the kinds that it reads, a change of which makes it run, and the kinds that it writes.
-struct System {
+/// A system with the kinds whose change makes it run, and the kinds that it marks as changed.
+struct ScheduledSystem {
     name: &'static str,
     run: fn(&mut World, &mut Resources),
     reads: Changes,
     writes: Changes,
 }
 
-/// One line a system: `name: kinds that it reads => kinds that it writes`.
+/// One line per system: `name: kinds that make it run => kinds that it marks as changed`.
+///
+/// Kinds that follow from another are left out on both sides: [`MeshBounds`](crate::components::MeshBounds) change
+/// with `LOADED_MESHES`, so that a system that reads them names those and stands below `measure_bounds`. All components
+/// that a system reads and writes are in its own documentation.
 macro_rules! schedule {
     ($($name:ident: $($reads:ident)|+ $(=> $($writes:ident)|+)?;)+) => {
-        &[$(System {
+        &[$(ScheduledSystem {
             name: stringify!($name),
             run: $name,
             reads: Changes::NONE$(.or(Changes::$reads))+,
@@ -53,7 +57,7 @@ macro_rules! schedule {
 /// All systems in the order in which they run. Messages are shown in this order.
 ///
 /// `hide_and_select` and `find_used_materials` mark what they write themselves, and only if it differs.
-const SCHEDULE: &[System] = schedule! {
+const SCHEDULE: &[ScheduledSystem] = schedule! {
     // Ground.
     resolve_crs: FRAME => CRS;
     triangulate_terrain: TERRAIN | FRAME | CRS | BOUNDARY | MATERIAL_NAMES => GROUND;

@@ -7,11 +7,14 @@
 //! | `photons` | packets from the light, and the counters that they add to |
 //! | `camera` | points of an image to rays |
 //! | `films` | images and sums with their errors, and how samples are scheduled |
+//! | `sensors` | the system and the film of each kind of sensor |
 //! | `roulette.rs`, `plane.rs` | Russian roulette; the plane that reflected light leaves through |
+//! | `scattering_order.rs`, `band_blocks.rs` | parts of the light by order; bands that are evaluated at a time |
 //!
 //! Reflected light is computed for a total horizontal irradiance of 1 in each band (see
 //! [`Light`](crate::extract::Light)), and products put the units back; emitted light is absolute.
 
+mod band_blocks;
 mod camera;
 mod films;
 mod paths;
@@ -19,26 +22,30 @@ mod photons;
 mod plane;
 mod reference;
 mod roulette;
+mod scattering_order;
+mod sensors;
 
 pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,
 };
-pub use films::{
-    ComponentsFilm, DirectionsFilm, DirectionsOutcome, DirectionsSettings, Film, ImageFilm,
-    ImageOutcome, ImageTiles, LightSettings, Partition, ReplicateSums, Schedule, ViewsOutcome,
-    image_components_film, path_rays,
-};
+pub use films::{Film, ImageOutcome, ImageTiles, Partition, ReplicateSums, Schedule};
 pub use paths::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS, TracedRay};
 pub use photons::{
     AbsorbedCounter, AlbedoCounter, Cell, CellCounter, ConeCounter, Counter, EnergyCounter,
     FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightBeside, OrderCounter,
-    PacketOptions, PhotonKind, ScatteringOrder, Tally, ViewCounter, photon_film, spectra,
+    PacketOptions, PhotonKind, Tally, ViewCounter, photon_film,
 };
 pub use plane::ReferencePlane;
 pub use roulette::RouletteThreshold;
+pub use scattering_order::{ScatteringOrder, spectrum_count};
+pub use sensors::{
+    DirectionsFilm, DirectionsOutcome, DirectionsSettings, FirstSurfaceFilm, ImageFilm,
+    LightSettings, ViewsOutcome, image_first_surface_film, path_rays,
+};
 
-/// Number of independent randomisations of every measurement that has the samples for them. Their spread
-/// gives the standard error; with 32 the error of that error is 13 %.
+/// Number of independent randomisations of sums over views and packets. Their spread gives the standard error; with
+/// 32 the error of that error is 13 %. Images deal the samples of their pixels, which have two randomisations each, to
+/// as many rows (`films/image_tiles.rs`).
 pub const RANDOMISATIONS: u32 = 32;
 
 /// Origin of light, and the unit of its radiance.

@@ -2,13 +2,15 @@
 //! evaluated later. Read it first; [`System::Reference`](crate::components::System::Reference) runs it, and
 //! tests compare the other systems with it.
 
+use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use glam::DVec3;
 
-use super::paths::{Block, PathTracer, RayQueue, RayResults};
+use super::band_blocks::Block;
+use super::paths::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
-use crate::extract::{Light, Stage};
+use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
 use crate::scattering::{Importance, Lobe};
 
@@ -50,13 +52,13 @@ fn radiance(
                     let (share, cosine) = (spectrum(sun.share), surface_hit.normal.dot(wi).abs());
                     add(&mut radiance, &throughput, |band| {
                         let perpendicular = f64::from(share[band]) / wi.z;
-                        value(stage, &f, band) * Light::RADIANCE_OF_SHARE * perpendicular * cosine
+                        value(stage, &f, band) * FRAC_1_PI * perpendicular * cosine
                     });
                 }
             }
         }
         // The path continues in a direction sampled from the BSDF: T ← T f |cos θ| / pdf.
-        let [lobe, u, v, survival] = sampler.next_event();
+        let [lobe, u, v, survival] = sampler.next_4d();
         let weights: Vec<f32> = throughput.iter().map(|&weight: &f64| weight as f32).collect();
         let importance = crate::scattering::representatives_of(&weights);
         let sample = surface.sample_f(Importance::Representatives(&importance), [lobe, u, v]);
@@ -92,7 +94,7 @@ const MAX_SURVIVAL: f64 = 0.95;
 fn add_sky(stage: &Stage, radiance: &mut [f64], throughput: &[f64]) {
     if let Some(sky) = &stage.light.dome {
         let share = stage.models.spectra.lanes(sky.share);
-        add(radiance, throughput, |band| f64::from(share[band]) * Light::RADIANCE_OF_SHARE);
+        add(radiance, throughput, |band| f64::from(share[band]) * FRAC_1_PI);
     }
 }
 

@@ -4,6 +4,7 @@ mod crown;
 mod ground;
 mod instances;
 mod light;
+mod material;
 mod mesh;
 mod param;
 mod program;
@@ -25,6 +26,7 @@ pub use instances::{
     Rule, Scatter, SpeciesMeshes, Stems, TableCoordinates, meant_column,
 };
 pub use light::{Sky, Spa, Sun, SunPosition};
+pub use material::{Coating, Lambertian, Leaf, Material, Rpv, Soilspect, SurfaceQuantity};
 pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Prototype};
 pub use param::Param;
 pub use program::{Include, Sweep};
@@ -34,10 +36,7 @@ pub use sensor::{
     Orthographic, Per, Perspective, PhotonMeasure, Photons, Picture, Sensor, System, Views,
     VirtualPlane,
 };
-pub use spectrum::{
-    Coating, Lambertian, Leaf, Material, Prospect, Rpv, Soilspect, Spectrum, SurfaceQuantity,
-    TabulatedSpectrum, ValueUnit, WavelengthUnit,
-};
+pub use spectrum::{Prospect, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
 pub use until::{Ends, StopCriterion};

@@ -1,6 +1,6 @@
 //! Emission of surfaces and of the sky.
 
-use super::{Band, ImageMeasure, Material, PhotonMeasure, Scene, Sensor, Spectrum};
+use super::{Band, ImageMeasure, PhotonMeasure, Scene, Sensor, Spectrum};
 
 /// Beyond this wavelength surfaces on Earth radiate more than they reflect of the sun, nm.
 const THERMAL_NM: f64 = 3000.0;
@@ -89,19 +89,6 @@ impl Band {
     #[must_use]
     pub fn reflects(&self) -> bool {
         matches!(self.source, BandSource::Both) || !self.emits()
-    }
-}
-
-impl Material {
-    /// Its temperature, if it was given.
-    #[must_use]
-    pub const fn temperature(&self) -> Option<&Temperature> {
-        match self {
-            Self::Lambertian(surface) => surface.temperature.as_ref(),
-            Self::Leaf(leaf) => leaf.temperature.as_ref(),
-            Self::Rpv(surface) => surface.temperature.as_ref(),
-            Self::Soilspect(soil) => soil.temperature.as_ref(),
-        }
     }
 }
 

@@ -7,13 +7,32 @@ use glam::{DVec2, UVec2};
 use rayon::prelude::*;
 
 use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
-use super::tile::{PooledVariance, REPLICATES_PER_PIXEL, Tile};
-use super::{Film, ImageOutcome, Partition, blocks};
+use super::tile::{PixelSample, PooledVariance, REPLICATES_PER_PIXEL, Tile};
+use super::{Film, Partition, blocks};
 use crate::extract::Stage;
 use crate::film::{Replicates, Sums, ratio};
 use crate::sampling::{Key, Sampler};
 use crate::transport::paths::{PathBatch, PathTracer};
 use crate::transport::{Camera, ProgressFn, RANDOMISATIONS};
+
+/// Outcome of an image measurement.
+#[derive(Clone, Debug)]
+pub struct ImageOutcome {
+    /// Radiance of each pixel in the unit of its [`LightSource`], shape `[rows, columns, spectra, bands]` (the whole
+    /// and, on request, its parts): the mean over the samples that met the scene; NaN where none did.
+    pub pixels: Vec<f32>,
+    /// Its standard error, from its own samples and, where those are few, from those of the tile of 16 × 16
+    /// pixels around it; NaN with one sample per pixel.
+    pub errors: Vec<f32>,
+    /// Fraction of each pixel's samples that met the scene, shape `[rows, columns]`.
+    pub coverage: Vec<f32>,
+    /// Mean radiance over all samples that met the scene, shape `[spectra, bands]`.
+    pub mean: Vec<f64>,
+    /// Its standard error.
+    pub mean_error: Vec<f64>,
+    /// Columns that are summed over the whole image only, shape `[image columns]`.
+    pub image_sums: Replicates,
+}
 
 /// Side of the square of pixels that one block traces.
 const TILE: u32 = 16;
@@ -46,7 +65,7 @@ type TraceTile<'a> = dyn Fn(&mut Tile, Range<u64>) -> (Sums, u64) + Sync + 'a;
 
 impl<'a> ImageTiles<'a> {
     /// No samples yet, of paths whose first `columns` values count.
-    pub(super) fn new<P: PathTracer>(
+    pub(in crate::transport) fn new<P: PathTracer>(
         stage: &'a Stage,
         camera: Camera,
         key: Key,
@@ -323,15 +342,6 @@ struct TileTracer<'t, F> {
     path: &'t F,
 }
 
-/// A sample of a pixel.
-#[derive(Clone, Copy)]
-pub(super) struct PixelSample {
-    /// Index of the pixel in its tile.
-    pub(super) pixel: usize,
-    /// Row of the sums over the image that it counts in.
-    pub(super) row: usize,
-}
-
 impl<P: PathTracer, F: Fn() -> P> TileTracer<'_, F> {
     /// Adds samples to a tile; returns sums over the whole image and the number of rays.
     fn trace(&self, tile: &mut Tile, samples: Range<u64>) -> (Sums, u64) {
@@ -371,7 +381,7 @@ impl<P: PathTracer, F: Fn() -> P> TileTracer<'_, F> {
             let replicates = REPLICATES_PER_PIXEL as u64;
             let points = key.index(sample % replicates).index(number_of(at));
             let mut sampler = Sampler::new(points, sample / replicates);
-            let [u, v, ..] = sampler.next_event();
+            let [u, v, ..] = sampler.next_4d();
             let ray = camera.ray((at.as_dvec2() + DVec2::new(u, v)) * scale)?;
             let is_admitted = camera.admits(&ray, stage, rays);
             is_admitted.then_some(((PixelSample { pixel, row }, ray.direction), ray, sampler))

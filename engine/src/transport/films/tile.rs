@@ -2,11 +2,19 @@
 
 use glam::UVec2;
 
-use super::image_tiles::PixelSample;
 use crate::extract::Stage;
 use crate::film::{Sums, zeroed};
 use crate::transport::RANDOMISATIONS;
 use crate::transport::paths::{PathTracer, write_each};
+
+/// A sample of a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct PixelSample {
+    /// Index of the pixel in its tile.
+    pub(super) pixel: usize,
+    /// Row of the sums over the image that it counts in.
+    pub(super) row: usize,
+}
 
 /// Independent Sobol' scramblings of each pixel, between which its samples alternate: the difference of their means
 /// estimates the gain from stratification.

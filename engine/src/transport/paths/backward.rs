@@ -1,16 +1,18 @@
 use std::array;
+use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::{BLOCK, Block, History};
+use super::history::History;
 use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
 use crate::scattering::{Interaction, Lobe, SceneSpectra};
-use crate::transport::photons::{ScatteringOrder, spectra};
+use crate::transport::band_blocks::{BLOCK, Block};
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
+use crate::transport::scattering_order::{ScatteringOrder, spectrum_count};
 
 /// Backward path tracer with next-event estimation: the radiance that arrives along a ray, `L / E` in sr⁻¹.
 /// Each point of a random walk adds the sun's light, and the sky adds its light where the walk leaves the
@@ -52,6 +54,7 @@ impl BackwardPath {
             separates_orders,
             single: 0,
             order: 0,
+            // Light that meets nothing at all is uncollided; the first hit overwrites this.
             has_met_ground: true,
             has_hit: false,
         }
@@ -62,9 +65,9 @@ impl BackwardPath {
         let beam = stage.light.beam.as_ref()?;
         let wi = beam.towards(&mut self.sampler);
         let f = surface.f(wi)?;
-        // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
+        // L = f E_sun |cos θ| with `surface.f` = π f, and E_sun the share over the cosine of the sun's zenith.
         let cosine = hit.normal.dot(wi).abs();
-        let scale = (cosine / wi.z * Light::RADIANCE_OF_SHARE) as f32;
+        let scale = (cosine / wi.z * FRAC_1_PI) as f32;
         self.next_event = Some(f.scaled(scale));
         Some(hit.leave(wi))
     }
@@ -80,7 +83,7 @@ impl BackwardPath {
         let threshold =
             if has_low_variance { RouletteThreshold::Low } else { RouletteThreshold::High };
         let roulette = RussianRoulette { rules: &stage.rules, threshold, initial: 1.0 };
-        let u = self.sampler.next_event();
+        let u = self.sampler.next_4d();
         let sample = sample_with_roulette(surface, &roulette, self.order, &mut self.throughput, u)?;
         self.continuation = Some(sample.weight);
         Some(hit.leave(sample.wi))
@@ -88,7 +91,7 @@ impl BackwardPath {
 
     fn add_sky(&mut self, light: &Light) {
         if let Some(dome) = &light.dome {
-            self.history.see(dome.share, Light::RADIANCE_OF_SHARE as f32);
+            self.history.see(dome.share, FRAC_1_PI as f32);
         }
     }
 }
@@ -99,7 +102,7 @@ impl PathTracer for BackwardPath {
         self.throughput.fill(1.0);
         (self.sampler, self.direction) = (sampler, Some(ray.direction));
         (self.next_event, self.continuation) = (None, None);
-        // Light that met nothing at all is uncollided.
+        // Light that meets nothing at all is uncollided; the first hit overwrites `has_met_ground`.
         (self.order, self.has_met_ground, self.has_hit) = (0, true, false);
     }
 
@@ -155,8 +158,8 @@ impl PathTracer for BackwardPath {
         true
     }
 
-    fn spectra(&self) -> usize {
-        spectra(self.separates_orders)
+    fn spectrum_count(&self) -> usize {
+        spectrum_count(self.separates_orders)
     }
 
     /// The radiance or, with separate orders, the whole and its parts in a row. The differences are exact in

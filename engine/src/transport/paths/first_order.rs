@@ -1,16 +1,18 @@
 //! Light that was scattered once, by integration alone.
 
+use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::{BLOCK, Block, History};
+use super::history::History;
 use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::Ray;
-use crate::extract::{Light, Stage};
+use crate::extract::Stage;
 use crate::sampling::{Key, Sampler, cosine_direction};
 use crate::scattering::SpectrumId;
-use crate::transport::photons::ScatteringOrder;
+use crate::transport::ScatteringOrder;
+use crate::transport::band_blocks::{BLOCK, Block};
 
 /// Radiance over irradiance, `L / E` in sr⁻¹, of light that was scattered exactly once: light of sun and sky
 /// that the first surface along a ray sends back. There is no random walk, no choice of lobes and no roulette:
@@ -45,7 +47,7 @@ impl FirstOrderPath {
     }
 
     /// Number of spectra: the whole and, on request, its parts, none of which is multiply scattered.
-    pub(in crate::transport) const fn spectra(separates_orders: bool) -> usize {
+    pub(in crate::transport) const fn spectrum_count(separates_orders: bool) -> usize {
         if separates_orders { ScatteringOrder::ALL.len() } else { 1 }
     }
 }
@@ -61,12 +63,12 @@ impl PathTracer for FirstOrderPath {
         self.has_hit = true;
         self.part = ScatteringOrder::from_order(1, stage.is_ground(hit));
         let surface = stage.interaction(hit, -self.direction);
-        let [sun_u, sun_v, sky_u, sky_v] = self.sampler.next_event();
+        let [sun_u, sun_v, sky_u, sky_v] = self.sampler.next_4d();
         let mut add = |wi: DVec3, source: SpectrumId, scale: f64| {
             let Some(f) = surface.f(wi) else { return };
             self.rays += 1;
             if !stage.geometry.occluded(&hit.leave(wi)) {
-                self.history.light(f, source, (scale * Light::RADIANCE_OF_SHARE) as f32);
+                self.history.light(f, source, (scale * FRAC_1_PI) as f32);
             }
         };
         if let Some(beam) = &stage.light.beam {
@@ -96,13 +98,13 @@ impl PathTracer for FirstOrderPath {
         self.history.clear();
         self.part = ScatteringOrder::Uncollided;
         if let Some(dome) = &stage.light.dome {
-            self.history.see(dome.share, Light::RADIANCE_OF_SHARE as f32);
+            self.history.see(dome.share, FRAC_1_PI as f32);
         }
         true
     }
 
-    fn spectra(&self) -> usize {
-        Self::spectra(self.separates_orders)
+    fn spectrum_count(&self) -> usize {
+        Self::spectrum_count(self.separates_orders)
     }
 
     /// The whole and, with separate orders, its parts in a row.

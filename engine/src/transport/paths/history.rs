@@ -5,19 +5,7 @@ use std::ops::Range;
 use crate::scattering::{
     LANES, Lobe, LobeSpectrum, SpectrumId, SurfaceModels, add_lit, add_seen, multiply,
 };
-
-/// Bands that are computed at a time: few enough that their sums stay in registers and in the first-level
-/// cache, however many bands a scene has.
-pub(in crate::transport) const BLOCK: usize = 64;
-
-/// Values in up to [`BLOCK`] bands.
-pub(in crate::transport) type Block = [f64; BLOCK];
-
-/// Ranges of at most [`BLOCK`] bands that cover `bands`.
-pub(in crate::transport) fn blocks(bands: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    let end = bands.end;
-    bands.step_by(BLOCK).map(move |start| start..(start + BLOCK).min(end))
-}
+use crate::transport::band_blocks::{BLOCK, Block};
 
 /// Spectral factors along a path, in order. Radiance is computed from them at the path's end, block by block
 /// of bands: no spectrum is carried from event to event.
@@ -103,6 +91,7 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::band_blocks::blocks;
 
     /// Radiance in every block of bands is the sum of the events' terms, band by band.
     #[test]

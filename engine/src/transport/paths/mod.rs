@@ -11,7 +11,6 @@ pub(super) use backward::BackwardPath;
 pub(super) use first_hit::FirstHitPath;
 pub use first_hit::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS};
 pub(super) use first_order::FirstOrderPath;
-pub(super) use history::{BLOCK, Block, blocks};
 pub(super) use thermal::ThermalPath;
 pub use tracer::TracedRay;
 pub(super) use tracer::{PathBatch, PathTracer, RayQueue, RayResults, write_each};

@@ -2,12 +2,13 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::{Block, History};
+use super::history::History;
 use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
 use crate::scattering::SceneSpectra;
+use crate::transport::band_blocks::Block;
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 
 /// A random walk from the sensor that gathers the radiance that surfaces and the sky emit,
@@ -58,7 +59,7 @@ impl ThermalPath {
             threshold: RouletteThreshold::Low,
             initial: 1.0,
         };
-        let u = self.sampler.next_event();
+        let u = self.sampler.next_4d();
         let sample =
             sample_with_roulette(&surface, &roulette, self.order, &mut self.throughput, u)?;
         self.history.scatter(sample.weight);

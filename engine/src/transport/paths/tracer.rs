@@ -5,12 +5,12 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::{BLOCK, Block, blocks};
 use crate::accel::{Batch, Hit, Ray};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::Sampler;
 use crate::scattering::with_simd;
+use crate::transport::band_blocks::{BLOCK, Block, blocks};
 
 /// State machine of one path from a sensor: it queues rays and continues with their results. One value is
 /// reused for many paths.
@@ -29,7 +29,7 @@ pub(in crate::transport) trait PathTracer {
     fn see_sky(&mut self, stage: &Stage, direction: DVec3) -> bool;
 
     /// Number of spectra of a path.
-    fn spectra(&self) -> usize {
+    fn spectrum_count(&self) -> usize {
         1
     }
 
@@ -60,7 +60,7 @@ pub(in crate::transport) fn write_each<'p, P: PathTracer + 'p>(
     columns: usize,
     mut write: impl FnMut(usize, Range<usize>, &[f64]),
 ) {
-    let Some(spectra) = paths.clone().next().map(P::spectra) else { return };
+    let Some(spectra) = paths.clone().next().map(P::spectrum_count) else { return };
     let bands = columns / spectra;
     let mut radiance = vec![[0.0; BLOCK]; spectra];
     with_simd(

@@ -20,7 +20,7 @@ impl Packet<'_> {
         };
         let bands = self.stage.bands;
         let total: f64 = (0..bands).map(power).sum();
-        let [pick, ..] = sampler.next_event();
+        let [pick, ..] = sampler.next_4d();
         let mut left = pick * total;
         self.band = (0..bands).find(|&band| {
             left -= power(band);
@@ -65,7 +65,7 @@ impl Packet<'_> {
             *rays += traced;
             let Some(hit) = hit else { return };
             let surface = stage.interaction(&hit, -ray.direction);
-            let [lobe, u, v, survival] = sampler.next_event();
+            let [lobe, u, v, survival] = sampler.next_4d();
             let scattered = stage.models.value(&surface.scattered_fraction(), band);
             let survives = survival < f64::from(scattered);
             let sample =

@@ -4,8 +4,8 @@ mod analog;
 mod counters;
 mod hemisphere;
 mod light_beside;
+mod order_counter;
 mod packet;
-mod scattering_orders;
 mod source;
 mod spectrum_products;
 mod tally;
@@ -17,8 +17,9 @@ pub use counters::{
 };
 pub use hemisphere::{Cell, Hemisphere};
 pub use light_beside::LightBeside;
+pub use order_counter::OrderCounter;
 pub use packet::{PacketOptions, photon_film};
-pub use scattering_orders::{OrderCounter, ScatteringOrder, spectra};
+
 pub use tally::Tally;
 
 use super::RouletteThreshold;

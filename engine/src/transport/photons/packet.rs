@@ -248,7 +248,7 @@ impl<'a> Packet<'a> {
                 return;
             }
             let order = visited.order + 1 - first;
-            let u = sampler.next_event();
+            let u = sampler.next_4d();
             let sample = sample_with_roulette(&surface, &roulette, order, throughput, u);
             let Some(sample) = sample else { return };
             tally.scatter(sample.weight);

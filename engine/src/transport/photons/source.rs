@@ -108,7 +108,7 @@ impl PacketSource {
     /// Starts a packet: its ray, and its weight in units of the power that falls on the scene's rectangle over
     /// the number of packets.
     pub(super) fn start(&self, sampler: &mut Sampler) -> (Ray, Lobe) {
-        let [pick, u, v, _] = sampler.next_event();
+        let [pick, u, v, _] = sampler.next_4d();
         let (direction, face, share, factor);
         if pick < self.sun_chance {
             let pick = pick / self.sun_chance;
@@ -129,7 +129,7 @@ impl PacketSource {
 
     /// A ray of isotropic sky light: such rays are lines of uniform measure among all that cross the scene.
     pub(super) fn start_anywhere(&self, sampler: &mut Sampler) -> Ray {
-        let [pick, u, v, _] = sampler.next_event();
+        let [pick, u, v, _] = sampler.next_4d();
         let (face, direction) = self.sky(pick, sampler);
         self.ray(face, direction, DVec2::new(u, v))
     }
@@ -147,7 +147,7 @@ impl PacketSource {
     /// The face that light of the sky comes through, and its direction.
     fn sky(&self, pick: f64, sampler: &mut Sampler) -> (&Face, DVec3) {
         let face = self.face(pick, |face| face.sky_until);
-        let [u, v, ..] = sampler.next_event();
+        let [u, v, ..] = sampler.next_4d();
         (face, face.sky_light(cosine_hemisphere(u, v)))
     }
 
@@ -157,7 +157,7 @@ impl PacketSource {
         let Some(disc) = &self.disc else {
             return (self.sun, self.face(pick, |face| face.sun_until), self.sun_gain);
         };
-        let [u, v, ..] = sampler.next_event();
+        let [u, v, ..] = sampler.next_4d();
         let sun = disc.direction(u, v);
         let power = |face: &Face| face.u.cross(face.v).length() * (-sun).dot(face.inward).max(0.0);
         let total: f64 = self.faces.iter().map(power).sum();

@@ -6,7 +6,7 @@ use std::ops::Range;
 use indexmap::IndexSet;
 
 use crate::scattering::{LobeSpectrum, SpectrumId, SurfaceModels};
-use crate::transport::paths::BLOCK;
+use crate::transport::band_blocks::BLOCK;
 
 /// Products `P = Π f / max f` of spectra `f` in any order, and `P (1 - f)`.
 ///

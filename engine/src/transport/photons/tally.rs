@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::spectrum_products::{ProductId, SpectrumProducts};
 use crate::film::Sums;
 use crate::scattering::{LANES, Lobe, SurfaceModels, with_simd};
-use crate::transport::paths::blocks;
+use crate::transport::band_blocks::blocks;
 
 /// Contributions of packets to cells. A packet weighs one of `SpectrumProducts` times a number; contributions
 /// of several packets to a cell by the same product are added before any band is evaluated. Bands are then
@@ -169,7 +169,7 @@ impl<'m> Tally<'m> {
 mod tests {
     use super::*;
     use crate::scattering::SpectrumId;
-    use crate::transport::paths::BLOCK;
+    use crate::transport::band_blocks::BLOCK;
 
     /// Whatever is flushed when, each band of each cell holds the sum of its fractions of the weights.
     #[test]

@@ -1,10 +1,11 @@
 //! Films of the first surface that a sensor sees.
 
+use super::ViewsOutcome;
 use super::directions::{ViewTracer, cameras};
-use super::{ImageTiles, ReplicateSums, ViewsOutcome};
 use crate::components::View;
 use crate::extract::Stage;
 use crate::sampling::Key;
+use crate::transport::films::{ImageTiles, ReplicateSums};
 use crate::transport::paths::{COMPONENT_COLUMNS, FirstHitPath};
 use crate::transport::{Camera, ReferencePlane};
 
@@ -16,7 +17,7 @@ use crate::transport::{Camera, ReferencePlane};
 /// For a fisheye that looks straight up or down, sums over the image hold gaps and samples by rings of 1° about
 /// the vertical, shape `[90, 2]`.
 #[must_use]
-pub fn image_components_film<'a>(stage: &'a Stage, camera: &Camera, key: Key) -> ImageTiles<'a> {
+pub fn image_first_surface_film<'a>(stage: &'a Stage, camera: &Camera, key: Key) -> ImageTiles<'a> {
     let upright = match camera {
         Camera::Fisheye(camera) => camera.upright(),
         _ => None,
@@ -26,14 +27,14 @@ pub fn image_components_film<'a>(stage: &'a Stage, camera: &Camera, key: Key) ->
 }
 
 /// Fractions of each view by the surface that is seen first, shape `[views, COMPONENT_COLUMNS]`, see
-/// [`image_components_film`].
+/// [`image_first_surface_film`].
 #[expect(missing_debug_implementations, reason = "its tracer has no Debug")]
-pub struct ComponentsFilm<'a> {
+pub struct FirstSurfaceFilm<'a> {
     /// The samples.
     pub film: ReplicateSums<'a>,
 }
 
-impl<'a> ComponentsFilm<'a> {
+impl<'a> FirstSurfaceFilm<'a> {
     /// No samples yet.
     #[must_use]
     pub fn new(stage: &'a Stage, views: &[View], plane: &ReferencePlane, key: Key) -> Self {

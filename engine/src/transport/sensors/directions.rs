@@ -2,20 +2,22 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::replicate_sums::{ReplicateSums, SampleTracer};
 use crate::components::{System, View};
 use crate::extract::Stage;
 use crate::film::{Replicates, Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
+use crate::transport::films::{ReplicateSums, SampleTracer};
 use crate::transport::paths::{
     BackwardPath, FirstOrderPath, PathBatch, PathTracer, ThermalPath, write_each,
 };
 use crate::transport::photons::{
-    Counter, OrderCounter, PacketOptions, PhotonKind, ScatteringOrder, ViewCounter, photon_film,
-    spectra,
+    Counter, OrderCounter, PacketOptions, PhotonKind, ViewCounter, photon_film,
 };
 use crate::transport::reference::ReferencePath;
-use crate::transport::{LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold};
+use crate::transport::{
+    LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold, ScatteringOrder,
+    spectrum_count,
+};
 
 /// System that measures the light of a source, with or without its parts by order of scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,8 +105,8 @@ impl<'a> DirectionsFilm<'a> {
             return Self::of_packets(stage, settings, key);
         }
         let spectra = match system {
-            System::FirstOrder => FirstOrderPath::spectra(separates_orders),
-            _ => spectra(separates_orders),
+            System::FirstOrder => FirstOrderPath::spectrum_count(separates_orders),
+            _ => spectrum_count(separates_orders),
         };
         let bands = stage.bands;
         let columns = bands * spectra;
@@ -137,7 +139,7 @@ impl<'a> DirectionsFilm<'a> {
         let kind = PhotonKind::Packet(RouletteThreshold::High);
         let options = PacketOptions { source, kind, plane: plane.clone() };
         let film = photon_film(stage, options, in_parts(counter, separates_orders), key);
-        let spectra = spectra(separates_orders);
+        let spectra = spectrum_count(separates_orders);
         Self { film, places, has_sums_per_spectrum: true, spectra }
     }
 
@@ -222,7 +224,7 @@ impl<P: PathTracer, F: Fn() -> P + Sync> SampleTracer for PathsOfViews<'_, F> {
         for (view, camera) in cameras.iter().enumerate() {
             let starts = samples.clone().filter_map(|index| {
                 let mut sampler = Sampler::new(stream, index);
-                let [u, v, ..] = sampler.next_event();
+                let [u, v, ..] = sampler.next_4d();
                 let ray = camera.ray(DVec2::new(u, v));
                 let is_admitted = camera.admits(&ray, stage, &mut rays);
                 is_admitted.then_some(((), ray, sampler))

@@ -33,7 +33,7 @@ impl Coverage {
             let corner = UVec2::new((pixel % width) as u32, (pixel / width) as u32).as_dvec2();
             let mut sampler = Sampler::new(key, pixel as u64);
             let hits = (0..SIDE * SIDE).filter(|cell| {
-                let [u, v, ..] = sampler.next_event();
+                let [u, v, ..] = sampler.next_4d();
                 let cell = UVec2::new(cell % SIDE, cell / SIDE).as_dvec2();
                 let at = corner + (cell + DVec2::new(u, v)) / f64::from(SIDE);
                 shows(&camera.ray(at / camera.size.as_dvec2()))

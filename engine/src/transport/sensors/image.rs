@@ -2,38 +2,21 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
+use super::LightSettings;
 use super::coverage::Coverage;
 use super::directions::in_parts;
-use super::{ImageTiles, LightSettings, ReplicateSums};
 use crate::components::System;
 use crate::extract::Stage;
 use crate::film::{Replicates, Spread};
 use crate::sampling::{Key, Sampler};
+use crate::transport::films::{ImageOutcome, ImageTiles, ReplicateSums};
 use crate::transport::paths::{BackwardPath, FirstOrderPath, PathBatch, ThermalPath, TracedRay};
-use crate::transport::photons::{PacketOptions, PhotonKind, ViewCounter, photon_film, spectra};
+use crate::transport::photons::{PacketOptions, PhotonKind, ViewCounter, photon_film};
 use crate::transport::reference::ReferencePath;
+use crate::transport::scattering_order::spectrum_count;
 use crate::transport::{
     Camera, LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold,
 };
-
-/// Outcome of an image measurement.
-#[derive(Clone, Debug)]
-pub struct ImageOutcome {
-    /// Radiance of each pixel in the unit of its [`LightSource`], shape `[rows, columns, spectra, bands]` (the whole
-    /// and, on request, its parts): the mean over the samples that met the scene; NaN where none did.
-    pub pixels: Vec<f32>,
-    /// Its standard error, from its own samples and, where those are few, from those of the tile of 16 × 16
-    /// pixels around it; NaN with one sample per pixel.
-    pub errors: Vec<f32>,
-    /// Fraction of each pixel's samples that met the scene, shape `[rows, columns]`.
-    pub coverage: Vec<f32>,
-    /// Mean radiance over all samples that met the scene, shape `[spectra, bands]`.
-    pub mean: Vec<f64>,
-    /// Its standard error.
-    pub mean_error: Vec<f64>,
-    /// Columns that are summed over the whole image only, shape `[image columns]`.
-    pub image_sums: Replicates,
-}
 
 /// An image of photon packets.
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
@@ -87,15 +70,16 @@ impl<'a> ImageFilm<'a> {
                 return Self::Packets(Box::new(PacketImage::new(stage, camera, light, key)));
             }
             (System::FirstOrder, _, _) => {
-                let columns = bands * FirstOrderPath::spectra(separates_orders);
+                let columns = bands * FirstOrderPath::spectrum_count(separates_orders);
                 let path = move || FirstOrderPath::new(separates_orders);
                 ImageTiles::new(stage, image, key, columns, path)
             }
             (System::Reference, _, _) => {
                 ImageTiles::new(stage, image, key, bands, ReferencePath::new)
             }
+            // `document::check` refuses photons for cameras and `Analog` for images.
             (System::Backward | System::Forward | System::Analog, _, LightSource::Reflected) => {
-                let columns = bands * spectra(separates_orders);
+                let columns = bands * spectrum_count(separates_orders);
                 let path = move || BackwardPath::new(bands, separates_orders);
                 ImageTiles::new(stage, image, key, columns, path)
             }
@@ -194,7 +178,7 @@ pub fn path_rays(
     let mut batch = PathBatch::logged(|| BackwardPath::new(stage.bands, false));
     let starts = (0..paths).map(|index| {
         let mut sampler = Sampler::new(key, index);
-        let [u, v, ..] = sampler.next_event();
+        let [u, v, ..] = sampler.next_4d();
         ((), camera.ray(DVec2::new(u, v)), sampler)
     });
     batch.trace(stage, starts, |_, _| {});
