@@ -12,7 +12,7 @@
 //! | terrain | `document::Terrain` | [`TerrainPatch`], `Ground`, `MapFrame` |
 //! | sun | `document::Sun` | [`SunLight`] |
 //! | sky | `document::Sky`, `document::ThermalSky` | [`SkyLight`], [`Emission`] where a sensor measures it |
-//! | sensor | [`SceneId`], [`Name`], `document::Sensor` | [`ResolvedSensor`] |
+//! | sensor | [`SceneId`], [`Name`], `document::Sensor` | [`ResolvedSensor`]; `SensorReport` once it has measured |
 
 mod camera;
 mod extents;

@@ -1,4 +1,8 @@
 //! Types to text that the reader reads back as equal.
+//!
+//! The `ron` crate reads and writes these types too, through serde (`engine/tests/language/writing.rs` compares the two).
+//! Scenes that people go on with are written here: keys with their default are left out, short values stay on one
+//! line, definitions are in the order of the language, and numbers have no more digits than they need.
 
 use indexmap::IndexMap;
 

@@ -69,7 +69,7 @@ record! {
         meshes: Map<Prototype> = Map::new(),
         /// The ground.
         terrain: Terrain => r#"Plane(size_m: (100.0, 100.0), material: "soil")"#,
-        /// Instances that stand on the ground.
+        /// Instances of meshes. Heights of lists and tables are those of the local frame unless `on_terrain` is true.
         instances: Vec<Instances> = Vec::new(),
         /// Patterns of instances that are left out, such as `"oak"` (a mesh) or `"plot 7/*"` (all that
         /// stands by the instances of that name). The others stay where they are.

@@ -1,3 +1,11 @@
+//! Places the instances of all plantings.
+//!
+//! | kind of planting | file | height of an instance |
+//! |---|---|---|
+//! | list, table | `mod.rs`, `table.rs` | as written, m, local frame; with `on_terrain`, above the ground |
+//! | scatter | `scatter.rs`, [`placement`](crate::placement) | on the ground, less `sink_m` |
+//! | canopy height model | `canopy.rs` | on the ground, less `sink_m` |
+
 mod areas;
 mod canopy;
 mod scatter;
