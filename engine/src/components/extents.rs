@@ -3,9 +3,9 @@ use glam::{DVec2, Vec3};
 /// Box around a loaded mesh, m, object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshBounds {
-    /// Lowest corner.
+    /// Lowest corner, m.
     pub low: Vec3,
-    /// Highest corner.
+    /// Highest corner, m.
     pub high: Vec3,
 }
 

@@ -36,13 +36,13 @@ impl SurfaceOptics {
 /// RPV model in one band; its formula is in `scattering/rpv.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RpvParameters {
-    /// Amplitude ρ0.
+    /// Amplitude ρ0, a reflectance factor.
     pub rho0: f32,
     /// Bowl shape k: below 1, reflectance rises towards the horizon.
     pub k: f32,
     /// Asymmetry Θ, -1 to 1: below 0, more is reflected back towards the light.
     pub asymmetry: f32,
-    /// Hot spot parameter ρc: the smaller, the higher the hot spot.
+    /// Hot spot parameter ρc, dimensionless: the smaller, the higher the hot spot.
     pub hot_spot: f32,
 }
 
@@ -51,9 +51,9 @@ pub struct RpvParameters {
 pub struct SoilspectParameters {
     /// Single-scattering albedo ω.
     pub albedo: f32,
-    /// Roughness h: the width of the hot spot.
+    /// Roughness h, dimensionless: the width of the hot spot.
     pub roughness: f32,
-    /// Amplitude of the hot spot; 1 in the paper.
+    /// Amplitude of the hot spot, dimensionless; 1 in the paper.
     pub hot_spot: f32,
     /// Legendre coefficients b, c of the phase angle.
     pub backward: [f32; 2],

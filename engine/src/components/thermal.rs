@@ -2,9 +2,9 @@
 /// bands that hold no emission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlackBody {
-    /// Radiance where the sun's disc is visible.
+    /// Radiance where the sun's disc is visible, W m⁻² sr⁻¹ nm⁻¹, shape `[bands]`.
     pub sunlit: Vec<f64>,
-    /// Radiance where it is not.
+    /// Radiance where it is not, in the same unit and shape.
     pub shaded: Vec<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// A length rounded to whole millimetres, without the digits that sums and differences of coordinates of
+/// A length, m, rounded to whole millimetres, without the digits that sums and differences of coordinates of
 /// a map leave behind.
 #[must_use]
 pub fn millimetres(length: f64) -> f64 {

@@ -37,9 +37,9 @@ impl Polygon {
 /// A rectangle on the ground, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// South-west corner.
+    /// South-west corner, m.
     pub min: DVec2,
-    /// North-east corner.
+    /// North-east corner, m.
     pub max: DVec2,
 }
 

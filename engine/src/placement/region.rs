@@ -78,7 +78,7 @@ impl Region {
         self.locator.may_overlap(rectangle, &self.triangles)
     }
 
-    /// Returns a point that is uniform in the region if `u` and `v` are uniform in (0, 1).
+    /// Returns a point, m, local frame, that is uniform in the region if `u` and `v` are uniform in (0, 1).
     #[must_use]
     pub fn sample(&self, u: f64, v: f64) -> DVec2 {
         if self.is_rectangle {

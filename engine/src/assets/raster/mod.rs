@@ -66,9 +66,9 @@ pub struct Assumed {
 /// Georeference of a raster, in the units of its coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RasterGeoreference {
-    /// South-west corner of the south-westernmost cell (its corner, not its centre).
+    /// South-west corner of the south-westernmost cell (not its centre), in the unit of the coordinates.
     pub corner: DVec2,
-    /// Width and height of a cell.
+    /// Width and height of a cell, in the same unit.
     pub cell: DVec2,
     /// Coordinate reference system, as far as the file says.
     pub crs: Crs,

@@ -9,9 +9,9 @@ use super::{RasterError, RasterGeoreference, cells};
 /// Rectangle in the coordinates of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RasterExtent {
-    /// South-west corner.
+    /// South-west corner, in the unit of the file's coordinates.
     pub min: DVec2,
-    /// North-east corner.
+    /// North-east corner, in the same unit.
     pub max: DVec2,
 }
 

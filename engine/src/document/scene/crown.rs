@@ -82,9 +82,9 @@ choice! {
         /// g(θ) = (2/π)(1 - t)^(μ-1) t^(ν-1) / B(μ, ν) with t = 2θ/π; its mean is 90° ν/(μ + ν).
         /// Source: Goel & Strebel (1984), Agron. J. 76, 800–802.
         Beta {
-            /// μ.
+            /// Exponent μ, dimensionless.
             mu: f64 => "2.77",
-            /// ν.
+            /// Exponent ν, dimensionless.
             nu: f64 => "1.172",
         },
     }

@@ -181,9 +181,9 @@ choice! {
         Uniform((f64, f64) => "0.8, 1.2"),
         /// Gaussian, cut off at `min` and `max`.
         Normal {
-            /// Mean of the Gaussian.
+            /// Mean of the Gaussian, in the unit of the key.
             mean: f64 => "1.0",
-            /// Its standard deviation.
+            /// Its standard deviation, in the same unit.
             sd: f64 => "0.1",
             /// Smallest value, not above the mean.
             min: Option<f64> = None,
@@ -192,9 +192,9 @@ choice! {
         },
         /// Its logarithm is Gaussian; cut off at `min` and `max`.
         LogNormal {
-            /// Median.
+            /// Median, in the unit of the key.
             median: f64 => "1.0",
-            /// Standard deviation of the natural logarithm.
+            /// Standard deviation of the natural logarithm, dimensionless.
             sd_ln: f64 => "0.2",
             /// Smallest value, not above the median.
             min: Option<f64> = None,

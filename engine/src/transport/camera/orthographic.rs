@@ -75,7 +75,7 @@ impl OrthographicCamera {
         Self { towards, size, corner, right, down, film_from_world, covers_tile, plane: None }
     }
 
-    /// Point of the parallelogram, from `(0, 0)` top left to `(1, 1)` bottom right.
+    /// Point of the parallelogram, m, local frame, from `(0, 0)` top left to `(1, 1)` bottom right.
     #[must_use]
     pub fn point(&self, at: DVec2) -> DVec3 {
         self.corner + self.right * at.x + self.down * at.y

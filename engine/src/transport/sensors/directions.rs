@@ -54,7 +54,7 @@ pub struct DirectionsOutcome {
 /// Means over the rays of each view that met the scene, shape `[views, columns]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewsOutcome {
-    /// The means; NaN where a view meets nothing.
+    /// Means of the views in the unit of their source; NaN where a view meets nothing.
     pub mean: Vec<f64>,
     /// Their standard errors.
     pub error: Vec<f64>,
