@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, bail};
 use sunfleck::output::{Results, Written};
-use sunfleck::products::{Night, Point};
+use sunfleck::products::{Night, SweepPoint};
 use sunfleck::run::Partition;
 use sunfleck::{document, output, run};
 
@@ -203,7 +203,7 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
 }
 
 /// Says what a sun below the horizon means at a point of a sweep.
-fn warn_night(point: &Point) {
+fn warn_night(point: &SweepPoint) {
     match &point.night {
         Some(Night::Dark(why)) => warn(&[format!("at {}: nothing is traced: {why}", point.name())]),
         Some(Night::WithoutSun(what)) => warn(&[format!("at {}: {what}", point.name())]),

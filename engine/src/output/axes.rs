@@ -1,18 +1,18 @@
 //! Columns of tables that hold several products: one an axis.
 
 use super::rows::{columns, indices, point};
-use crate::products::{Axis, Product, Report};
+use crate::products::{Product, ProductAxis, Report};
 
 /// Axes of several products, each once, but for the bands.
 #[derive(Clone, Debug)]
-pub struct Axes<'a> {
+pub struct AxisColumns<'a> {
     names: Vec<String>,
     report: &'a Report,
 }
 
 /// Where a value stands in its product.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct AxisCells {
     /// A cell for each of the axes; empty for those that the product has not.
     pub cells: Vec<String>,
     /// Name of the band; empty without bands.
@@ -21,10 +21,10 @@ pub struct Place {
 
 const BAND: &str = "band";
 
-impl<'a> Axes<'a> {
+impl<'a> AxisColumns<'a> {
     /// Those of products of a report, in the order in which they occur.
     #[must_use]
-    pub fn of<'p>(products: impl IntoIterator<Item = &'p Product>, report: &'a Report) -> Self {
+    pub fn new<'p>(products: impl IntoIterator<Item = &'p Product>, report: &'a Report) -> Self {
         let mut names: Vec<String> = Vec::new();
         for axis in products.into_iter().flat_map(|product| Self::along(product, report)).flatten()
         {
@@ -42,8 +42,9 @@ impl<'a> Axes<'a> {
 
     /// Where the value `row` of a product stands.
     #[must_use]
-    pub fn place(&self, product: &Product, row: usize) -> Place {
-        let mut place = Place { cells: vec![String::new(); self.names.len()], band: String::new() };
+    pub fn place(&self, product: &Product, row: usize) -> AxisCells {
+        let mut place =
+            AxisCells { cells: vec![String::new(); self.names.len()], band: String::new() };
         let places = indices(&product.dimensions, row);
         for (dimension, index) in Self::along(product, self.report).iter().zip(places) {
             for axis in dimension {
@@ -58,7 +59,7 @@ impl<'a> Axes<'a> {
         place
     }
 
-    fn along(product: &Product, report: &Report) -> Vec<Vec<Axis>> {
+    fn along(product: &Product, report: &Report) -> Vec<Vec<ProductAxis>> {
         product.dimensions.iter().map(|dimension| columns(dimension, report)).collect()
     }
 }

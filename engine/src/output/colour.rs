@@ -14,7 +14,7 @@ pub(super) struct Mixture {
 
 impl Mixture {
     /// The mixture in which the image of a white surface, shape `[bands]`, is white.
-    pub(super) fn of(channels: Channels, wavelengths: &[f64], white: &[f64]) -> Self {
+    pub(super) fn new(channels: Channels, wavelengths: &[f64], white: &[f64]) -> Self {
         let mut weights = match channels {
             Channels::Cie => daylight(wavelengths),
             Channels::Bands(chosen) => {
@@ -217,7 +217,7 @@ mod tests {
     fn white_is_white_at_any_irradiance_and_a_stop_doubles() {
         let wavelengths = wavelengths();
         let white: Vec<f64> = wavelengths.iter().map(|w| w / 500.0).collect();
-        let mixture = Mixture::of(Channels::Cie, &wavelengths, &white);
+        let mixture = Mixture::new(Channels::Cie, &wavelengths, &white);
         let full: Vec<f32> = white.iter().map(|&w| w as f32).collect();
         let linear = mixture.linear(&full);
         assert!(linear.iter().all(|value| (value - 1.0).abs() < 1e-4), "{linear:?}");
@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn narrow_lights_have_their_colours() {
         let wavelengths = wavelengths();
-        let mixture = Mixture::of(Channels::Cie, &wavelengths, &[1.0; 21]);
+        let mixture = Mixture::new(Channels::Cie, &wavelengths, &[1.0; 21]);
         let strongest = |nm: f64| {
             let pixel: Vec<f32> =
                 wavelengths.iter().map(|w| f32::from(u8::from((w - nm).abs() < 1.0))).collect();
@@ -242,7 +242,7 @@ mod tests {
 
     #[test]
     fn chosen_bands_are_the_channels_and_no_data_is_transparent() {
-        let mixture = Mixture::of(Channels::Bands([2, 0, 1]), &[0.0; 4], &[1.0, 2.0, 4.0, 0.0]);
+        let mixture = Mixture::new(Channels::Bands([2, 0, 1]), &[0.0; 4], &[1.0, 2.0, 4.0, 0.0]);
         let linear = mixture.linear(&[0.5, 0.5, 1.0, f32::NAN]);
         let off = linear.iter().zip([0.25, 0.5, 0.25]).map(|(found, known)| (found - known).abs());
         assert!(off.sum::<f64>() < 1e-12, "{linear:?}");

@@ -14,7 +14,7 @@ use super::OutputError;
 use super::rows::{harmless, number};
 use super::sweep::{irradiance, table, table_file, unreadable};
 use crate::document::Param;
-use crate::products::{Day, Point};
+use crate::products::{Day, SweepPoint};
 
 pub(super) const FILE: &str = "daily.csv";
 
@@ -67,7 +67,7 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(product: &str, unit: &str) -> Option<Self> {
+    fn from_unit(product: &str, unit: &str) -> Option<Self> {
         let is_share = ["albedo", "fapar", "ftran"].iter().any(|name| product.starts_with(name));
         if unit.starts_with("W ") {
             Some(Self::Power)
@@ -91,7 +91,7 @@ impl Kind {
 /// If the table of a point cannot be read.
 pub fn daily_sums(
     days: &[Day],
-    points: &[Point],
+    points: &[SweepPoint],
     folder: &Path,
 ) -> Result<Option<DailySums>, OutputError> {
     let mut sums = DailySums { names: Vec::new(), rows: Vec::new() };
@@ -110,7 +110,7 @@ pub fn daily_sums(
 
 /// Adds all values of a point's table to the sums of a day.
 fn add_point(
-    point: &Point,
+    point: &SweepPoint,
     weight_h: f64,
     folder: &Path,
     found: &mut IndexMap<Vec<(String, String)>, (Kind, Sum)>,
@@ -125,7 +125,7 @@ fn add_point(
             let at = header.iter().skip(point.params.len()).position(|column| column == name);
             at.and_then(|at| row.get(at + point.params.len())).unwrap_or("")
         };
-        let Some(kind) = Kind::of(cell("product"), cell("unit")) else { continue };
+        let Some(kind) = Kind::from_unit(cell("product"), cell("unit")) else { continue };
         let weight = match kind {
             Kind::Power => weight_h * MJ_OF_WH,
             Kind::Share => match lit.get(cell("band")) {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::legend::{Bar, Entries, Legend};
 use super::lettering::{Area, Canvas, INK, Letters};
-use super::picture::{GAMMA, Picture, Pixels, byte, encode_png};
+use super::picture::{GAMMA, Pixels, RgbaPicture, byte, encode_png};
 use super::scale::tick;
 use crate::products::{Class, Georeference, Image};
 
@@ -35,7 +35,7 @@ pub(super) struct Figure {
 impl Figure {
     /// The picture of `image`, read by `legend`.
     pub(super) fn new(
-        (picture, legend): (&Picture, &Legend),
+        (picture, legend): (&RgbaPicture, &Legend),
         image: &Image,
         caption: &Caption<'_>,
     ) -> Self {
@@ -82,7 +82,7 @@ impl Figure {
 }
 
 /// ``x 0 to 20 m, y 0 to 10 m``.
-fn extent(place: &Georeference, picture: &Picture) -> String {
+fn extent(place: &Georeference, picture: &RgbaPicture) -> String {
     let east = place.west + place.pixel_width * picture.width as f64;
     let south = place.north - place.pixel_height * picture.height as f64;
     let [west, east, south, north] = [place.west, east, south, place.north].map(metres);
@@ -144,7 +144,7 @@ impl Layout {
         }
     }
 
-    fn height(&self, row: &Row, picture: &Picture) -> usize {
+    fn height(&self, row: &Row, picture: &RgbaPicture) -> usize {
         let line = self.letters.height();
         match row {
             Row::Text(_) | Row::Class(_) | Row::NoData => line + line / 4,
@@ -156,7 +156,7 @@ impl Layout {
         }
     }
 
-    fn draw(&self, picture: &Picture) -> Canvas {
+    fn draw(&self, picture: &RgbaPicture) -> Canvas {
         let rows: usize = self.rows.iter().map(|row| self.height(row, picture)).sum();
         let mut canvas = Canvas::new(self.width + 2 * self.margin, rows + 2 * self.margin);
         let mut top = self.margin;
@@ -167,7 +167,7 @@ impl Layout {
         canvas
     }
 
-    fn draw_row(&self, row: &Row, top: usize, picture: &Picture, canvas: &mut Canvas) {
+    fn draw_row(&self, row: &Row, top: usize, picture: &RgbaPicture, canvas: &mut Canvas) {
         let left = self.margin;
         match row {
             Row::Text(text) => canvas.write(text, (left, top), self.letters),
@@ -301,7 +301,7 @@ fn draw_no_data(area: Area, letters: Letters, canvas: &mut Canvas) {
 }
 
 fn draw_picture(
-    picture: &Picture,
+    picture: &RgbaPicture,
     zoom: usize,
     (left, top): (usize, usize),
     letters: Letters,
@@ -351,7 +351,7 @@ mod tests {
                 pixel_height: 1.0,
             }),
         };
-        let (picture, legend) = Picture::with_legend(&image, &[660.0]);
+        let (picture, legend) = RgbaPicture::with_legend(&image, &[660.0]);
         let caption = Caption { title: "a: brf".to_owned(), scene: "", unit: "1" };
         let Figure { canvas } = Figure::new((&picture, &legend), &image, &caption);
         let letters = Letters::for_width(320);
@@ -368,7 +368,7 @@ mod tests {
     #[test]
     fn every_size_of_picture_has_a_figure() {
         for (width, height) in [(1, 1), (1, 400), (400, 1), (37, 999), (1500, 20)] {
-            let picture = Picture { width, height, rgba: vec![0; 4 * width * height] };
+            let picture = RgbaPicture { width, height, rgba: vec![0; 4 * width * height] };
             let legend = Legend { entries: Entries::Bars(Vec::new()), dark: vec!["x".repeat(500)] };
             let image = Image {
                 width,

@@ -1,6 +1,6 @@
 //! Lines of a chart, from the axes of a product.
 
-use crate::products::{Axis, AxisPoints, Product};
+use crate::products::{AxisPoints, Product, ProductAxis};
 
 /// More lines than these are not told apart.
 const MOST_LINES: usize = 8;
@@ -45,7 +45,7 @@ struct Track {
 impl Lines {
     /// Values by zenith angle, one line for each vertical plane and band; or by height, one for each material
     /// and band. Nothing of other products, of views all over the hemisphere, and of single points.
-    pub(super) fn of(product: &Product) -> Option<Self> {
+    pub(super) fn new(product: &Product) -> Option<Self> {
         if product.image.is_some() || product.faces.is_some() {
             return None;
         }
@@ -157,7 +157,7 @@ fn thinned(lines: Vec<GroupedLine>) -> (Vec<Line>, usize) {
     (lines, hidden)
 }
 
-fn numbers<'a>(axes: &'a [Axis], name: &str) -> Option<&'a [f64]> {
+fn numbers<'a>(axes: &'a [ProductAxis], name: &str) -> Option<&'a [f64]> {
     let axis = axes.iter().find(|axis| axis.name == name)?;
     match &axis.points {
         AxisPoints::Numbers(numbers) => Some(numbers),
@@ -166,7 +166,7 @@ fn numbers<'a>(axes: &'a [Axis], name: &str) -> Option<&'a [f64]> {
 }
 
 /// Names of a point of some dimensions, of those that have several.
-fn names_of(dimensions: &[Vec<Axis>], mut number: usize) -> Vec<String> {
+fn names_of(dimensions: &[Vec<ProductAxis>], mut number: usize) -> Vec<String> {
     let mut names = Vec::new();
     for axes in dimensions.iter().rev() {
         let Some(axis) = axes.first() else { continue };
@@ -246,16 +246,16 @@ fn planes(views: &[(f64, f64)]) -> Option<Vec<Track>> {
 mod tests {
     use super::*;
 
-    fn axis(name: &str, numbers: &[f64]) -> Axis {
-        Axis { name: name.to_owned(), points: AxisPoints::Numbers(numbers.to_vec()) }
+    fn axis(name: &str, numbers: &[f64]) -> ProductAxis {
+        ProductAxis { name: name.to_owned(), points: AxisPoints::Numbers(numbers.to_vec()) }
     }
 
-    fn bands(names: &[&str]) -> Vec<Axis> {
+    fn bands(names: &[&str]) -> Vec<ProductAxis> {
         let labels = names.iter().map(|&name| name.to_owned()).collect();
-        vec![Axis { name: "band".to_owned(), points: AxisPoints::Labels(labels) }]
+        vec![ProductAxis { name: "band".to_owned(), points: AxisPoints::Labels(labels) }]
     }
 
-    fn product(dimensions: Vec<Vec<Axis>>, values: &[f64]) -> Product {
+    fn product(dimensions: Vec<Vec<ProductAxis>>, values: &[f64]) -> Product {
         Product {
             name: "brf".to_owned(),
             unit: "1".to_owned(),
@@ -273,7 +273,7 @@ mod tests {
             axis("zenith_deg", &[30.0, 0.0, 30.0]),
             axis("azimuth_deg", &[335.0, 155.0, 155.0]),
         ];
-        let lines = Lines::of(&product(vec![views, bands(&["red"])], &[1.0, 2.0, 3.0]));
+        let lines = Lines::new(&product(vec![views, bands(&["red"])], &[1.0, 2.0, 3.0]));
         let lines = lines.expect("a chart");
         assert_eq!(lines.curves.len(), 1);
         let places: Vec<(f64, f64)> =
@@ -290,7 +290,7 @@ mod tests {
         };
         let values: Vec<f64> = (0..8).map(f64::from).collect();
         let of = |azimuths: &[f64]| {
-            Lines::of(&product(vec![views(azimuths), bands(&["red", "nir"])], &values))
+            Lines::new(&product(vec![views(azimuths), bands(&["red", "nir"])], &values))
         };
         let two = of(&[0.0, 0.0, 90.0, 90.0]).expect("a chart");
         let names: Vec<&str> = two.curves.iter().map(|line| line.name.as_str()).collect();
@@ -302,14 +302,14 @@ mod tests {
             vec![views(&[0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0]), bands(&["red"])],
             &values,
         );
-        assert_eq!(Lines::of(&all), None);
+        assert_eq!(Lines::new(&all), None);
     }
 
     #[test]
     fn layers_are_a_profile() {
         let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
         let lines =
-            Lines::of(&product(vec![layers, bands(&["red", "nir"])], &[1.0, 2.0, 3.0, 4.0]));
+            Lines::new(&product(vec![layers, bands(&["red", "nir"])], &[1.0, 2.0, 3.0, 4.0]));
         let lines = lines.expect("a chart");
         assert!(lines.is_profile);
         assert_eq!(lines.curves[1].points[1], Point { at: 3.0, value: 4.0, error: 0.1 });
@@ -320,7 +320,7 @@ mod tests {
         let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
         let names: Vec<String> = (0..20).map(|band| format!("b{band}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let lines = Lines::of(&product(vec![layers, bands(&names)], &[1.0; 40]));
+        let lines = Lines::new(&product(vec![layers, bands(&names)], &[1.0; 40]));
         let lines = lines.expect("a chart");
         assert_eq!((lines.curves.len(), lines.hidden), (8, 12));
         assert_eq!((lines.curves[0].name.as_str(), lines.curves[7].name.as_str()), ("b0", "b19"));
@@ -330,12 +330,14 @@ mod tests {
     fn the_materials_that_are_kept_have_lines_for_all_bands() {
         let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
         let materials = ["grass", "soil", "leaf", "bark"].map(str::to_owned).to_vec();
-        let material =
-            vec![Axis { name: "material".to_owned(), points: AxisPoints::Labels(materials) }];
+        let material = vec![ProductAxis {
+            name: "material".to_owned(),
+            points: AxisPoints::Labels(materials),
+        }];
         // Of 4 materials the first and the third absorb most.
         let values: Vec<f64> = (0..24).map(|at| [4.0, 1.0, 3.0, 2.0][at / 3 % 4]).collect();
         let all = product(vec![layers, material, bands(&["blue", "red", "nir"])], &values);
-        let lines = Lines::of(&all).expect("a chart");
+        let lines = Lines::new(&all).expect("a chart");
         let names: Vec<&str> = lines.curves.iter().map(|line| line.name.as_str()).collect();
         let [grass, leaf] = ["grass", "leaf"]
             .map(|material| ["blue", "red", "nir"].map(|band| format!("{material}, {band}")));

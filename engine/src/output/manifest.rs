@@ -114,17 +114,17 @@ pub(super) fn relative(folder: &Path, file: &Path) -> String {
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Manifest {
+    fn parse(text: &str) -> Manifest {
         serde_json::from_str(text).unwrap()
     }
 
     #[test]
     fn names_that_lead_elsewhere_are_no_results() {
-        let manifest = of(
+        let manifest = parse(
             r#"{"scene": "", "files": ["a.csv", "../b.csv", "/etc/passwd", "c/d", "..", ".", "", "e\\f"]}"#,
         );
         assert_eq!(Vec::from_iter(manifest.files()), ["a.csv", SUMMARY]);
-        let before = of(r#"{"scene": "", "sensors": {"top": {"brf": {"files": ["x.hdr"]}}}}"#);
+        let before = parse(r#"{"scene": "", "sensors": {"top": {"brf": {"files": ["x.hdr"]}}}}"#);
         assert_eq!(Vec::from_iter(before.files()), [SUMMARY, "x.hdr"]);
     }
 
@@ -134,7 +134,8 @@ mod tests {
             (Path::new("/home/u/wood/a/plot.ron"), Path::new("/home/u/wood/out/plot"));
         let way = relative(folder, scene);
         assert_eq!(way, "../../a/plot.ron");
-        let manifest = of(&format!(r#"{{"scene": "", "command": "run", "scene_file": "{way}"}}"#));
+        let manifest =
+            parse(&format!(r#"{{"scene": "", "command": "run", "scene_file": "{way}"}}"#));
         assert!(manifest.is_of(folder, "run", scene));
         assert!(manifest.is_of(Path::new("/mnt/out/plot"), "run", Path::new("/mnt/a/plot.ron")));
         assert!(!manifest.is_of(folder, "run", Path::new("/home/u/wood/b/plot.ron")));

@@ -38,11 +38,11 @@ use envi::Raster;
 
 use crate::products::{Image, Product, Report};
 
-pub use axes::{Axes, Place};
+pub use axes::{AxisCells, AxisColumns};
 pub use daily::{DailySums, daily_sums};
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
-pub use picture::Picture;
+pub use picture::RgbaPicture;
 pub use results::{Results, Written};
 pub use rows::{harmless, number};
 pub use scale::{axis_title, range_of, tick};
@@ -87,7 +87,7 @@ impl OutputError {
 /// If the folder or a file cannot be written, or a product's shape contradicts its axes; then the
 /// folder is as it was.
 pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
-    Ok(Results::of_any(folder).write(report)?.files)
+    Ok(Results::for_any_scene(folder).write(report)?.files)
 }
 
 /// Writes the files of all products; returns the bytes that those of each sensor take.
@@ -141,7 +141,7 @@ fn put_pictures(
     [framed, bare]: [&str; 2],
     staging: &mut staging::Staging,
 ) -> Result<u64, OutputError> {
-    let (picture, legend) = Picture::with_legend(image, &source.wavelengths(image));
+    let (picture, legend) = RgbaPicture::with_legend(image, &source.wavelengths(image));
     let caption = figure::Caption {
         title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
         scene: &source.report.scene,
@@ -158,7 +158,7 @@ fn put_chart(
     name: &str,
     staging: &mut staging::Staging,
 ) -> Result<u64, OutputError> {
-    let Some(lines) = lines::Lines::of(source.product) else { return Ok(0) };
+    let Some(lines) = lines::Lines::new(source.product) else { return Ok(0) };
     let heading = chart::Heading {
         title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
         scene: &source.report.scene,
@@ -267,7 +267,7 @@ fn check_shape(sensor: &str, product: &Product) -> Result<(), OutputError> {
 }
 
 /// Points along a dimension.
-fn length(dimension: &[crate::products::Axis]) -> usize {
+fn length(dimension: &[crate::products::ProductAxis]) -> usize {
     dimension.first().map_or(1, |axis| axis.points.len())
 }
 

@@ -21,7 +21,7 @@ const NATURAL: [f64; 3] = [650.0, 550.0, 450.0];
 
 /// An sRGB picture with opacity.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
+pub struct RgbaPicture {
     /// Columns.
     pub width: usize,
     /// Rows.
@@ -30,7 +30,7 @@ pub struct Picture {
     pub rgba: Vec<u8>,
 }
 
-impl Picture {
+impl RgbaPicture {
     /// Picture of `image` as its rendering says, and how to read it.
     ///
     /// - `wavelengths`: of the image's bands, nm; NaN where unknown
@@ -39,7 +39,7 @@ impl Picture {
         let has_data = bands_with_data(image);
         match &image.rendering {
             Rendering::Quicklook => {
-                Self::composite(image, wavelengths, &Composite::of(wavelengths, &has_data))
+                Self::composite(image, wavelengths, &Composite::new(wavelengths, &has_data))
             }
             Rendering::Classes(classes) => {
                 let colour = |pixel: &[f32]| class_of(pixel, classes).map(|class| class.colour);
@@ -61,7 +61,7 @@ impl Picture {
                 {
                     *white = 0.0;
                 }
-                let mixture = colour::Mixture::of(*channels, wavelengths, &white);
+                let mixture = colour::Mixture::new(*channels, wavelengths, &white);
                 let gain = exposure.map_or_else(|| mixture.automatic(image), f64::exp2);
                 let rgba = mixture.rgba(image, gain);
                 let picture = Self { width: image.width, height: image.height, rgba };
@@ -74,7 +74,7 @@ impl Picture {
     ///
     /// - `wavelengths`: of the image's bands, nm; NaN where unknown
     #[must_use]
-    pub fn of(image: &Image, wavelengths: &[f64]) -> Self {
+    pub fn new(image: &Image, wavelengths: &[f64]) -> Self {
         Self::with_legend(image, wavelengths).0
     }
 
@@ -84,7 +84,7 @@ impl Picture {
     /// - `wavelengths`: of the image's bands, nm; NaN where unknown
     #[must_use]
     pub fn quicklook(image: &Image, wavelengths: &[f64]) -> Self {
-        let composite = Composite::of(wavelengths, &bands_with_data(image));
+        let composite = Composite::new(wavelengths, &bands_with_data(image));
         Self::composite(image, wavelengths, &composite).0
     }
 
@@ -112,7 +112,7 @@ impl Picture {
                 continue;
             }
             for (value, stretch) in chosen.into_iter().zip(&stretches) {
-                rgba.push(byte(stretch.of(value).powf(GAMMA.recip())));
+                rgba.push(byte(stretch.apply(value).powf(GAMMA.recip())));
             }
             rgba.push(byte(coverage));
         }
@@ -187,7 +187,7 @@ struct Composite {
 
 impl Composite {
     /// Chooses among the bands that have data.
-    fn of(wavelengths: &[f64], has_data: &[bool]) -> Self {
+    fn new(wavelengths: &[f64], has_data: &[bool]) -> Self {
         let at = |band: usize| wavelengths.get(band).copied().unwrap_or(f64::NAN);
         // Bands of unknown wavelength are taken in their order.
         let mut order: Vec<usize> = (0..has_data.len()).filter(|&band| has_data[band]).collect();
@@ -296,7 +296,7 @@ impl Stretch {
     }
 
     /// `value` in [0, 1].
-    fn of(self, value: f32) -> f32 {
+    fn apply(self, value: f32) -> f32 {
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 }
@@ -345,7 +345,7 @@ mod tests {
     use super::*;
 
     fn bands_of(wavelengths: &[f64]) -> [usize; 3] {
-        Composite::of(wavelengths, &vec![true; wavelengths.len()])
+        Composite::new(wavelengths, &vec![true; wavelengths.len()])
             .bands
             .map(Option::unwrap_or_default)
     }
@@ -373,10 +373,10 @@ mod tests {
             rendering: Rendering::Quicklook,
             georeference: None,
         };
-        let natural = Picture::quicklook(&image, &[450.0, 550.0, 650.0]);
+        let natural = RgbaPicture::quicklook(&image, &[450.0, 550.0, 650.0]);
         let grey = |fraction: f32| (255.0 * fraction.powf(1.0 / 2.2)).round() as u8;
         assert_eq!(natural.rgba[4..], [grey(0.5), 255, grey(0.25), 255]);
-        let false_colour = Picture::quicklook(&image, &[550.0, 650.0, 850.0]);
+        let false_colour = RgbaPicture::quicklook(&image, &[550.0, 650.0, 850.0]);
         assert_eq!(false_colour.rgba[4..], [255, 255, grey(0.5), 255]);
     }
 
@@ -393,7 +393,7 @@ mod tests {
             rendering: Rendering::Quicklook,
             georeference: None,
         };
-        let (picture, legend) = Picture::with_legend(&image, &[660.0, 10_500.0]);
+        let (picture, legend) = RgbaPicture::with_legend(&image, &[660.0, 10_500.0]);
         assert_eq!(picture.rgba, [0, 0, 0, 255, 255, 255, 255, 255], "grey, of the red band");
         assert_eq!(legend.dark, ["tir"]);
         let colours = |bands| Rendering::Colours {
@@ -402,7 +402,7 @@ mod tests {
             white: vec![1.0, 1.0],
         };
         let image = Image { rendering: colours([1, 0, 0]), ..image };
-        let rgba = Picture::of(&image, &[660.0, 10_500.0]).rgba;
+        let rgba = RgbaPicture::new(&image, &[660.0, 10_500.0]).rgba;
         assert!(rgba[0] == 0 && rgba[1] > 0 && rgba[1] == rgba[2] && rgba[3] == 255, "{rgba:?}");
     }
 
@@ -420,7 +420,10 @@ mod tests {
             rendering: Rendering::Classes(classes.clone()),
             georeference: None,
         };
-        assert_eq!(Picture::of(&image, &[]).rgba, [255, 0, 0, 255, 0, 0, 0, 0, 0, 0, 255, 255]);
+        assert_eq!(
+            RgbaPicture::new(&image, &[]).rgba,
+            [255, 0, 0, 255, 0, 0, 0, 0, 0, 0, 255, 255]
+        );
         let half = mixed(&[0.5, 0.5], &classes);
         assert_eq!(half, Some([byte(0.5_f32.powf(1.0 / 2.2)), 0, byte(0.5_f32.powf(1.0 / 2.2))]));
         assert_eq!(mixed(&[f32::NAN, 0.0], &classes), None);
@@ -438,7 +441,7 @@ mod tests {
             rendering: Rendering::Quicklook,
             georeference: None,
         };
-        let picture = Picture::quicklook(&image, &[660.0]);
+        let picture = RgbaPicture::quicklook(&image, &[660.0]);
         assert_eq!(picture.rgba, [186, 186, 186, 255, 0, 0, 0, 0, 186, 186, 186, 128]);
     }
 
@@ -456,7 +459,7 @@ mod tests {
                 rendering: Rendering::Quicklook,
                 georeference: None,
             };
-            Picture::with_legend(&image, &[660.0]).1.dark
+            RgbaPicture::with_legend(&image, &[660.0]).1.dark
         };
         assert_eq!((dark(f32::NAN), dark(0.0)), (Vec::new(), vec!["red".to_owned()]));
     }

@@ -8,7 +8,7 @@ use super::manifest::{Manifest, relative};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
 use super::{OutputError, names, put_products, summary};
-use crate::products::{Origin, Point, Report};
+use crate::products::{Report, SceneSource, SweepPoint};
 
 /// A folder that results of a command for a scene are written to, as one set of files.
 ///
@@ -61,7 +61,7 @@ impl Results {
     }
 
     /// The folder, whatever results it holds; for a program that decides itself what to replace.
-    pub(super) fn of_any(folder: &Path) -> Self {
+    pub(super) fn for_any_scene(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), command: "run", scene: None, force: true }
     }
 
@@ -85,7 +85,7 @@ impl Results {
             let sizes = put_products(report, &plan, staging)?;
             more(staging)?;
             let way = self.way_to_scene(staging, report.origin.as_ref());
-            let head = Head::of(report, self.command, way);
+            let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
             let sizes = Sizes { plan: &plan, bytes: &sizes };
             staging.file("summary.json", |file| summary::write(&head, report, &sizes, file))?;
@@ -108,7 +108,7 @@ impl Results {
                 staging.file(name, |file| file.write_all(text.as_bytes()))?;
             }
             let way = self.way_to_scene(staging, report.origin.as_ref());
-            let head = Head::of(report, self.command, way);
+            let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
             staging.file("summary.json", |file| summary::write_head(&head, file))?;
             Ok(replaced(staging, folder, self.command, report))
@@ -123,7 +123,7 @@ impl Results {
     pub fn write_sweep(
         &self,
         report: &Report,
-        points: &[Point],
+        points: &[SweepPoint],
         table: &str,
         daily: Option<&DailySums>,
     ) -> Result<Written, OutputError> {
@@ -133,7 +133,7 @@ impl Results {
                 staging.file(daily::FILE, |file| daily.write(file))?;
             }
             let way = self.way_to_scene(staging, report.origin.as_ref());
-            let head = Head::of(report, self.command, way);
+            let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
             let write = |file: &mut _| summary::write_sweep(&head, points, daily, file);
             staging.file("summary.json", write)?;
@@ -184,7 +184,7 @@ impl Results {
         }
     }
 
-    fn way_to_scene(&self, staging: &Staging, origin: Option<&Origin>) -> Option<String> {
+    fn way_to_scene(&self, staging: &Staging, origin: Option<&SceneSource>) -> Option<String> {
         let file = self.scene.as_ref().or(origin.map(|origin| &origin.file))?;
         let file = file.canonicalize().unwrap_or_else(|_not_there| file.clone());
         Some(relative(staging.target(), &file))
@@ -203,7 +203,7 @@ fn replaced(staging: &Staging, folder: &Path, command: &str, report: &Report) ->
             old.described(staging.target())
         ));
     }
-    let new = Head::of(report, command, None);
+    let new = Head::new(report, command, None);
     let [before, now] = [changes_of(&old), new.changes()];
     (before != now).then(|| format!("{} held results {before}", folder.display()))
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::names::Distinct;
 use super::{Source, length};
-use crate::products::{Axis, AxisPoints, Report};
+use crate::products::{AxisPoints, ProductAxis, Report};
 
 /// Writes a column an axis and, for each point of the last dimension, its value and standard error.
 pub(super) fn write(source: &Source<'_>, file: &mut impl Write) -> io::Result<()> {
@@ -16,7 +16,7 @@ pub(super) fn write(source: &Source<'_>, file: &mut impl Write) -> io::Result<()
         Some((last, others)) => (last.as_slice(), others),
         None => (&[][..], &[][..]),
     };
-    let down: Vec<Vec<Axis>> =
+    let down: Vec<Vec<ProductAxis>> =
         down.iter().map(|dimension| columns(dimension, source.report)).collect();
     let mut names = Distinct::default();
     let mut header: Vec<String> =
@@ -51,7 +51,7 @@ pub(super) fn write(source: &Source<'_>, file: &mut impl Write) -> io::Result<()
 /// Axes of a dimension as columns: of directions, the zenith angle with a sign too, as a plot through
 /// the nadir needs it. It is positive within 90° of the sun's azimuth (of north, without a sun) and
 /// 90° clockwise of it, negative on the other side.
-pub(super) fn columns(dimension: &[Axis], report: &Report) -> Vec<Axis> {
+pub(super) fn columns(dimension: &[ProductAxis], report: &Report) -> Vec<ProductAxis> {
     let mut columns = dimension.to_vec();
     let numbers = |name: &str| {
         let axis = dimension.iter().position(|axis| axis.name == name)?;
@@ -71,7 +71,7 @@ pub(super) fn columns(dimension: &[Axis], report: &Report) -> Vec<Axis> {
         };
         let signed = |(&zenith, &azimuth)| if zenith == 0.0 { 0.0 } else { zenith * sign(azimuth) };
         let points = AxisPoints::Numbers(zenith.iter().zip(azimuth).map(signed).collect());
-        columns.insert(place + 1, Axis { name: "signed_zenith_deg".to_owned(), points });
+        columns.insert(place + 1, ProductAxis { name: "signed_zenith_deg".to_owned(), points });
     }
     columns
 }
@@ -99,7 +99,7 @@ fn harmless_line(text: &str) -> String {
 }
 
 /// Index along each dimension of the `row`-th point, last dimension fastest.
-pub(super) fn indices(dimensions: &[Vec<Axis>], row: usize) -> Vec<usize> {
+pub(super) fn indices(dimensions: &[Vec<ProductAxis>], row: usize) -> Vec<usize> {
     let mut rest = row;
     let mut indices: Vec<_> = dimensions
         .iter()
@@ -115,14 +115,14 @@ pub(super) fn indices(dimensions: &[Vec<Axis>], row: usize) -> Vec<usize> {
     indices
 }
 
-fn heading(axis: &Axis, index: usize) -> String {
+fn heading(axis: &ProductAxis, index: usize) -> String {
     match &axis.points {
         AxisPoints::Labels(labels) => labels[index].clone(),
         AxisPoints::Numbers(_) => format!("{}={}", axis.name, point(axis, index)),
     }
 }
 
-pub(super) fn point(axis: &Axis, index: usize) -> String {
+pub(super) fn point(axis: &ProductAxis, index: usize) -> String {
     match &axis.points {
         AxisPoints::Labels(labels) => labels[index].clone(),
         AxisPoints::Numbers(numbers) => number(numbers[index]),

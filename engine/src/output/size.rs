@@ -1,4 +1,4 @@
-use crate::products::Extent;
+use crate::products::ProductSize;
 
 /// Size of a number in a table, with what parts it from the next, bytes: about what the shortest
 /// text takes that reads back as the same f64.
@@ -17,20 +17,20 @@ const PIXEL: u64 = 2 * 2;
 /// Size of the files of a product that is to be measured, bytes: exact but for compression, for how
 /// many digits its numbers have, and for headers.
 #[must_use]
-pub fn file_size(extent: Extent) -> u64 {
+pub fn file_size(extent: ProductSize) -> u64 {
     match extent {
-        Extent::Image { pixels, bands } => {
+        ProductSize::Image { pixels, bands } => {
             // EXR and ENVI: values, errors and coverage each; PNG.
             let pixel = 2 * 4 * (2 * bands + 1) + PIXEL;
             pixels.saturating_mul(pixel).saturating_add(HEADERS)
         }
-        Extent::Table { rows, axes, bands } => {
+        ProductSize::Table { rows, axes, bands } => {
             // Once in the table, once in the summary.
             let row = 2 * NUMBER * 2 * bands + PLACE * axes;
             rows.saturating_mul(row).saturating_add(HEADER)
         }
         // Of a triangle three corners with their colour, their numbers, its colour; and the values.
-        Extent::Faces { faces, bands } => {
+        ProductSize::Faces { faces, bands } => {
             faces.saturating_mul(3 * 15 + 13 + 3 + 8 * bands).saturating_add(HEADER)
         }
     }

@@ -15,14 +15,14 @@ use super::swap::{self, Exchange, Others, exchange, recover};
 /// them all, and the folders that it made.
 #[derive(Debug)]
 pub(super) struct Staging {
-    place: Place,
+    place: Destination,
     partial: Partial,
     names: Vec<String>,
 }
 
 /// Where a folder of results is, and where it is made.
 #[derive(Debug)]
-struct Place {
+struct Destination {
     /// As its user calls it.
     folder: PathBuf,
     /// Absolute, links followed.
@@ -39,8 +39,8 @@ struct Place {
 /// Name within a folder that cannot be replaced as a whole.
 const INSIDE: &str = "sunfleck";
 
-impl Place {
-    fn of(folder: &Path) -> Result<Self, OutputError> {
+impl Destination {
+    fn new(folder: &Path) -> Result<Self, OutputError> {
         if folder.is_file() {
             return Err(OutputError::NotAFolder { path: folder.to_owned() });
         }
@@ -119,7 +119,7 @@ impl Place {
 
 impl Staging {
     pub(super) fn open(folder: &Path) -> Result<Self, OutputError> {
-        let mut place = Place::of(folder)?;
+        let mut place = Destination::new(folder)?;
         place.recover();
         let is_new = !place.target.exists();
         let fail = |source| {
@@ -191,10 +191,10 @@ impl Staging {
         over_others: bool,
         exchange: Exchange,
     ) -> Result<Vec<PathBuf>, OutputError> {
-        let Place { folder, target, may_rename, .. } = &self.place;
+        let Destination { folder, target, may_rename, .. } = &self.place;
         let fail = |source| OutputError::Write { path: folder.clone(), source };
         let uninterrupted = Uninterrupted::start();
-        for name in Others::of(target).map_err(fail)?.names {
+        for name in Others::read(target).map_err(fail)?.names {
             let (path, found) = (folder.join(&name), target.join(&name));
             if self.names.iter().all(|new| name != **new) {
                 continue;

@@ -12,7 +12,7 @@ use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
 use super::rows::columns;
 use crate::document::Param;
-use crate::products::{AxisPoints, Forecast, Point, Product, Report, SensorReport};
+use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport, SweepPoint};
 
 /// Names and sizes of a report's files.
 pub(super) struct Sizes<'a> {
@@ -39,7 +39,7 @@ pub(super) struct Head<'a> {
 }
 
 impl<'a> Head<'a> {
-    pub(super) fn of(report: &'a Report, command: &'a str, scene_file: Option<String>) -> Self {
+    pub(super) fn new(report: &'a Report, command: &'a str, scene_file: Option<String>) -> Self {
         let origin = report.origin.as_ref();
         let values = |list: &'a [(String, Param)]| {
             Ordered(list.iter().map(|(name, value)| (name.as_str(), value)).collect())
@@ -113,7 +113,7 @@ pub(super) fn write(
         runs: Ordered(
             sensors()
                 .zip(sizes.bytes)
-                .map(|((s, n), size)| (n.key.as_str(), Run::of(s, *size)))
+                .map(|((s, n), size)| (n.key.as_str(), Run::new(s, *size)))
                 .collect(),
         ),
     };
@@ -128,7 +128,7 @@ pub(super) fn write_head(head: &Head<'_>, file: &mut impl Write) -> io::Result<(
 /// Writes where a sweep comes from, why points have no data, and its sums over days.
 pub(super) fn write_sweep(
     head: &Head<'_>,
-    points: &[Point],
+    points: &[SweepPoint],
     daily: Option<&DailySums>,
     file: &mut impl Write,
 ) -> io::Result<()> {
@@ -224,7 +224,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn of(sensor: &'a SensorReport, size: u64) -> Self {
+    fn new(sensor: &'a SensorReport, size: u64) -> Self {
         let SensorReport { seconds, rays, samples, ref ended_by, energy_imbalance, .. } = *sensor;
         let Forecast { memory, files, .. } = sensor.forecast;
         let expected = Expected { seconds: sensor.forecast.seconds, memory, files };
@@ -276,7 +276,7 @@ fn entry<'a>(report: &Report, product: &'a Product, names: &ProductNames) -> Ent
             (_, Some(_)) => vec![names.ply()],
             (Some(_), _) => names.image(),
             (None, None) => {
-                let chart = Lines::of(product).map(|_| names.svg());
+                let chart = Lines::new(product).map(|_| names.svg());
                 std::iter::once(names.csv()).chain(chart).collect()
             }
         },

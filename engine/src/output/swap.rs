@@ -54,7 +54,7 @@ pub(super) fn put(
     if !target.try_exists()? {
         return fs::rename(&new.path, target);
     }
-    let others = Others::of(target)?;
+    let others = Others::read(target)?;
     if !may_rename || !others.can_be_carried {
         new.note(MERGING)?;
         return merge(&new.path, target);
@@ -180,7 +180,7 @@ pub(super) struct Others {
 
 impl Others {
     /// Those in `folder`, which need not be there.
-    pub(super) fn of(folder: &Path) -> io::Result<Self> {
+    pub(super) fn read(folder: &Path) -> io::Result<Self> {
         let mut found = Self { names: Vec::new(), can_be_carried: true };
         if !folder.try_exists()? {
             return Ok(found);

@@ -8,12 +8,12 @@ use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Write};
 use std::path::{Path, PathBuf};
 
-use super::axes::Axes;
+use super::axes::AxisColumns;
 use super::rows::{harmless, number};
 use super::staging::Staging;
 use super::{OutputError, Results};
 use crate::document::Param;
-use crate::products::{Point, Report};
+use crate::products::{Report, SweepPoint};
 
 /// Longest name of a point's folder.
 const LENGTH: usize = 100;
@@ -25,7 +25,7 @@ const IRRADIANCE: &str = "# irradiance_w_m2_nm: ";
 
 /// Whether `folder` holds all results of this very point.
 #[must_use]
-pub fn is_complete(point: &Point, folder: &Path) -> bool {
+pub fn is_complete(point: &SweepPoint, folder: &Path) -> bool {
     let Ok(file) = File::open(folder_of(point, folder).join(TABLE)) else { return false };
     let first = BufReader::new(file).lines().next();
     first.is_some_and(|line| line.is_ok_and(|line| line == heading(point)))
@@ -37,10 +37,10 @@ pub fn is_complete(point: &Point, folder: &Path) -> bool {
 /// As [`write()`](super::write()).
 pub fn write_point(
     report: &Report,
-    point: &Point,
+    point: &SweepPoint,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, OutputError> {
-    let results = Results::of_any(&folder_of(point, folder));
+    let results = Results::for_any_scene(&folder_of(point, folder));
     let table = |staging: &mut Staging| {
         staging.file(TABLE, |file| write_rows(report, point, file)).map(drop)
     };
@@ -53,7 +53,7 @@ pub fn write_point(
 ///
 /// # Errors
 /// If a point is not complete.
-pub fn sweep_table(points: &[Point], folder: &Path) -> Result<String, OutputError> {
+pub fn sweep_table(points: &[SweepPoint], folder: &Path) -> Result<String, OutputError> {
     let paths: Vec<PathBuf> =
         points.iter().map(|point| folder_of(point, folder).join(TABLE)).collect();
     // A point may lack what others have: another axis, say.
@@ -103,7 +103,7 @@ pub(super) fn irradiance(path: &Path) -> Result<HashMap<String, f64>, OutputErro
 }
 
 /// File of a point's table.
-pub(super) fn table_file(point: &Point, folder: &Path) -> PathBuf {
+pub(super) fn table_file(point: &SweepPoint, folder: &Path) -> PathBuf {
     folder_of(point, folder).join(TABLE)
 }
 
@@ -118,7 +118,7 @@ pub(super) fn unreadable(path: &Path, error: csv::Error) -> OutputError {
     OutputError::Read { path: path.to_owned(), source: error.into() }
 }
 
-fn folder_of(point: &Point, folder: &Path) -> PathBuf {
+fn folder_of(point: &SweepPoint, folder: &Path) -> PathBuf {
     let written = point.name();
     let mut name = folder_name(&written, &point.key);
     // Texts may differ in what a folder's name cannot hold.
@@ -143,11 +143,11 @@ pub fn folder_name(name: &str, identity: &str) -> String {
     name
 }
 
-fn heading(point: &Point) -> String {
+fn heading(point: &SweepPoint) -> String {
     format!("# key: {}", point.key)
 }
 
-fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Result<()> {
+fn write_rows(report: &Report, point: &SweepPoint, file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{}", heading(point))?;
     let lit: BTreeMap<_, _> = report.bands.iter().zip(&report.irradiance).collect();
     if !lit.is_empty() {
@@ -159,7 +159,7 @@ fn write_rows(report: &Report, point: &Point, file: &mut impl Write) -> io::Resu
             .iter()
             .flat_map(|sensor| sensor.products.iter().map(move |one| (sensor, one)))
     };
-    let axes = Axes::of(products().map(|(_, product)| product), report);
+    let axes = AxisColumns::new(products().map(|(_, product)| product), report);
     let mut writer = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(file);
     let names = point.params.iter().map(|(name, _)| harmless(name));
     let before = ["sensor", "product", "unit"].map(str::to_owned);

@@ -2,7 +2,7 @@
 
 use super::length;
 use super::rows::indices;
-use crate::products::{Axis, AxisPoints, Product, Report};
+use crate::products::{AxisPoints, Product, ProductAxis, Report};
 
 /// Rows of one product: points, named points (terms of a ledger), and bands at each.
 const POINTS: usize = 5;
@@ -103,7 +103,7 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
     (0..most).map(|k| (k * (count - 1) + (most - 1) / 2) / (most - 1)).collect()
 }
 
-fn place(dimensions: &[Vec<Axis>], point: usize) -> String {
+fn place(dimensions: &[Vec<ProductAxis>], point: usize) -> String {
     let indices = indices(dimensions, point);
     let axes = dimensions.iter().zip(indices).flat_map(|(axes, index)| {
         axes.iter().map(move |axis| match &axis.points {
@@ -120,7 +120,7 @@ fn place(dimensions: &[Vec<Axis>], point: usize) -> String {
     axes.collect::<Vec<_>>().join(", ")
 }
 
-fn label(axis: &Axis, index: usize) -> String {
+fn label(axis: &ProductAxis, index: usize) -> String {
     match &axis.points {
         AxisPoints::Labels(labels) => labels.get(index).cloned().unwrap_or_default(),
         AxisPoints::Numbers(numbers) => {

@@ -3,15 +3,15 @@
 use std::fs;
 
 use super::*;
-use crate::products::{Axis, AxisPoints, Forecast, Georeference, Rendering, SensorReport};
+use crate::products::{AxisPoints, Forecast, Georeference, ProductAxis, Rendering, SensorReport};
 
-fn axis(name: &str, points: &[f64]) -> Axis {
-    Axis { name: name.to_owned(), points: AxisPoints::Numbers(points.to_vec()) }
+fn axis(name: &str, points: &[f64]) -> ProductAxis {
+    ProductAxis { name: name.to_owned(), points: AxisPoints::Numbers(points.to_vec()) }
 }
 
-fn labels(name: &str, points: &[&str]) -> Axis {
+fn labels(name: &str, points: &[&str]) -> ProductAxis {
     let points = points.iter().map(|&point| point.to_owned()).collect();
-    Axis { name: name.to_owned(), points: AxisPoints::Labels(points) }
+    ProductAxis { name: name.to_owned(), points: AxisPoints::Labels(points) }
 }
 
 /// BRF of three views in two bands, one of them without data.

@@ -4,7 +4,7 @@ use super::context::labels;
 use super::directions::axes;
 use super::images::georeference;
 use super::leaf_area::{GapSums, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
-use super::{Axis, Class, Context, Image, Product, Rendering};
+use super::{Class, Context, Image, Product, ProductAxis, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
 use crate::transport::{COMPONENT_COLUMNS, GAP_COLUMN, ImageOutcome, ViewsOutcome};
@@ -25,7 +25,7 @@ fn classes() -> Vec<Class> {
 /// NaN where none is seen; or the share of gaps, and of a fisheye that looks straight up or down the
 /// leaf area indices that they imply. Nothing for other measures.
 #[must_use]
-pub fn components_of_image(
+pub fn image_components(
     measure: ImageMeasure,
     sensor: &ImageSensor,
     outcome: &ImageOutcome,
@@ -106,7 +106,7 @@ pub fn components_of_image(
 /// `G = 0.5` for each view, by Miller's integral where there are two zenith angles or more, and by
 /// the rings of a LAI-2000 where the views have all of their angles. Nothing for other measures.
 #[must_use]
-pub fn components_of_directions(
+pub fn direction_components(
     measure: ImageMeasure,
     views: &[View],
     outcome: &ViewsOutcome,
@@ -173,11 +173,16 @@ fn pick<T: Copy>(values: &[T], columns: std::ops::Range<usize>) -> Vec<T> {
     picked
 }
 
-fn axis(names: &[&str]) -> Axis {
+fn axis(names: &[&str]) -> ProductAxis {
     labels("component", &names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>())
 }
 
-fn product(name: &str, dimensions: Vec<Vec<Axis>>, values: &[f64], errors: &[f64]) -> Product {
+fn product(
+    name: &str,
+    dimensions: Vec<Vec<ProductAxis>>,
+    values: &[f64],
+    errors: &[f64],
+) -> Product {
     Product {
         name: name.to_owned(),
         unit: "1".to_owned(),

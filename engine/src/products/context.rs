@@ -1,4 +1,4 @@
-use super::{Axis, AxisPoints, Product};
+use super::{AxisPoints, Product, ProductAxis};
 use crate::spectral::BandWindow;
 
 /// What all products of a run share.
@@ -37,7 +37,7 @@ impl Context {
 
     /// The same under an irradiance of 1 in each band.
     #[must_use]
-    pub fn of_unit_irradiance(&self) -> Self {
+    pub fn with_unit_irradiance(&self) -> Self {
         Self { irradiance: vec![1.0; self.bands.len()], ..self.clone() }
     }
 
@@ -51,7 +51,7 @@ impl Context {
     pub(super) fn product(
         &self,
         (name, unit): (impl Into<String>, &str),
-        dimensions: Vec<Vec<Axis>>,
+        dimensions: Vec<Vec<ProductAxis>>,
         (values, standard_error): (&[f64], &[f64]),
         scale: impl Fn(&[f64], &[f64]) -> Vec<f64>,
     ) -> Product {
@@ -69,10 +69,10 @@ impl Context {
     }
 }
 
-pub(super) fn labels(name: &str, labels: &[String]) -> Axis {
-    Axis { name: name.to_owned(), points: AxisPoints::Labels(labels.to_vec()) }
+pub(super) fn labels(name: &str, labels: &[String]) -> ProductAxis {
+    ProductAxis { name: name.to_owned(), points: AxisPoints::Labels(labels.to_vec()) }
 }
 
-pub(super) fn numbers(name: &str, values: impl IntoIterator<Item = f64>) -> Axis {
-    Axis { name: name.to_owned(), points: AxisPoints::Numbers(values.into_iter().collect()) }
+pub(super) fn numbers(name: &str, values: impl IntoIterator<Item = f64>) -> ProductAxis {
+    ProductAxis { name: name.to_owned(), points: AxisPoints::Numbers(values.into_iter().collect()) }
 }

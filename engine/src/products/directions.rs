@@ -1,6 +1,6 @@
 use super::context::{labels, numbers};
 use super::thermal::{brightness, radiance_of_sources};
-use super::{Axis, Context, Product, reflectance};
+use super::{Context, Product, ProductAxis, reflectance};
 use crate::components::{ImageMeasure, View};
 use crate::transport::{DirectionsOutcome, ScatteringOrder};
 
@@ -8,7 +8,7 @@ use crate::transport::{DirectionsOutcome, ScatteringOrder};
 /// `L / E`, and of what is `emitted`, as far as they were measured; both of shape `[views, bands]`, and
 /// means over the scene's rectangle.
 #[must_use]
-pub fn of_directions(
+pub fn direction_products(
     views: &[View],
     measures: &[ImageMeasure],
     reflected: Option<&DirectionsOutcome>,
@@ -67,7 +67,7 @@ pub fn of_directions(
 }
 
 /// Axes of a list of views.
-pub(super) fn axes(views: &[View]) -> Vec<Axis> {
+pub(super) fn axes(views: &[View]) -> Vec<ProductAxis> {
     // Degrees as their author wrote them: the last bits of the conversion are noise.
     let degrees = |radians: f64| (radians.to_degrees() * 1e9).round() / 1e9;
     vec![

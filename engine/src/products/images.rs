@@ -12,7 +12,7 @@ use crate::transport::{ImageOutcome, ScatteringOrder, footprint};
 /// The products of an image measurement that are made of light: of what is `reflected`, as `L / E`,
 /// and of what is `emitted`, as far as they were measured.
 #[must_use]
-pub fn of_image(
+pub fn image_products(
     sensor: &ImageSensor,
     reflected: Option<&ImageOutcome>,
     emitted: Option<&ImageOutcome>,

@@ -61,14 +61,14 @@ pub struct GapSums<'a> {
 }
 
 impl GapSums<'_> {
-    fn of_cell(&self, cell: usize) -> (f64, f64) {
+    fn cell(&self, cell: usize) -> (f64, f64) {
         let at = |place: usize| self.sums.sums[cell * self.stride + place];
         (at(self.gaps), at(self.samples))
     }
 
     /// Returns whether there is any sample.
     fn is_sampled(&self) -> bool {
-        (0..self.sums.sums.len() / self.stride).any(|cell| self.of_cell(cell).1 > 0.0)
+        (0..self.sums.sums.len() / self.stride).any(|cell| self.cell(cell).1 > 0.0)
     }
 }
 
@@ -186,19 +186,19 @@ fn sum_of_logarithms(gaps: &GapSums<'_>, terms: &[Term]) -> Option<(f64, f64)> {
     let mut sum = 0.0;
     let mut slopes = Vec::new();
     for Term { cells, factor } in terms {
-        let seen = cells.iter().filter(|(cell, _)| gaps.of_cell(*cell).1 > 0.0);
+        let seen = cells.iter().filter(|(cell, _)| gaps.cell(*cell).1 > 0.0);
         let all: f64 = seen.clone().map(|(_, weight)| weight).sum();
         if all == 0.0 {
             return None;
         }
         let fraction = |(cell, weight): &(usize, f64)| {
-            let (gaps, samples) = gaps.of_cell(*cell);
+            let (gaps, samples) = gaps.cell(*cell);
             weight / all * gaps / samples
         };
         let gap = seen.clone().map(fraction).sum::<f64>();
         sum += factor * gap.ln();
         for (cell, weight) in seen {
-            let (count, samples) = gaps.of_cell(*cell);
+            let (count, samples) = gaps.cell(*cell);
             let slope = factor / gap * weight / all / samples;
             slopes.push((cell * gaps.stride + gaps.gaps, slope));
             slopes.push((cell * gaps.stride + gaps.samples, -slope * count / samples));

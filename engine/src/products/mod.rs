@@ -5,10 +5,10 @@ mod absorbed;
 mod components;
 mod context;
 mod directions;
-mod extent;
 mod images;
 mod leaf_area;
 mod photons;
+mod product_size;
 mod reflectance;
 mod report;
 mod sources;
@@ -16,17 +16,17 @@ mod thermal;
 
 pub use crate::components::Channels;
 pub use absorbed::{Faces, absorbed};
-pub use components::{components_of_directions, components_of_image};
+pub use components::{direction_components, image_components};
 pub use context::{BandSources, Context};
-pub use directions::of_directions;
-pub use extent::{Extent, extents_of_directions, extents_of_image};
-pub use images::of_image;
+pub use directions::direction_products;
+pub use images::image_products;
 pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
+pub use product_size::{ProductSize, direction_sizes, image_sizes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    Axis, AxisPoints, Class, Day, Forecast, Georeference, Image, Night, Origin, Point, Product,
-    Rendering, Report, SensorReport, data_size,
+    AxisPoints, Class, Day, Forecast, Georeference, Image, Night, Product, ProductAxis, Rendering,
+    Report, SceneSource, SensorReport, SweepPoint, data_size,
 };
-pub use sources::{brightness_of, of_sources};
+pub use sources::{brightness_product, combine_sources};
 pub use thermal::{brightness, radiance_of_sources};

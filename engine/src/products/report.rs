@@ -7,7 +7,7 @@ use crate::document::Param;
 
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct ProductAxis {
     /// What varies along it, unit as suffix: `zenith_deg`, `band`.
     pub name: String,
     /// Where its points lie.
@@ -51,7 +51,7 @@ pub struct Product {
     /// Its unit; `1` for a fraction.
     pub unit: String,
     /// Dimensions, slowest first; the last is `band` (or a label axis of a ledger).
-    pub dimensions: Vec<Vec<Axis>>,
+    pub dimensions: Vec<Vec<ProductAxis>>,
     /// Values in the order of `dimensions`; of an image, its mean, shape `[bands]`.
     pub values: Vec<f64>,
     /// Standard error of each value; NaN where there is none.
@@ -289,12 +289,12 @@ pub struct Report {
     /// Azimuth of the sun, degrees clockwise from north, if there is one.
     pub sun_azimuth_deg: Option<f64>,
     /// Where the scene was read; none of a scene that was built.
-    pub origin: Option<Origin>,
+    pub origin: Option<SceneSource>,
 }
 
 /// File that a scene was read from, and what was changed in it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Origin {
+pub struct SceneSource {
     /// The file.
     pub file: PathBuf,
     /// Variant that was applied.
@@ -307,7 +307,7 @@ pub struct Origin {
 
 /// A point of a sweep.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct SweepPoint {
     /// The swept parameters and their values.
     pub params: Vec<(String, Param)>,
     /// Hash of all that decides the results: the scene as it is at this point, the content of every
@@ -350,7 +350,7 @@ pub struct Day {
     pub weights_h: Vec<(usize, f64)>,
 }
 
-impl Point {
+impl SweepPoint {
     /// Returns why nothing was traced here, if that is so.
     #[must_use]
     pub fn darkness(&self) -> Option<&str> {
@@ -361,7 +361,7 @@ impl Point {
     }
 }
 
-impl Point {
+impl SweepPoint {
     /// `sza=30,lai=2`: its parameters as people write them.
     #[must_use]
     pub fn name(&self) -> String {

@@ -9,13 +9,13 @@ use super::{Context, Product};
 /// Exitance, flux densities or radiance, in each band from the sources that it holds.
 ///
 /// - `reflected`: a product of reflected light (albedo, flux density, BRF) under an irradiance of 1,
-///   as [`Context::of_unit_irradiance`] gives it
+///   as [`Context::with_unit_irradiance`] gives it
 /// - `emitted`: the same product of emitted light; a "BRF" of it is π times the radiance
 ///
 /// # Panics
 /// If there is neither.
 #[must_use]
-pub fn of_sources(
+pub fn combine_sources(
     reflected: Option<&Product>,
     emitted: Option<&Product>,
     context: &Context,
@@ -54,7 +54,7 @@ pub fn of_sources(
 /// Brightness temperature of a product of radiance, K, in the bands that hold emission; `None` for
 /// any other product.
 #[must_use]
-pub fn brightness_of(radiance: &Product, context: &Context) -> Option<Product> {
+pub fn brightness_product(radiance: &Product, context: &Context) -> Option<Product> {
     let kind = radiance.name.strip_prefix("radiance")?;
     let (values, standard_error) =
         brightness((&radiance.values, &radiance.standard_error), context);

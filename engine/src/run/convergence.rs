@@ -1,7 +1,7 @@
 //! Error control of a measurement: the criteria that end it, and the errors of its products.
 
 use crate::components::StopCriterion;
-use crate::products::{Extent, Product};
+use crate::products::{Product, ProductSize};
 use crate::transport::{Film, Schedule};
 
 /// Measurement of a sensor.
@@ -13,7 +13,7 @@ pub(super) trait Measurement {
     fn products(&self) -> Vec<Product>;
 
     /// Extents of its products, except for a few single numbers.
-    fn extents(&self) -> Vec<Extent>;
+    fn product_sizes(&self) -> Vec<ProductSize>;
 
     /// Index of the sensor's measure that counts in most cells, if measures differ in that.
     fn largest(&self) -> usize {

@@ -11,7 +11,7 @@ use super::sensors::SensorEntity;
 use crate::components::ResolvedSensor;
 use crate::document::Diagnostic;
 use crate::output;
-use crate::products::{Extent, Forecast, data_size};
+use crate::products::{Forecast, ProductSize, data_size};
 use crate::transport::Partition;
 
 /// Memory and files of one sensor, bytes; saturates at `u64::MAX`.
@@ -46,14 +46,14 @@ impl CostEstimate {
         let checkpoint = if store.is_enabled() { films } else { 0 };
         let beside = sum([beside, checkpoint]);
         let is_whole = store.share() == Partition::ALL;
-        let extents = if is_whole { measurement.extents() } else { Vec::new() };
-        let of_all = |of: fn(Extent) -> u64| sum(extents.iter().map(|&extent| of(extent)));
+        let sizes = if is_whole { measurement.product_sizes() } else { Vec::new() };
+        let of_all = |of: fn(ProductSize) -> u64| sum(sizes.iter().map(|&extent| of(extent)));
         Self {
             films,
             beside,
-            products: of_all(Extent::memory),
+            products: of_all(ProductSize::memory),
             checkpoint,
-            writing: extents.iter().map(|extent| extent.memory_of_files()).max().unwrap_or(0),
+            writing: sizes.iter().map(|extent| extent.memory_of_files()).max().unwrap_or(0),
             files: of_all(output::file_size),
             largest: measurement.largest(),
         }

@@ -3,17 +3,17 @@
 use std::collections::HashMap;
 
 use crate::document::{Param, Sun};
-use crate::products::{Day, Point};
+use crate::products::{Day, SweepPoint};
 
 /// Days of a grid of points: one for each combination of the parameters that do not move the sun's clock.
 /// Points whose suns differ in more than the time of day, or not at all, are no day.
-pub(super) fn days(points: &[Point], suns: &[Option<Sun>]) -> Vec<Day> {
+pub(super) fn days(points: &[SweepPoint], suns: &[Option<Sun>]) -> Vec<Day> {
     let Some(first) = points.first() else { return Vec::new() };
     let clock: Vec<bool> = (0..first.params.len()).map(|at| is_clock(at, points, suns)).collect();
     if !clock.contains(&true) {
         return Vec::new();
     }
-    let others = |point: &Point| -> Vec<(String, Param)> {
+    let others = |point: &SweepPoint| -> Vec<(String, Param)> {
         let kept = point.params.iter().zip(&clock).filter(|(_, is_clock)| !**is_clock);
         kept.map(|(param, _)| param.clone()).collect()
     };
@@ -22,8 +22,8 @@ pub(super) fn days(points: &[Point], suns: &[Option<Sun>]) -> Vec<Day> {
 }
 
 /// Returns whether a parameter moves the time of day of the sun's position, and neither date nor place.
-fn is_clock(at: usize, points: &[Point], suns: &[Option<Sun>]) -> bool {
-    let others = |point: &Point| {
+fn is_clock(at: usize, points: &[SweepPoint], suns: &[Option<Sun>]) -> bool {
+    let others = |point: &SweepPoint| {
         let mut params = point.params.clone();
         params.remove(at);
         params
@@ -68,7 +68,7 @@ fn grouped(members: impl Iterator<Item = (Vec<(String, Param)>, usize)>) -> Vec<
 fn day(
     params: Vec<(String, Param)>,
     group: &[usize],
-    points: &[Point],
+    points: &[SweepPoint],
     suns: &[Option<Sun>],
 ) -> Option<Day> {
     let mut moments: Vec<Moment<'_>> = Vec::with_capacity(group.len());

@@ -35,7 +35,7 @@ use hecs::World;
 
 use crate::components::{Projection, TerrainPatch};
 use crate::document::{self, Diagnostic, Param, Scene, Sun};
-use crate::products::{Origin, Report, SensorReport};
+use crate::products::{Report, SceneSource, SensorReport};
 
 pub use crate::products::Forecast;
 pub use crate::transport::Partition;
@@ -77,14 +77,14 @@ pub fn run_file(
         // After an error there would be no scene: these are warnings.
         report.warnings.splice(0..0, reading.diagnostics.iter().map(failure::one_line));
         report.seconds = start.elapsed().as_secs_f64();
-        report.origin = Some(origin(path, options));
+        report.origin = Some(scene_source(path, options));
         Ok(report)
     })
 }
 
 /// File of a scene, and the changes that `options` make to it.
-fn origin(file: &Path, options: &Options) -> Origin {
-    Origin {
+fn scene_source(file: &Path, options: &Options) -> SceneSource {
+    SceneSource {
         file: file.to_owned(),
         variant: options.document.variant.clone(),
         set: options.document.set.clone(),

@@ -5,7 +5,7 @@ use super::sensors::MeasureContext;
 use crate::components::{Cone, PhotonMeasure, PhotonProduct, PhotonSensor, System, View};
 use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
-use crate::products::{self, BandSources, Context, Extent, Product};
+use crate::products::{self, BandSources, Context, Product, ProductSize};
 use crate::sampling::Key;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
@@ -95,7 +95,7 @@ impl Measurement for PhotonRun<'_> {
         self.sensor.products.iter().take_while(|one| !is_largest(one)).count()
     }
 
-    fn extents(&self) -> Vec<Extent> {
+    fn product_sizes(&self) -> Vec<ProductSize> {
         let MeasureContext { stage, context } = self.scene;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let films: Vec<_> = [reflected, emitted].into_iter().flatten().collect();
@@ -105,15 +105,15 @@ impl Measurement for PhotonRun<'_> {
             let asked = |part| films.iter().any(|film| film.asked.contains(&(index, part)));
             let parts = parts(sensor).iter().filter(|&&part| asked(Some(part))).count();
             let count = usize::from(asked(None)) + parts;
-            let mut extents = vec![kind.extents(bands); count].concat();
+            let mut sizes = vec![kind.product_sizes(bands); count].concat();
             let kelvin = measures(sensor, &PhotonMeasure::BrightnessTemperature);
             if kelvin && measure.is_absolute() && kind.is_of_radiance() {
-                extents.extend(kind.extents(context.emitting().len() as u64));
+                sizes.extend(kind.product_sizes(context.emitting().len() as u64));
             }
-            extents
+            sizes
         };
         let rows = (EnergyCounter::ABSORBED + stage.models.surface_count()) as u64;
-        let energy = vec![Extent::Table { rows, axes: 1, bands }; films.len()];
+        let energy = vec![ProductSize::Table { rows, axes: 1, bands }; films.len()];
         kinds.iter().enumerate().flat_map(of).chain(energy).collect()
     }
 
@@ -122,7 +122,7 @@ impl Measurement for PhotonRun<'_> {
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let parts = parts(sensor);
         let mut found = Vec::new();
-        let unit = context.of_unit_irradiance();
+        let unit = context.with_unit_irradiance();
         for (index, (measure, kind)) in kinds.iter().enumerate() {
             let of = |counted: &Option<Counted<'_>>, part, context: &Context| -> Vec<Product> {
                 let spread = counted.as_ref().and_then(|counted| counted.spread(index, part));
@@ -143,9 +143,11 @@ impl Measurement for PhotonRun<'_> {
                 (of(reflected, None, &unit).into_iter(), of(emitted, None, &unit).into_iter());
             for _ in 0..reflected.len().max(emitted.len()) {
                 let (reflected, emitted) = (reflected.next(), emitted.next());
-                let product = products::of_sources(reflected.as_ref(), emitted.as_ref(), context);
+                let product =
+                    products::combine_sources(reflected.as_ref(), emitted.as_ref(), context);
                 let kelvin = measures(sensor, &PhotonMeasure::BrightnessTemperature);
-                let kelvin = kelvin.then(|| products::brightness_of(&product, context)).flatten();
+                let kelvin =
+                    kelvin.then(|| products::brightness_product(&product, context)).flatten();
                 found.extend(std::iter::once(product).chain(kelvin));
             }
         }
@@ -241,8 +243,9 @@ impl ProductCounter {
     }
 
     /// Extents of its products.
-    fn extents(&self, bands: u64) -> Vec<Extent> {
-        let table = |rows: usize, axes: u64| vec![Extent::Table { rows: rows as u64, axes, bands }];
+    fn product_sizes(&self, bands: u64) -> Vec<ProductSize> {
+        let table =
+            |rows: usize, axes: u64| vec![ProductSize::Table { rows: rows as u64, axes, bands }];
         match self {
             Self::Albedo(_) => table(1, 0),
             Self::Cells(counter) => table(counter.hemisphere.len(), 3),
@@ -255,12 +258,13 @@ impl ProductCounter {
             }
             Self::Absorbed(counter, _) => {
                 let faces = (counter.cells() - counter.total() - 1) as u64;
-                let faces = vec![Extent::Faces { faces, bands }; usize::from(counter.has_faces())];
+                let faces =
+                    vec![ProductSize::Faces { faces, bands }; usize::from(counter.has_faces())];
                 [table(counter.instances, 4), faces].concat()
             }
             Self::Fluxes(counter) => {
                 let pixels = u64::from(counter.size.x) * u64::from(counter.size.y);
-                vec![Extent::Image { pixels, bands }; 2 * counter.levels.len()]
+                vec![ProductSize::Image { pixels, bands }; 2 * counter.levels.len()]
             }
         }
     }

@@ -7,10 +7,10 @@ use crate::files;
 /// Hash of a scene as it was resolved and of the content of each file that it reads, hexadecimal.
 /// Equal hashes, versions and seeds give equal results.
 pub(super) fn hash(scene: &Scene, files: &[PathBuf]) -> Result<String, Failure> {
-    Ok(of(scene, files)?.to_hex().to_string())
+    Ok(scene_hash(scene, files)?.to_hex().to_string())
 }
 
-fn of(scene: &Scene, files: &[PathBuf]) -> Result<blake3::Hash, Failure> {
+fn scene_hash(scene: &Scene, files: &[PathBuf]) -> Result<blake3::Hash, Failure> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene.resolved().to_ron().as_bytes());
     for path in files {
@@ -36,7 +36,7 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
             Sensor::Photons(sensor) => (sensor.per_m2, sensor.until) = (1.0, None),
         }
     }
-    Ok(*of(&scene, files)?.as_bytes())
+    Ok(*scene_hash(&scene, files)?.as_bytes())
 }
 
 /// Hash of what a file holds.

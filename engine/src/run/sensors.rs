@@ -11,7 +11,7 @@ use crate::components::{
     StopCriterion, System,
 };
 use crate::extract::Stage;
-use crate::products::{self, Context, Extent, Product, SensorReport};
+use crate::products::{self, Context, Product, ProductSize, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
     Camera, DirectionsFilm, DirectionsSettings, FirstSurfaceFilm, ImageFilm, ImageTiles,
@@ -246,16 +246,16 @@ impl Measurement for ImageRun<'_> {
         films
     }
 
-    fn extents(&self) -> Vec<Extent> {
+    fn product_sizes(&self) -> Vec<ProductSize> {
         let zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
         let found = (self.reflected.is_some(), self.emitted.is_some(), zones);
-        products::extents_of_image(self.sensor, found, self.scene.context)
+        products::image_sizes(self.sensor, found, self.scene.context)
     }
 
     fn products(&self) -> Vec<Product> {
         let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
         let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
-        let mut products = products::of_image(
+        let mut products = products::image_products(
             self.sensor,
             reflected.as_ref(),
             emitted.as_ref(),
@@ -264,12 +264,8 @@ impl Measurement for ImageRun<'_> {
         if let Some(components) = &self.components {
             let outcome = components.outcome();
             for &measure in &self.sensor.measure {
-                let of = products::components_of_image(
-                    measure,
-                    self.sensor,
-                    &outcome,
-                    self.scene.pair(),
-                );
+                let of =
+                    products::image_components(measure, self.sensor, &outcome, self.scene.pair());
                 products.extend(of);
             }
         }
@@ -322,10 +318,10 @@ impl Measurement for DirectionsRun<'_> {
             .collect()
     }
 
-    fn extents(&self) -> Vec<Extent> {
+    fn product_sizes(&self) -> Vec<ProductSize> {
         let DirectionSensor { views, measure, .. } = self.sensor;
         let found = (self.reflected.is_some(), self.emitted.is_some());
-        products::extents_of_directions(views.len(), measure, found, self.context)
+        products::direction_sizes(views.len(), measure, found, self.context)
     }
 
     fn products(&self) -> Vec<Product> {
@@ -334,11 +330,11 @@ impl Measurement for DirectionsRun<'_> {
         let emitted = self.emitted.as_ref().map(DirectionsFilm::outcome);
         let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
         let mut products =
-            products::of_directions(views, measure, reflected, emitted, self.context);
+            products::direction_products(views, measure, reflected, emitted, self.context);
         if let Some(components) = &self.components {
             let outcome = components.outcome();
             for &one in measure {
-                products.extend(products::components_of_directions(one, views, &outcome));
+                products.extend(products::direction_components(one, views, &outcome));
             }
         }
         products

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use super::pool::in_pool;
 use super::reading::{folder_of, read};
 use super::scene_world::SceneWorld;
-use super::{Failure, Options, Progress, origin, run_in};
+use super::{Failure, Options, Progress, run_in, scene_source};
 use crate::document::{Reading, Scene};
 use crate::products::Report;
 
@@ -50,6 +50,6 @@ impl Session {
         let report = in_pool(&options, || {
             run_in(world, scene, &options, progress).map_err(|failure| failure.with_source(source))
         });
-        report.map(|report| Report { origin: Some(origin(file, &options)), ..report })
+        report.map(|report| Report { origin: Some(scene_source(file, &options)), ..report })
     }
 }

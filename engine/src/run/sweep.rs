@@ -7,11 +7,11 @@ use super::pool::in_pool;
 use super::provenance::content;
 use super::reading::{choose_sensors, folder_of, read, sound};
 use super::scene_world::SceneWorld;
-use super::{Failure, Options, Progress, day, origin, params, run_in};
+use super::{Failure, Options, Progress, day, params, run_in, scene_source};
 use crate::document::{
     self, Lambertian, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
 };
-use crate::products::{Day, Night, Point, Report};
+use crate::products::{Day, Night, Report, SweepPoint};
 
 /// A scene file that has been read at every point of its sweep, and what its runs share.
 ///
@@ -22,7 +22,7 @@ pub struct SweepRun {
     file: PathBuf,
     options: Options,
     scene: Scene,
-    points: Vec<Point>,
+    points: Vec<SweepPoint>,
     order: Vec<usize>,
     suns: Vec<Option<Sun>>,
     world: SceneWorld,
@@ -49,7 +49,7 @@ impl SweepRun {
         let mut suns = Vec::with_capacity(sweep.len());
         for index in 0..sweep.len() {
             let params = sweep.point(index);
-            let mut point = Point { params, key: String::new(), night: None };
+            let mut point = SweepPoint { params, key: String::new(), night: None };
             let found = look_at(file, &at(options, &point), &mut contents);
             let found = found.map_err(|source| wrong_at(&point, source))?;
             (point.key, point.night) = (found.key, found.night);
@@ -66,7 +66,7 @@ impl SweepRun {
 
     /// All points, the last parameter fastest.
     #[must_use]
-    pub fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[SweepPoint] {
         &self.points
     }
 
@@ -97,7 +97,7 @@ impl SweepRun {
     ///
     /// # Errors
     /// All errors of the scene there.
-    pub fn run(&mut self, point: &Point, progress: &dyn Progress) -> Result<Report, Failure> {
+    pub fn run(&mut self, point: &SweepPoint, progress: &dyn Progress) -> Result<Report, Failure> {
         if let Some(why) = point.darkness() {
             let params = point.params.clone();
             return Ok(Report { notes: vec![why.to_owned()], params, ..self.report() });
@@ -114,7 +114,7 @@ impl SweepRun {
                 if let Some(Night::WithoutSun(warning)) = &point.night {
                     report.warnings.insert(0, warning.clone());
                 }
-                Report { origin: Some(origin(file, &self.options)), ..report }
+                Report { origin: Some(scene_source(file, &self.options)), ..report }
             })
             .map_err(|source| wrong_at(point, source))
     }
@@ -144,18 +144,18 @@ impl SweepRun {
             sensors: Vec::new(),
             params: params(&self.scene),
             sun_azimuth_deg: None,
-            origin: Some(origin(&self.file, &self.options)),
+            origin: Some(scene_source(&self.file, &self.options)),
         }
     }
 }
 
-fn at(options: &Options, point: &Point) -> Options {
+fn at(options: &Options, point: &SweepPoint) -> Options {
     let mut options = options.clone();
     options.document.point.clone_from(&point.params);
     options
 }
 
-fn wrong_at(point: &Point, source: Failure) -> Failure {
+fn wrong_at(point: &SweepPoint, source: Failure) -> Failure {
     Failure::Point { point: point.name(), source: Box::new(source) }
 }
 

@@ -9,7 +9,7 @@ use super::sensors::{Begun, MeasureContext, SensorEntity, begin, in_order, measu
 use super::setting::setting;
 use super::{Options, SceneWorld, Unwatched, context, document};
 use crate::extract::extract;
-use crate::products::{Extent, Product};
+use crate::products::{Product, ProductSize};
 
 /// A tree on soil in two bands of reflected light and one of emitted, with these sensors.
 fn for_each_sensor(sensors: &str, test: impl Fn(&SensorEntity, MeasureContext<'_>)) {
@@ -49,10 +49,10 @@ fn for_each_sensor(sensors: &str, test: impl Fn(&SensorEntity, MeasureContext<'_
     }
 }
 
-/// Products have the extents that were estimated, except for single numbers.
+/// Products have the sizes that were estimated, except for single numbers.
 #[test]
 fn products_have_the_estimated_extents() {
-    let many = |extent: &Extent| extent.values() > 3;
+    let many = |extent: &ProductSize| extent.values() > 3;
     for_each_sensor(
         r#"
         "map": Orthographic(size_px: (20, 33), extent_m: (5.0, 5.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction]),
@@ -69,12 +69,13 @@ fn products_have_the_estimated_extents() {
         "#,
         |sensor, scene| {
             let Begun { mut measurement, .. } = begin(&sensor.name, &sensor.sensor, scene, 1.0);
-            let mut estimated: Vec<Extent> =
-                measurement.extents().into_iter().filter(many).collect();
+            let mut estimated: Vec<ProductSize> =
+                measurement.product_sizes().into_iter().filter(many).collect();
             trace(measurement.as_mut(), 16, &|_| ());
             let products: Vec<Product> = measurement.products();
-            let mut found: Vec<Extent> = products.iter().map(Extent::of).filter(many).collect();
-            let order = |extent: &Extent| format!("{extent:?}");
+            let mut found: Vec<ProductSize> =
+                products.iter().map(ProductSize::new).filter(many).collect();
+            let order = |extent: &ProductSize| format!("{extent:?}");
             estimated.sort_by_key(order);
             found.sort_by_key(order);
             assert_eq!(estimated, found, "{}", sensor.name);

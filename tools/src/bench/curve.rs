@@ -35,7 +35,7 @@ pub(super) struct Repeat {
 
 impl Repeat {
     /// Of the values that both have; `None` where there are none, or all are 0.
-    pub(super) fn of(seconds: f64, found: &Values, truth: &Values) -> Option<Self> {
+    pub(super) fn new(seconds: f64, found: &Values, truth: &Values) -> Option<Self> {
         let (mut squares, mut errors, mut off, mut of_truth) = (0.0, 0.0, 0.0, 0.0);
         let mut relative = Vec::new();
         let known = |error: f64| if error.is_finite() { error } else { 0.0 };
@@ -104,7 +104,7 @@ const EXACT: f64 = 3e-7;
 impl Fit {
     /// Least squares in the logarithms; `None` of fewer than three points, of points at one time, or of
     /// a value without noise.
-    pub(super) fn of(points: &[(f64, f64)]) -> Option<Self> {
+    pub(super) fn new(points: &[(f64, f64)]) -> Option<Self> {
         let points: Vec<(f64, f64)> = points
             .iter()
             .filter(|&&(seconds, error)| seconds > 0.0 && error > EXACT && error.is_finite())
@@ -140,7 +140,7 @@ impl Curve {
     pub(super) fn fit(&self) -> Option<Fit> {
         let points: Vec<(f64, f64)> =
             self.levels.iter().map(|level| (level.seconds(), level.reported())).collect();
-        Fit::of(&points)
+        Fit::new(&points)
     }
 
     /// Deviation from the truth over the error that is reported, root mean square of all runs: 1 where
@@ -163,7 +163,7 @@ mod tests {
     fn a_power_law_is_found_with_no_error() {
         let points: Vec<(f64, f64)> =
             (0..6).map(|k| f64::from(1 << k)).map(|t| (t, 0.04 / t.sqrt())).collect();
-        let fit = Fit::of(&points).expect("noise");
+        let fit = Fit::new(&points).expect("noise");
         assert!((fit.slope + 0.5).abs() < 1e-12 && fit.slope_error < 1e-12, "{fit:?}");
         assert!((fit.seconds(0.01).expect("noise") - 16.0).abs() < 1e-9);
         assert!((fit.error(4.0) - 0.02).abs() < 1e-12);
@@ -175,26 +175,26 @@ mod tests {
         // degree of freedom and Σx² = 2.
         let d: f64 = 0.1;
         let at = |x: f64, off: f64| (x.exp(), (x * -0.5 + off - 3.0).exp());
-        let fit = Fit::of(&[at(-1.0, d), at(0.0, -2.0 * d), at(1.0, d)]).expect("noise");
+        let fit = Fit::new(&[at(-1.0, d), at(0.0, -2.0 * d), at(1.0, d)]).expect("noise");
         assert!((fit.slope + 0.5).abs() < 1e-12);
         assert!((fit.slope_error - (3.0 * d * d).sqrt()).abs() < 1e-12, "{fit:?}");
     }
 
     #[test]
     fn what_has_no_noise_has_no_slope() {
-        assert_eq!(Fit::of(&[(1.0, 0.0), (2.0, 0.0), (4.0, 1e-9), (8.0, 0.0)]), None);
-        assert_eq!(Fit::of(&[(1.0, 0.1), (1.0, 0.2), (1.0, 0.1)]), None);
+        assert_eq!(Fit::new(&[(1.0, 0.0), (2.0, 0.0), (4.0, 1e-9), (8.0, 0.0)]), None);
+        assert_eq!(Fit::new(&[(1.0, 0.1), (1.0, 0.2), (1.0, 0.1)]), None);
     }
 
     #[test]
     fn errors_are_relative_to_the_truth_and_its_own_error_is_taken_off() {
         let found = Values { values: vec![1.3, f64::NAN, 4.0], errors: vec![0.3, 0.1, 0.4] };
         let truth = Values { values: vec![1.0, 2.0, 4.0], errors: vec![0.1, 0.1, 0.0] };
-        let repeat = Repeat::of(2.0, &found, &truth).expect("noise");
+        let repeat = Repeat::new(2.0, &found, &truth).expect("noise");
         assert!((repeat.reported - (0.25_f64 / 17.0).sqrt()).abs() < 1e-12, "{repeat:?}");
         assert!((repeat.square - (0.09 - 0.01) / 17.0).abs() < 1e-12, "{repeat:?}");
         assert!((repeat.median - 0.5 * (0.3 / 1.3 + 0.1)).abs() < 1e-12, "{repeat:?}");
         let black = Values { values: vec![0.0], errors: vec![0.0] };
-        assert_eq!(Repeat::of(1.0, &black, &black), None);
+        assert_eq!(Repeat::new(1.0, &black, &black), None);
     }
 }

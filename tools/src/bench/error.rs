@@ -24,7 +24,7 @@ pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
     let measured = &arguments.measured;
     let results = measured.results("bench")?;
     let mut session = run::Session::read(&measured.scene.file, &measured.options())?;
-    let plan = Plan::of(session.scene(), &measured.sensors, &measured.systems())?;
+    let plan = Plan::new(session.scene(), &measured.sensors, &measured.systems())?;
     warn(&plan.warnings);
     // The first run is the longest, and the machine warm after it.
     let truth = traced(&mut session, &plan, (0, TRUTH), "what the others are compared with")?;
@@ -158,7 +158,7 @@ impl<'a> Truth<'a> {
             let found = |one: &&Estimate<'_>| one.system == curve.system;
             let estimate = finding.estimates.iter().find(found);
             let repeat = estimate.and_then(|estimate| {
-                Repeat::of(estimate.seconds, &estimate.values(self.pixels)?, &self.values)
+                Repeat::new(estimate.seconds, &estimate.values(self.pixels)?, &self.values)
             });
             curve.levels[level].repeats.extend(repeat);
         }

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use sunfleck::products::{Axis, AxisPoints, Product};
+use sunfleck::products::{AxisPoints, Product, ProductAxis};
 
 use crate::plot::{range_of, tick};
 
@@ -31,7 +31,7 @@ const POINTS: usize = 400;
 const LABELS: usize = 16;
 
 impl Curves {
-    pub(super) fn of(product: &Product) -> Self {
+    pub(super) fn new(product: &Product) -> Self {
         let lengths: Vec<usize> = product
             .dimensions
             .iter()
@@ -40,7 +40,7 @@ impl Curves {
         let along = lengths.first().copied().unwrap_or(1);
         let others: usize = lengths.iter().skip(1).product();
         let first = product.dimensions.first().map_or(&[][..], Vec::as_slice);
-        let Along { axis, places, labels } = Along::of(first, along);
+        let Along { axis, places, labels } = Along::new(first, along);
         let mut order: Vec<usize> = even(along, POINTS);
         if labels.is_none() {
             order.sort_by(|&a, &b| places[a].total_cmp(&places[b]));
@@ -79,7 +79,7 @@ struct Along {
 }
 
 impl Along {
-    fn of(axes: &[Axis], length: usize) -> Self {
+    fn new(axes: &[ProductAxis], length: usize) -> Self {
         let numbered = |axis: &str| Self {
             axis: axis.to_owned(),
             places: (0..length).map(|place| place as f64).collect(),
@@ -163,12 +163,12 @@ mod tests {
 
     #[test]
     fn a_curve_holds_the_values_of_one_point_of_the_other_dimensions() {
-        let labels = |name: &str, points: &[&str]| Axis {
+        let labels = |name: &str, points: &[&str]| ProductAxis {
             name: name.to_owned(),
             points: AxisPoints::Labels(points.iter().map(|&point| point.to_owned()).collect()),
         };
         let heights =
-            Axis { name: "top_m".to_owned(), points: AxisPoints::Numbers(vec![2.0, 1.0]) };
+            ProductAxis { name: "top_m".to_owned(), points: AxisPoints::Numbers(vec![2.0, 1.0]) };
         let product = Product {
             name: "fapar".to_owned(),
             unit: "1".to_owned(),
@@ -182,7 +182,7 @@ mod tests {
             image: None,
             faces: None,
         };
-        let curves = Curves::of(&product);
+        let curves = Curves::new(&product);
         assert_eq!((curves.axis.as_str(), curves.lines.len()), ("top_m", 6));
         let bark_nir = &curves.lines[3];
         assert_eq!(bark_nir.name, "bark, nir");

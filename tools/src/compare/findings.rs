@@ -1,5 +1,5 @@
 use sunfleck::document::System;
-use sunfleck::output::{Axes, Place};
+use sunfleck::output::{AxisCells, AxisColumns};
 use sunfleck::products::{Product, Report, SensorReport};
 
 use super::plan::Plan;
@@ -68,7 +68,7 @@ impl<'a> Finding<'a> {
         let mut findings: Vec<Self> = Vec::new();
         for (member, sensor) in plan.members.iter().zip(&report.sensors) {
             for product in &sensor.products {
-                let estimate = Estimate::of(member.system, sensor, product);
+                let estimate = Estimate::new(member.system, sensor, product);
                 let known = findings
                     .iter_mut()
                     .find(|one| one.sensor == member.sensor && one.product == product.name);
@@ -149,14 +149,14 @@ impl<'a> Finding<'a> {
             efficiency: 1.0 / (relative_error.powi(2) * estimate.seconds),
             z: self.scores(index, pixels).map(|scores| Scores {
                 uncounted: self.uncounted(index, pixels),
-                ..Scores::of(&scores)
+                ..Scores::new(&scores)
             }),
         })
     }
 }
 
 impl<'a> Estimate<'a> {
-    fn of(system: System, sensor: &SensorReport, product: &'a Product) -> Self {
+    fn new(system: System, sensor: &SensorReport, product: &'a Product) -> Self {
         Self { system, product, seconds: sensor.seconds, rays: sensor.rays }
     }
 
@@ -175,13 +175,13 @@ impl<'a> Estimate<'a> {
     }
 
     /// Cells of the axes of a value and of its row and column, if it is that of a pixel; and its band.
-    pub(crate) fn place(&self, index: usize, pixels: bool, axes: &Axes<'_>) -> Place {
+    pub(crate) fn place(&self, index: usize, pixels: bool, axes: &AxisColumns<'_>) -> AxisCells {
         match &self.product.image {
             Some(image) if pixels => {
                 let (pixel, band) = (index / image.bands.len(), index % image.bands.len());
                 let mut cells = vec![String::new(); axes.names().count()];
                 cells.extend([pixel / image.width, pixel % image.width].map(|at| at.to_string()));
-                Place { cells, band: image.bands[band].clone() }
+                AxisCells { cells, band: image.bands[band].clone() }
             }
             _ => {
                 let mut place = axes.place(self.product, index);
@@ -214,7 +214,7 @@ pub(crate) fn median(mut values: Vec<f64>) -> f64 {
 }
 
 impl Scores {
-    fn of(z: &[f64]) -> Self {
+    fn new(z: &[f64]) -> Self {
         let z: Vec<f64> = z.iter().copied().filter(|z| !z.is_nan()).collect();
         let count = z.len() as f64;
         Self {
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn scores_leave_out_what_has_no_value() {
-        let scores = Scores::of(&[1.0, -4.0, f64::NAN, 0.0, 2.0]);
+        let scores = Scores::new(&[1.0, -4.0, f64::NAN, 0.0, 2.0]);
         assert_eq!(scores.count, 4);
         assert!((scores.rms - (21.0_f64 / 4.0).sqrt()).abs() < 1e-12);
         assert!((scores.largest - 4.0).abs() < 1e-12 && (scores.beyond_3 - 0.25).abs() < 1e-12);

@@ -28,7 +28,7 @@ pub(crate) fn compare(arguments: &Compare) -> anyhow::Result<String> {
         bail!("the reference `{}` is not among the systems: add it to --systems", reference.name());
     }
     let mut session = run::Session::read(&measured.scene.file, &measured.options())?;
-    let plan = Plan::of(session.scene(), &measured.sensors, &systems)?;
+    let plan = Plan::new(session.scene(), &measured.sensors, &systems)?;
     warn(&plan.warnings);
     let bars = Bars::new();
     let report = session.run(&plan.scene, 1.0, &bars);

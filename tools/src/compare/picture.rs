@@ -68,7 +68,7 @@ pub(super) fn draw(findings: &[Finding<'_>], title: &str) -> anyhow::Result<Stri
 
 fn draw_row(row: &Area<'_>, finding: &Finding<'_>) -> anyhow::Result<()> {
     let (left, right) = row.split_horizontally(VALUES);
-    let curves = Curves::of(finding.estimates[finding.reference].product);
+    let curves = Curves::new(finding.estimates[finding.reference].product);
     draw_values(&left, finding, &curves)?;
     if finding.estimates.len() == 1 {
         let centre = (i32::try_from(WIDTH - VALUES)? / 2, i32::try_from(ROW)? / 2);

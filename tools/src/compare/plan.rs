@@ -24,7 +24,7 @@ impl Plan {
     ///
     /// # Errors
     /// If no sensor has a name that is asked for, or no system can measure any.
-    pub(crate) fn of(scene: &Scene, named: &[String], systems: &[System]) -> anyhow::Result<Self> {
+    pub(crate) fn new(scene: &Scene, named: &[String], systems: &[System]) -> anyhow::Result<Self> {
         if let Some(unknown) = named.iter().find(|name| !scene.sensors.contains_key(*name)) {
             let known = scene.sensors.keys().map(String::as_str);
             let problem = unknown_name("--sensor", "sensor", unknown, known);

@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 
 use anyhow::Context as _;
-use sunfleck::output::{Axes, harmless, number};
+use sunfleck::output::{AxisColumns, harmless, number};
 use sunfleck::products::Report;
 
 use super::findings::{Finding, Statistics};
@@ -16,7 +16,7 @@ pub(super) fn values(
 ) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let products = findings.iter().flat_map(|finding| &finding.estimates).map(|one| one.product);
-    let axes = Axes::of(products, report);
+    let axes = AxisColumns::new(products, report);
     let before = ["sensor", "product", "unit"].into_iter();
     let after =
         ["row", "column", "band", "system", "value", "standard_error", "z", "seconds", "rays"];

@@ -174,7 +174,7 @@ impl Project {
                 part.push('_');
             }
             obj.append(&part, &self.locate(&file)?)?;
-            parts.insert(part, self.materials.of_surface(&optics, temperature.as_deref())?);
+            parts.insert(part, self.materials.surface_material(&optics, temperature.as_deref())?);
         }
         let parts: Vec<_> = parts
             .iter()

@@ -117,7 +117,11 @@ impl Materials {
     }
 
     /// Name of the material of an optical property, perhaps at a temperature.
-    pub(super) fn of_surface(&mut self, optics: &str, temperature: Option<&str>) -> Result<String> {
+    pub(super) fn surface_material(
+        &mut self,
+        optics: &str,
+        temperature: Option<&str>,
+    ) -> Result<String> {
         match self.optics.get_mut(optics) {
             Some(Ok(optics)) => self.remarks.append(&mut optics.remarks),
             Some(Err(error)) => bail!(Located(error.clone())),

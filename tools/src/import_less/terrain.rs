@@ -157,7 +157,7 @@ impl Project {
         };
         let place = self.terrain()?.get("optical").map_or(place, |node| node.place.clone());
         self.materials
-            .of_surface(&optics, temperature)
+            .surface_material(&optics, temperature)
             .with_context(|| format!("{place}: scene.terrain.optical"))
     }
 
@@ -258,7 +258,7 @@ impl Project {
             let Some((class, optics)) = line.split_once(char::is_whitespace) else {
                 bail!("not `class property`: {:?}", text::excerpt(line));
             };
-            let material = materials.of_surface(optics.trim(), temperature)?;
+            let material = materials.surface_material(optics.trim(), temperature)?;
             classes.push(format!("{}: {}", quoted(class), quoted(&material)));
             Ok(())
         })?;

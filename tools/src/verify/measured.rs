@@ -47,7 +47,7 @@ impl Estimate {
     }
 
     /// Mean of independent values of one quantity.
-    pub(super) fn of_repeats(values: &[f64]) -> Self {
+    pub(super) fn from_repeats(values: &[f64]) -> Self {
         let count = values.len() as f64;
         let value = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|one| (one - value).powi(2)).sum();

@@ -88,7 +88,7 @@ struct Outcome {
 }
 
 impl Outcome {
-    fn of(check: Check) -> Self {
+    fn new(check: Check) -> Self {
         let start = Instant::now();
         let findings = (check.run)();
         Self { check, findings, seconds: start.elapsed().as_secs_f64() }
@@ -144,7 +144,7 @@ pub(crate) fn verify(
     let start = Instant::now();
     let mut outcomes = Vec::new();
     for &check in CHECKS.iter().filter(wanted) {
-        let outcome = Outcome::of(check);
+        let outcome = Outcome::new(check);
         if !as_json {
             show(&outcome.text()?)?;
         }

@@ -64,7 +64,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     let findings = quantities.into_iter().zip(&values);
     Ok(findings
         .map(|((quantity, expected, share), values)| {
-            let found = Estimate::of_repeats(values);
+            let found = Estimate::from_repeats(values);
             let finding = Finding::estimate(quantity, expected, found, 0.02);
             if share > 0.0 { finding.but_for(share) } else { finding }
         })

@@ -6,7 +6,7 @@ use crate::transport::ScatteringOrder;
 
 /// What a product consists of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum ProductSize {
     /// Pixels of an image in each of its bands.
     Image {
         /// Columns times rows.
@@ -32,10 +32,10 @@ pub enum Extent {
     },
 }
 
-impl Extent {
+impl ProductSize {
     /// Of a product that was measured.
     #[must_use]
-    pub fn of(product: &Product) -> Self {
+    pub fn new(product: &Product) -> Self {
         let count = |values: usize, bands: usize| (values / bands.max(1)) as u64;
         if let Some(image) = &product.image {
             let (pixels, bands) = ((image.width * image.height) as u64, image.bands.len() as u64);
@@ -46,7 +46,7 @@ impl Extent {
             return Self::Faces { faces: count(faces.values.len(), bands), bands: bands as u64 };
         }
         let points =
-            |dimension: &[super::Axis]| dimension.first().map_or(1, |one| one.points.len());
+            |dimension: &[super::ProductAxis]| dimension.first().map_or(1, |one| one.points.len());
         let (bands, axes) = match product.dimensions.split_last() {
             Some((last, others)) => (points(last), others.iter().flatten().count() as u64),
             None => (1, 0),
@@ -93,53 +93,54 @@ impl Extent {
 /// Indices that fisheyes report beside gaps, at most.
 const LEAF_AREA_INDICES: usize = 3;
 
-/// What [`of_image`](super::of_image) and [`components_of_image`](super::components_of_image) make of
+/// What [`image_products`](super::image_products) and [`image_components`](super::image_components) make of
 /// what is reflected, emitted and summed by zones, as far as they are there.
 #[must_use]
-pub fn extents_of_image(
+pub fn image_sizes(
     sensor: &ImageSensor,
     (reflected, emitted, zones): (bool, bool, bool),
     context: &Context,
-) -> Vec<Extent> {
+) -> Vec<ProductSize> {
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
-    let image = |bands: usize| Extent::Image { pixels, bands: bands as u64 };
-    let index = Extent::Table { rows: 1, axes: 0, bands: 1 };
+    let image = |bands: usize| ProductSize::Image { pixels, bands: bands as u64 };
+    let index = ProductSize::Table { rows: 1, axes: 0, bands: 1 };
     let of = |measure: &ImageMeasure| match measure {
         ImageMeasure::FourComponents => vec![image(4), image(1)],
         ImageMeasure::GapFraction => {
             [vec![image(1)], vec![index; usize::from(zones) * LEAF_AREA_INDICES]].concat()
         }
-        light => of_light(*light, (reflected, emitted), context, image),
+        light => light_sizes(*light, (reflected, emitted), context, image),
     };
     sensor.measure.iter().flat_map(of).collect()
 }
 
-/// What [`of_directions`](super::of_directions) and
-/// [`components_of_directions`](super::components_of_directions) make, but for single numbers.
+/// What [`direction_products`](super::direction_products) and
+/// [`direction_components`](super::direction_components) make, but for single numbers.
 #[must_use]
-pub fn extents_of_directions(
+pub fn direction_sizes(
     views: usize,
     measures: &[ImageMeasure],
     found: (bool, bool),
     context: &Context,
-) -> Vec<Extent> {
-    let table = |bands: usize| Extent::Table { rows: views as u64, axes: 2, bands: bands as u64 };
+) -> Vec<ProductSize> {
+    let table =
+        |bands: usize| ProductSize::Table { rows: views as u64, axes: 2, bands: bands as u64 };
     let of = |measure: &ImageMeasure| match measure {
         ImageMeasure::FourComponents => vec![table(4)],
         // The share of gaps, and Beer's index.
         ImageMeasure::GapFraction => vec![table(1); 2],
-        light => of_light(*light, found, context, table),
+        light => light_sizes(*light, found, context, table),
     };
     measures.iter().flat_map(of).collect()
 }
 
 /// What is made of light that is reflected and emitted, of so many bands each.
-fn of_light(
+fn light_sizes(
     measure: ImageMeasure,
     (reflected, emitted): (bool, bool),
     context: &Context,
-    of: impl Fn(usize) -> Extent,
-) -> Vec<Extent> {
+    of: impl Fn(usize) -> ProductSize,
+) -> Vec<ProductSize> {
     let bands = context.bands.len();
     match measure {
         ImageMeasure::Radiance => vec![of(bands); usize::from(reflected || emitted)],
