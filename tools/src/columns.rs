@@ -1,7 +1,6 @@
-//! Tables for a person.
+//! Tables in columns.
 
-/// Rows with their columns one below the other; `left` tells which start at the same place, the others
-/// end there.
+/// Lays out rows in aligned columns; those in `left` are aligned to the left, the others to the right.
 pub(crate) fn lay_out(rows: &[Vec<String>], left: &[bool]) -> String {
     let width = |text: &str| text.chars().count();
     let mut widths = vec![0; left.len()];

@@ -19,10 +19,10 @@ use crate::{bench, compare, describe, import_less, verify};
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
 
-/// Heading of what was taken without a word in the scene.
+/// Heading of a value that was assumed without a key in the scene.
 const NOTE: &str = "note: ";
 
-/// Does what `command` asks for.
+/// Runs a command.
 pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Run(arguments) => trace(arguments),
@@ -52,7 +52,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     }
 }
 
-/// What a person reads when a command failed.
+/// Message of a command that failed.
 pub(crate) fn message(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1) {
@@ -109,7 +109,7 @@ fn merge(arguments: &Merge) -> anyhow::Result<()> {
     results(&arguments.scene, &options, &arguments.out, &arguments.folder())
 }
 
-/// What each sensor of a scene will take.
+/// Prints time, memory and file sizes of each sensor of a scene.
 fn forecasts(scene: &Scene, options: &run::Options) -> anyhow::Result<()> {
     let bars = Bars::new();
     let report = run::run_file(&scene.file, options, &bars);
@@ -149,7 +149,7 @@ fn results(scene: &Scene, options: &run::Options, into: &Out, folder: &Path) -> 
     print(&text)
 }
 
-/// What a person reads of files that were written: how many, where, and in place of what.
+/// Text about files that were written: their number, their folder, and the results that they replace.
 pub(crate) fn told(written: &Written) -> String {
     let replaced = written.replaced.as_ref().map_or_else(String::new, |old| format!(" ({old})"));
     format!("{} files in {}{replaced}", written.files.len(), written.folder.display())

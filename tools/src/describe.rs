@@ -1,4 +1,4 @@
-//! What a scene consists of, as `sunfleck check` prints it.
+//! Contents of a scene, as `sunfleck check` prints them.
 
 use sunfleck::run::{SceneFacts, SunFacts};
 

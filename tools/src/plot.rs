@@ -1,4 +1,4 @@
-//! What all pictures of this program share: colours, letters, axes.
+//! Colours, letters and axes of all charts of this program.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -14,7 +14,7 @@ pub(crate) const INK: RGBColor = RGBColor(40, 40, 40);
 pub(crate) const FAINT: RGBColor = RGBColor(225, 225, 225);
 pub(crate) const SHADE: RGBColor = RGBColor(240, 243, 240);
 
-/// Colours that people of any colour vision tell apart.
+/// Colours that can be distinguished with any colour vision.
 ///
 /// Source: Okabe and Ito (2008), "Color Universal Design".
 pub(crate) const fn colour(system: System) -> RGBColor {

@@ -109,16 +109,16 @@ impl Progress for Bars {
     }
 }
 
-/// Silence after which a word is due in a pipe; each further one is due after twice as long.
+/// Time until the first line in a pipe; each further line comes after twice as long.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// Longest silence in a pipe.
+/// Longest time between two lines in a pipe.
 const LONGEST_SILENCE: Duration = Duration::from_mins(10);
 
-/// How often is looked whether a word is due.
+/// Interval between checks whether a line is due.
 const BEAT: Duration = Duration::from_millis(200);
 
-/// What is being done.
+/// Progress of the current stage or sensor.
 #[derive(Debug)]
 struct Work {
     stage: String,

@@ -1,19 +1,19 @@
-//! Columns of tables that hold several products: one an axis.
+//! Columns of tables that hold several products, one column per axis.
 
 use super::rows::{columns, indices, point};
 use crate::products::{Product, ProductAxis, Report};
 
-/// Axes of several products, each once, but for the bands.
+/// Columns of a table for the axes of several products. Each axis occurs once; bands have a column of their own.
 #[derive(Clone, Debug)]
 pub struct AxisColumns<'a> {
     names: Vec<String>,
     report: &'a Report,
 }
 
-/// Where a value stands in its product.
+/// Position of a value in its product, as cells of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisCells {
-    /// A cell for each of the axes; empty for those that the product has not.
+    /// One cell per axis, empty for an axis that the product does not have.
     pub cells: Vec<String>,
     /// Name of the band; empty without bands.
     pub band: String,
@@ -22,7 +22,7 @@ pub struct AxisCells {
 const BAND: &str = "band";
 
 impl<'a> AxisColumns<'a> {
-    /// Those of products of a report, in the order in which they occur.
+    /// Collects the axes of products of a report, in the order in which they occur.
     #[must_use]
     pub fn new<'p>(products: impl IntoIterator<Item = &'p Product>, report: &'a Report) -> Self {
         let mut names: Vec<String> = Vec::new();
@@ -35,12 +35,12 @@ impl<'a> AxisColumns<'a> {
         Self { names, report }
     }
 
-    /// Their names.
+    /// Names of the axes.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
     }
 
-    /// Where the value `row` of a product stands.
+    /// Cells of the value `row` of a product.
     #[must_use]
     pub fn place(&self, product: &Product, row: usize) -> AxisCells {
         let mut place =

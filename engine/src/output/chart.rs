@@ -17,7 +17,7 @@ const NAMES: u32 = 190;
 const INK: RGBColor = RGBColor(40, 40, 40);
 const FAINT: RGBColor = RGBColor(225, 225, 225);
 
-/// Colours that people of any colour vision tell apart.
+/// Colours that can be distinguished with any colour vision.
 ///
 /// Source: Okabe and Ito (2008), "Color Universal Design".
 const COLOURS: [RGBColor; 8] = [
@@ -42,7 +42,7 @@ pub(super) struct Heading<'a> {
     pub(super) scene: &'a str,
     /// Name of the quantity.
     pub(super) quantity: &'a str,
-    /// Its unit; `1` of a fraction.
+    /// Unit of the quantity; `1` for a fraction.
     pub(super) unit: &'a str,
 }
 
@@ -136,7 +136,7 @@ fn draw_line(
     Ok(())
 }
 
-/// Which colour is which line.
+/// Draws the name of each line in its colour.
 fn draw_names(area: &Panel<'_>, lines: &Lines) -> Result<(), DrawError> {
     let style = letters(13).pos(Pos::new(HPos::Left, VPos::Center));
     let mut y = 66;

@@ -57,12 +57,12 @@ struct Estimate {
     standard_error: f64,
 }
 
-/// How a product adds up over a day.
+/// Rule for the sum of a product over a day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// Power, whose integral over time is energy.
     Power,
-    /// Share of the incident light.
+    /// Fraction of the incident light.
     Share,
 }
 

@@ -1,4 +1,4 @@
-//! Pictures with what it takes to read them around the pixels: title, colours, scale and north.
+//! Pictures with title, legend and scale around the pixels.
 
 use std::io::{self, Write};
 
@@ -15,10 +15,10 @@ const LETTERS: usize = 44;
 /// Colours of the squares behind pixels without data.
 const NO_DATA: [[u8; 3]; 2] = [[240; 3], [215; 3]];
 
-/// What stands above a picture.
+/// Caption above a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Caption<'a> {
-    /// What was measured, and by which sensor.
+    /// Sensor and measured quantity.
     pub(super) title: String,
     /// Title of the scene.
     pub(super) scene: &'a str,
@@ -110,7 +110,7 @@ enum Row {
 /// Rows of a figure.
 struct Layout {
     letters: Letters,
-    /// Room around all of it, pixels.
+    /// Width of the margin, pixels.
     margin: usize,
     /// Width of the rows, pixels.
     width: usize,
@@ -254,7 +254,7 @@ impl Layout {
     }
 }
 
-/// How a colour of a legend is filled.
+/// Fill of a square of a legend.
 #[derive(Clone, Copy)]
 enum Swatch {
     Plain([u8; 3]),

@@ -1,17 +1,17 @@
-//! What the colours of a picture mean.
+//! Legends: the meaning of the colours of a picture.
 
 use crate::products::{Channels, Class, Image};
 
-/// How to read a picture.
+/// Legend of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Legend {
-    /// What its colours stand for.
+    /// Meaning of its colours.
     pub(super) entries: Entries,
     /// Names of bands that are dark in every pixel and not shown.
     pub(super) dark: Vec<String>,
 }
 
-/// What the colours of a picture stand for.
+/// Meaning of the colours of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Entries {
     /// Values of bands, each a ramp.
@@ -27,9 +27,9 @@ pub(super) enum Entries {
 pub(super) struct Bar {
     /// Name of the band.
     pub(super) name: String,
-    /// Its centre, nm, if it has one.
+    /// Centre wavelength of the band, nm, if it is known.
     pub(super) wavelength: Option<f64>,
-    /// Which of red, green and blue show it.
+    /// True for each of red, green and blue that shows the band.
     pub(super) channels: [bool; 3],
     /// Values that are black and of full brightness.
     pub(super) low: f32,

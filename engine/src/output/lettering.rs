@@ -51,7 +51,7 @@ impl Letters {
         self.width() * text.chars().count()
     }
 
-    /// As much of a text as fits into a width, with a mark where it was cut.
+    /// Cuts a text to a width, with a mark where it was cut.
     pub(super) fn fitted(self, text: &str, width: usize) -> String {
         let letters = width / self.width();
         if text.chars().count() <= letters {

@@ -2,9 +2,9 @@
 
 use crate::products::{AxisPoints, Product, ProductAxis};
 
-/// More lines than these are not told apart.
+/// Maximum number of lines that can be distinguished.
 const MOST_LINES: usize = 8;
-/// Vertical planes of views, and more of them make no chart of lines.
+/// Maximum number of vertical planes of views in a chart of lines.
 const MOST_PLANES: usize = 4;
 
 /// A chart of lines.
@@ -22,7 +22,7 @@ pub(super) struct Lines {
 /// A line of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Line {
-    /// Which values they are; empty if there is no other line.
+    /// Name of the values; empty if there is only one line.
     pub(super) name: String,
     pub(super) points: Vec<Point>,
 }

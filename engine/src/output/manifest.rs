@@ -1,4 +1,4 @@
-//! What a folder of results says of itself: which scene it is of, and which files are results.
+//! Description of a folder of results: its scene, and the files that are results.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -7,10 +7,10 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
 
-/// File that holds it.
+/// File that holds the manifest.
 pub(super) const SUMMARY: &str = "summary.json";
 
-/// The part of `summary.json` that tells where results come from.
+/// The part of `summary.json` that describes the origin of results.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(super) struct Manifest {
     /// Title of the scene.
@@ -36,7 +36,7 @@ struct Product {
 }
 
 impl Manifest {
-    /// That of a folder; `None` if it holds no results.
+    /// Reads the manifest of a folder; `None` if it holds no results.
     pub(super) fn read(folder: &Path) -> Option<Self> {
         let path = folder.join(SUMMARY);
         // Opening a pipe would wait for its writer.

@@ -8,7 +8,9 @@ mod axes;
 mod chart;
 mod classification;
 mod colour;
+mod composite;
 mod daily;
+mod destination;
 mod envi;
 mod exr;
 mod figure;
@@ -50,7 +52,7 @@ pub use size::file_size;
 pub use sweep::{folder_name, is_complete, sweep_table, write_point};
 pub use table::table;
 
-/// Why a report is not on disk. Nothing of it is, then.
+/// Error of writing a report; no part of it is on disk.
 #[non_exhaustive]
 #[expect(missing_docs, reason = "each variant's message names its fields")]
 #[derive(Debug, thiserror::Error)]
@@ -74,7 +76,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Returns whether something else is where results are to be.
+    /// Returns true if another file or folder has the name of a result.
     fn is_in_the_way(&self) -> bool {
         matches!(self, Self::Taken { .. } | Self::Foreign { .. } | Self::OfAnother { .. })
     }
@@ -90,7 +92,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
     Ok(Results::for_any_scene(folder).write(report)?.files)
 }
 
-/// Writes the files of all products; returns the bytes that those of each sensor take.
+/// Writes the files of all products; returns the size of those of each sensor in bytes.
 fn put_products(
     report: &Report,
     plan: &[names::SensorNames],
@@ -134,7 +136,7 @@ fn put_image(
     Ok(size + put_pictures(source, image, [&names.png(), &names.bare()], staging)?)
 }
 
-/// Writes the pictures of an image, with a legend around it and without; returns the bytes they take.
+/// Writes the pictures of an image with and without a legend; returns their size in bytes.
 fn put_pictures(
     source: &Source<'_>,
     image: &Image,
@@ -152,7 +154,7 @@ fn put_pictures(
     Ok(bytes + staging.file(bare, |file| picture.encode(&source.provenance(), file))?)
 }
 
-/// Writes a chart of values by direction or height; returns the bytes it takes, 0 of what makes no chart.
+/// Writes a chart of values by direction or height; returns its size in bytes, 0 without a chart.
 fn put_chart(
     source: &Source<'_>,
     name: &str,
@@ -168,7 +170,7 @@ fn put_chart(
     staging.file(name, |file| file.write_all(chart::draw(&lines, &heading)?.as_bytes()))
 }
 
-/// Gives a file another text; it has the old one or the new one, never a part.
+/// Replaces the text of a file in one step: it holds the old one or the new one, never a part.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -195,7 +197,7 @@ pub fn probe(folder: &Path) -> Result<(), OutputError> {
     staging::Staging::open(folder).map(drop)
 }
 
-/// A product and what tells where it comes from.
+/// A product with its provenance.
 struct Source<'a> {
     report: &'a Report,
     sensor: &'a str,
@@ -203,7 +205,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Keys and values that stand in every file.
+    /// Keys and values that every file contains.
     fn provenance(&self) -> Vec<(&'static str, String)> {
         // A line break in a title must not end a comment line.
         let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -7,20 +7,20 @@ use crate::products::Report;
 /// Names for one sensor.
 #[derive(Debug)]
 pub(super) struct SensorNames {
-    /// Its key in the summary.
+    /// Key in the summary.
     pub(super) key: String,
-    /// Of its products, in order.
+    /// Names for its products, in order.
     pub(super) products: Vec<ProductNames>,
 }
 
 /// Names for one product.
 #[derive(Debug)]
 pub(super) struct ProductNames {
-    /// Its key in the summary.
+    /// Key in the summary.
     pub(super) key: String,
-    /// Its files' name, without extension.
+    /// Name of its files without extension.
     pub(super) stem: String,
-    /// The same of the file of an image's standard errors.
+    /// Name of the file of an image's standard errors, without extension.
     errors: String,
 }
 

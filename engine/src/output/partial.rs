@@ -1,5 +1,4 @@
-//! What is being written: under a name of its own, beside a lock file that is locked as long as its
-//! writer is alive.
+//! Unfinished folders and files: each has a temporary name and a lock file that is locked while its writer runs.
 //!
 //! For results `plot`, the folder around them holds `.plot.<process>-<n>.partial` and
 //! `.plot.<process>-<n>.lock` while they are written. The lock file is made first and removed last, so
@@ -45,7 +44,7 @@ pub(super) struct Partial {
     file: File,
 }
 
-/// What a killed run has left behind. Dropped, it removes what is still there of it.
+/// Unfinished folder and lock file of a killed run. Dropping it removes those that still exist.
 #[derive(Debug)]
 pub(super) struct Stale {
     pub(super) path: PathBuf,
@@ -149,7 +148,7 @@ pub fn clean_up() {
     std::mem::forget(living);
 }
 
-/// What killed runs have left in `folder` of what was to be called `name`.
+/// Unfinished folders in `folder` that killed runs made for `name`.
 pub(super) fn stale(folder: &Path, name: &OsStr) -> Vec<Stale> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let start = sibling(name, "");

@@ -1,23 +1,15 @@
-//! Pictures for people: eight bits a channel, stretched, transparent where there is no data.
+//! Pictures: eight bits per channel, stretched, transparent where there are no data.
 
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::legend::{Bar, Entries, Legend};
+use super::composite::Composite;
+use super::legend::Legend;
 use super::{OutputError, colour, put_file};
 use crate::products::{Channels, Class, Image, Rendering};
 
-/// Shares of the pixels that end up at black and at full brightness.
-const STRETCH: (f64, f64) = (0.01, 0.99);
-/// Least full brightness of a false colour, as a share of that of the brightest.
-const FAINTEST: f32 = 0.5;
-/// Of the display.
+/// Exponent of the display.
 pub(super) const GAMMA: f32 = 2.2;
-/// Wavelengths that red, green and blue stand for where the image reaches the near infrared, nm:
-/// the classic false colours, in which leaves are red.
-const FALSE_COLOUR: [f64; 3] = [865.0, 660.0, 560.0];
-/// Those of natural colours, nm.
-const NATURAL: [f64; 3] = [650.0, 550.0, 450.0];
 
 /// An sRGB picture with opacity.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,7 +23,7 @@ pub struct RgbaPicture {
 }
 
 impl RgbaPicture {
-    /// Picture of `image` as its rendering says, and how to read it.
+    /// Picture of `image` as its rendering says, with its legend.
     ///
     /// - `wavelengths`: of the image's bands, nm; NaN where unknown
     #[must_use]
@@ -52,7 +44,7 @@ impl RgbaPicture {
             Rendering::Colours { channels: Channels::Bands(bands), exposure: None, .. } => {
                 let bands = bands.map(|band| band.min(image.bands.len().saturating_sub(1)));
                 let bands = bands.map(|band| Some(band).filter(|band| has_data[*band]));
-                Self::composite(image, wavelengths, &Composite { bands, natural: true })
+                Self::composite(image, wavelengths, &Composite { bands, is_natural: true })
             }
             Rendering::Colours { channels, exposure, white } => {
                 let mut white = white.clone();
@@ -78,8 +70,8 @@ impl RgbaPicture {
         Self::with_legend(image, wavelengths).0
     }
 
-    /// `image` for a first look: one to three of its bands that have data, stretched between the 1st and 99th
-    /// percentiles; opacity is the coverage.
+    /// Picture of one to three bands of `image` that have data, stretched between the 1st and 99th
+    /// percentiles. Opacity is the coverage.
     ///
     /// - `wavelengths`: of the image's bands, nm; NaN where unknown
     #[must_use]
@@ -88,7 +80,7 @@ impl RgbaPicture {
         Self::composite(image, wavelengths, &composite).0
     }
 
-    /// Each pixel in a colour of its own, transparent where it has none; opacity is the coverage.
+    /// Colours each pixel by its values, transparent where it has no colour. Opacity is the coverage.
     fn painted(image: &Image, colour: impl Fn(&[f32]) -> Option<[u8; 3]>) -> Self {
         let pixels = image.values.chunks_exact(image.bands.len().max(1)).zip(&image.coverage);
         let rgba = pixels.flat_map(|(pixel, &coverage)| match colour(pixel) {
@@ -141,7 +133,7 @@ impl RgbaPicture {
     }
 }
 
-/// For each band whether any of its pixels has a value other than 0; all of them where none has.
+/// Returns true for each band with a value other than 0, or for all bands if there is none.
 fn bands_with_data(image: &Image) -> Vec<bool> {
     let bands = image.bands.len();
     let mut has_data = vec![false; bands];
@@ -177,135 +169,11 @@ fn mixed(pixel: &[f32], classes: &[Class]) -> Option<[u8; 3]> {
     Some([0, 1, 2].map(channel))
 }
 
-/// Which bands are red, green and blue; none where that has no data.
-#[derive(Debug)]
-struct Composite {
-    bands: [Option<usize>; 3],
-    /// Whether the three are stretched alike, which keeps the hues.
-    natural: bool,
-}
-
-impl Composite {
-    /// Chooses among the bands that have data.
-    fn new(wavelengths: &[f64], has_data: &[bool]) -> Self {
-        let at = |band: usize| wavelengths.get(band).copied().unwrap_or(f64::NAN);
-        // Bands of unknown wavelength are taken in their order.
-        let mut order: Vec<usize> = (0..has_data.len()).filter(|&band| has_data[band]).collect();
-        if order.iter().all(|&band| at(band).is_finite()) {
-            order.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
-        }
-        let (Some(&shortest), Some(&longest)) = (order.first(), order.last()) else {
-            return Self { bands: [None; 3], natural: true };
-        };
-        let three = |bands: [usize; 3], natural| Self { bands: bands.map(Some), natural };
-        if order.len() < 3 {
-            return three([longest, shortest, shortest], false);
-        }
-        let near_infrared = order.iter().any(|&band| (740.0..1400.0).contains(&at(band)));
-        let wanted = if near_infrared { FALSE_COLOUR } else { NATURAL };
-        let nearest = |wavelength: f64| {
-            let distance = |band: usize| (at(band) - wavelength).abs();
-            order.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
-        };
-        match wanted.map(nearest) {
-            [Some(r), Some(g), Some(b)] if r != g && g != b && r != b => {
-                three([r, g, b], !near_infrared)
-            }
-            _ => three([longest, order[order.len() / 2], shortest], false),
-        }
-    }
-
-    fn stretches(&self, image: &Image) -> [Stretch; 3] {
-        let of = |band: Option<usize>| {
-            band.map_or(Stretch::NONE, |band| Stretch::between_percentiles(image, band))
-        };
-        let [r, g, b] = self.bands.map(of);
-        let shown = [r, g, b].into_iter().zip(self.bands).filter(|(_, band)| band.is_some());
-        let shown: Vec<Stretch> = shown.map(|(stretch, _)| stretch).collect();
-        if shown.is_empty() {
-            return [r, g, b];
-        }
-        let low = shown.iter().map(|one| one.low).fold(f32::INFINITY, f32::min);
-        let high = shown.iter().map(|one| one.high).fold(f32::NEG_INFINITY, f32::max);
-        if self.natural {
-            return [Stretch { low, high }; 3];
-        }
-        // A dim band stretched in full would drown the others: bare soil in cyan.
-        [r, g, b].map(|one| Stretch { high: one.high.max(FAINTEST * high), ..one })
-    }
-
-    /// A bar for each band that is shown, in the colours that it has where the others are dark.
-    fn legend(&self, image: &Image, wavelengths: &[f64], stretches: &[Stretch; 3]) -> Legend {
-        let mut bars: Vec<Bar> = Vec::new();
-        let mut shown: Vec<usize> = Vec::new();
-        for (channel, (band, stretch)) in self.bands.into_iter().zip(stretches).enumerate() {
-            let Some(band) = band else { continue };
-            if let Some(at) = shown.iter().position(|&other| other == band) {
-                bars[at].channels[channel] = true;
-                continue;
-            }
-            let mut channels = [false; 3];
-            channels[channel] = true;
-            let wavelength = wavelengths.get(band).copied().filter(|nm| nm.is_finite());
-            let name = image.bands[band].clone();
-            bars.push(Bar { name, wavelength, channels, low: stretch.low, high: stretch.high });
-            shown.push(band);
-        }
-        let has_data = image.values.iter().any(|value| value.is_finite());
-        let is_dark = |(band, name): (usize, &String)| {
-            let mut values = image.values.iter().skip(band).step_by(image.bands.len());
-            // Pixels without data tell nothing of the light.
-            let is_dark = has_data && values.all(|value| !value.is_finite() || *value == 0.0);
-            is_dark.then(|| name.clone())
-        };
-        let dark = image.bands.iter().enumerate().filter_map(is_dark).collect();
-        Legend { entries: Entries::Bars(bars), dark }
-    }
-}
-
-/// What becomes black and what becomes full brightness.
-#[derive(Clone, Copy, Debug)]
-struct Stretch {
-    low: f32,
-    high: f32,
-}
-
-impl Stretch {
-    /// Stretch of a channel that shows nothing.
-    const NONE: Self = Self { low: 0.0, high: 1.0 };
-
-    fn between_percentiles(image: &Image, band: usize) -> Self {
-        let all = image.values.iter().skip(band).step_by(image.bands.len().max(1));
-        let mut seen: Vec<f32> = all.copied().filter(|value| value.is_finite()).collect();
-        if seen.is_empty() {
-            return Self::NONE;
-        }
-        let last = seen.len() - 1;
-        let mut percentile = |share: f64| {
-            let index = (share * last as f64).round() as usize;
-            *seen.select_nth_unstable_by(index, f32::total_cmp).1
-        };
-        let (low, high) = (percentile(STRETCH.0), percentile(STRETCH.1));
-        // A plain image is neither black nor white; differences in its last digits are no picture.
-        let plain = high - low <= 1e-5 * high.abs();
-        if plain {
-            Self { low: 0.0, high: (2.0 * high).max(f32::MIN_POSITIVE) }
-        } else {
-            Self { low, high }
-        }
-    }
-
-    /// `value` in [0, 1].
-    fn apply(self, value: f32) -> f32 {
-        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
-    }
-}
-
 pub(super) fn byte(fraction: f32) -> u8 {
     (255.0 * fraction.clamp(0.0, 1.0)).round() as u8
 }
 
-/// What a PNG holds.
+/// Pixels of a PNG.
 pub(super) struct Pixels<'a> {
     /// Columns and rows.
     pub(super) size: (usize, usize),
@@ -343,23 +211,6 @@ fn plain(error: png::EncodingError) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn bands_of(wavelengths: &[f64]) -> [usize; 3] {
-        Composite::new(wavelengths, &vec![true; wavelengths.len()])
-            .bands
-            .map(Option::unwrap_or_default)
-    }
-
-    #[test]
-    fn colours_follow_the_wavelengths() {
-        assert_eq!(bands_of(&[660.0]), [0, 0, 0], "grey");
-        assert_eq!(bands_of(&[865.0, 660.0]), [0, 1, 1], "near infrared is red");
-        assert_eq!(bands_of(&[660.0, 865.0]), [1, 0, 0]);
-        assert_eq!(bands_of(&[450.0, 550.0, 650.0]), [2, 1, 0], "natural");
-        assert_eq!(bands_of(&[490.0, 560.0, 665.0, 842.0]), [3, 2, 1], "false colours");
-        assert_eq!(bands_of(&[8000.0, 10_000.0, 12_000.0]), [2, 1, 0], "longest is red");
-        assert_eq!(bands_of(&[f64::NAN; 4]), [3, 2, 0], "unknown");
-    }
 
     #[test]
     fn natural_colours_keep_their_hues_and_false_ones_gain_contrast() {

@@ -80,7 +80,7 @@ pub(super) fn write(source: &Source<'_>, faces: &Faces, file: &mut impl Write) -
     Ok(())
 }
 
-/// Where the colours end: above nearly all of what absorbs at all.
+/// Upper end of the colours, above nearly all values that are not 0.
 fn top(sums: &[f32]) -> f32 {
     let mut lit: Vec<f32> = sums.iter().copied().filter(|sum| *sum > 0.0).collect();
     if lit.is_empty() {

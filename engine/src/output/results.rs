@@ -1,4 +1,4 @@
-//! A folder of results of one command for one scene: what may be replaced, and how results get there.
+//! Folder of the results of one command for one scene, and rules for replacing older results.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -23,28 +23,27 @@ pub struct Results {
     force: bool,
 }
 
-/// What was written.
+/// Files that were written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The folder; another one than was asked for if files that are no results were in the way.
+    /// Folder of the files. It has a number appended if files that are no results had their names.
     pub folder: PathBuf,
     /// Paths of the files, `summary.json` last.
     pub files: Vec<PathBuf>,
-    /// Which results they take the place of, if those are not of the same scene with the same
-    /// parameters.
+    /// Text about the results that they replace, if those are of another scene or of other parameters.
     pub replaced: Option<String>,
 }
 
-/// Numbers that are appended to a folder's name before writing fails.
+/// Number of folder names that are tried before writing fails.
 const ATTEMPTS: u32 = 1000;
 
 impl Results {
     /// Tries whether results can be written to a folder before anything is traced; leaves everything
     /// as it was, but ends what a killed run began there.
     ///
-    /// - `command`: what makes the results: `run`
+    /// - `command`: command that makes the results, such as `run`
     /// - `scene`: file of the scene
-    /// - `force`: whether results of another scene or command may be replaced
+    /// - `force`: true if results of another scene or command may be replaced
     ///
     /// # Errors
     /// If the folder cannot be made or written to, or holds results of another scene or command.
@@ -60,7 +59,7 @@ impl Results {
         Ok(results)
     }
 
-    /// The folder, whatever results it holds; for a program that decides itself what to replace.
+    /// Results that replace those of any scene in the folder.
     pub(super) fn for_any_scene(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), command: "run", scene: None, force: true }
     }
@@ -74,7 +73,7 @@ impl Results {
         self.write_with(report, |_| Ok(()))
     }
 
-    /// The same with more files.
+    /// Writes all files of a report, and more files.
     pub(super) fn write_with(
         &self,
         report: &Report,
@@ -84,7 +83,7 @@ impl Results {
         self.put(|folder, staging| {
             let sizes = put_products(report, &plan, staging)?;
             more(staging)?;
-            let way = self.way_to_scene(staging, report.origin.as_ref());
+            let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
             let sizes = Sizes { plan: &plan, bytes: &sizes };
@@ -107,7 +106,7 @@ impl Results {
             for (name, text) in texts {
                 staging.file(name, |file| file.write_all(text.as_bytes()))?;
             }
-            let way = self.way_to_scene(staging, report.origin.as_ref());
+            let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
             staging.file("summary.json", |file| summary::write_head(&head, file))?;
@@ -132,7 +131,7 @@ impl Results {
             if let Some(daily) = daily {
                 staging.file(daily::FILE, |file| daily.write(file))?;
             }
-            let way = self.way_to_scene(staging, report.origin.as_ref());
+            let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
             let write = |file: &mut _| summary::write_sweep(&head, points, daily, file);
@@ -141,8 +140,8 @@ impl Results {
         })
     }
 
-    /// Fills the folder, or one beside it if something is in the way that is none of ours: what was
-    /// traced for hours is not lost for that.
+    /// Fills the folder. If other files have the names of results, it fills a folder beside it, so that a long run
+    /// is not lost.
     fn put(
         &self,
         fill: impl Fn(&Path, &mut Staging) -> Result<Option<String>, OutputError>,
@@ -184,18 +183,18 @@ impl Results {
         }
     }
 
-    fn way_to_scene(&self, staging: &Staging, origin: Option<&SceneSource>) -> Option<String> {
-        let file = self.scene.as_ref().or(origin.map(|origin| &origin.file))?;
+    fn way_to_scene(&self, staging: &Staging, source: Option<&SceneSource>) -> Option<String> {
+        let file = self.scene.as_ref().or(source.map(|source| &source.file))?;
         let file = file.canonicalize().unwrap_or_else(|_not_there| file.clone());
         Some(relative(staging.target(), &file))
     }
 }
 
-/// What to say of the results that are about to be replaced.
+/// Text about the results that are about to be replaced.
 fn replaced(staging: &Staging, folder: &Path, command: &str, report: &Report) -> Option<String> {
     let old = staging.manifest()?;
-    let origin = report.origin.as_ref()?;
-    let file = origin.file.canonicalize().unwrap_or_else(|_not_there| origin.file.clone());
+    let source = report.source.as_ref()?;
+    let file = source.file.canonicalize().unwrap_or_else(|_not_there| source.file.clone());
     if !old.is_of(staging.target(), command, &file) {
         return Some(format!(
             "{} held results of {}",

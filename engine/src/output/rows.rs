@@ -87,7 +87,7 @@ pub fn harmless(text: &str) -> String {
     }
 }
 
-/// The same of a comment line, which a spreadsheet parts into cells.
+/// Makes a comment line harmless, which a spreadsheet splits into cells.
 fn harmless_line(text: &str) -> String {
     let cells = text.split_inclusive([',', ';', '\t']);
     let cell = |cell: &str| {

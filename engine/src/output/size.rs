@@ -1,21 +1,21 @@
 use crate::products::ProductSize;
 
-/// Size of a number in a table, with what parts it from the next, bytes: about what the shortest
-/// text takes that reads back as the same f64.
+/// Size of a number and its separator in a table, bytes: about that of the shortest text that reads back as the
+/// same f64.
 const NUMBER: u64 = 20;
 
-/// Size of a number or name that tells where a value lies: these have few digits.
+/// Size of a number or name on an axis, bytes: these have few digits.
 const PLACE: u64 = 8;
 
-/// Size of what an image's files, its legend among them, or a table hold beside their values, bytes.
+/// Size of the headers and the legend of an image's files, and of the header of a table, bytes.
 const HEADERS: u64 = 12_000;
 const HEADER: u64 = 300;
 
 /// Size of an opaque pixel in the PNG with a legend and in that without, bytes.
 const PIXEL: u64 = 2 * 2;
 
-/// Size of the files of a product that is to be measured, bytes: exact but for compression, for how
-/// many digits its numbers have, and for headers.
+/// Size of the files of a product before it is measured, bytes. Compression, the digits of numbers and headers are
+/// estimated.
 #[must_use]
 pub fn file_size(extent: ProductSize) -> u64 {
     match extent {

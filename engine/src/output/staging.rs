@@ -1,127 +1,29 @@
 //! A folder of files that appears all at once.
 
-use std::env;
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::OutputError;
+use super::destination::{Destination, INSIDE};
 use super::manifest::Manifest;
-use super::partial::{Partial, Uninterrupted, stale};
-use super::swap::{self, Exchange, Others, exchange, recover};
+use super::partial::{Partial, Uninterrupted};
+use super::swap::{self, Exchange, Others, exchange};
 
-/// Files on their way into one folder. Dropped before [`Staging::commit`] has ended, it removes
-/// them all, and the folders that it made.
+/// Files that are being written for one folder. If it is dropped before [`Staging::commit`] has ended, it removes
+/// all of them and the folders that it made.
 #[derive(Debug)]
 pub(super) struct Staging {
-    place: Destination,
+    destination: Destination,
     partial: Partial,
     names: Vec<String>,
 }
 
-/// Where a folder of results is, and where it is made.
-#[derive(Debug)]
-struct Destination {
-    /// As its user calls it.
-    folder: PathBuf,
-    /// Absolute, links followed.
-    target: PathBuf,
-    /// Folder that the unfinished one is made in, and the name that it is made for.
-    around: PathBuf,
-    name: OsString,
-    /// True if the folder may be exchanged for another one.
-    may_rename: bool,
-    /// Folders around it that did not exist before, outermost first.
-    made: Vec<PathBuf>,
-}
-
-/// Name within a folder that cannot be replaced as a whole.
-const INSIDE: &str = "sunfleck";
-
-impl Destination {
-    fn new(folder: &Path) -> Result<Self, OutputError> {
-        if folder.is_file() {
-            return Err(OutputError::NotAFolder { path: folder.to_owned() });
-        }
-        let fail = |source| OutputError::Folder { path: folder.to_owned(), source };
-        let absolute = std::path::absolute(folder).map_err(fail)?;
-        let target = match absolute.canonicalize() {
-            Ok(target) => target,
-            Err(_not_there) => absolute,
-        };
-        let mut place = Self {
-            folder: folder.to_owned(),
-            around: target.parent().unwrap_or(&target).to_owned(),
-            name: target.file_name().unwrap_or_default().to_owned(),
-            may_rename: true,
-            made: Vec::new(),
-            target,
-        };
-        place.made = place
-            .around
-            .ancestors()
-            .take_while(|path| !path.exists())
-            .map(Path::to_owned)
-            .collect();
-        place.made.reverse();
-        if let Err(source) = fs::create_dir_all(&place.around) {
-            place.unmake();
-            return Err(fail(source));
-        }
-        // Links in what was not there a moment ago are followed now.
-        if !place.target.exists()
-            && let Ok(around) = place.around.canonicalize()
-        {
-            place.target = around.join(&place.name);
-            place.around = around;
-        }
-        let is_here = env::current_dir().is_ok_and(|here| here.starts_with(&place.target));
-        if is_here || place.name.is_empty() {
-            place.stay();
-        }
-        Ok(place)
-    }
-
-    /// Makes the new files within the folder, which is not renamed.
-    fn stay(&mut self) {
-        self.may_rename = false;
-        self.around.clone_from(&self.target);
-        self.name = INSIDE.into();
-    }
-
-    fn unmake(&self) {
-        for folder in self.made.iter().rev() {
-            drop(fs::remove_dir(folder));
-        }
-    }
-
-    /// Ends what killed runs have begun here.
-    fn recover(&self) {
-        for stale in stale(&self.around, &self.name) {
-            recover(stale, &self.target);
-        }
-        for stale in stale(&self.target, INSIDE.as_ref()) {
-            recover(stale, &self.target);
-        }
-    }
-
-    fn partial(&mut self) -> io::Result<Partial> {
-        match Partial::new(&self.around, &self.name, &self.made) {
-            Err(_not_allowed) if self.may_rename && self.target.is_dir() => {
-                self.stay();
-                Partial::new(&self.around, &self.name, &self.made)
-            }
-            partial => partial,
-        }
-    }
-}
-
 impl Staging {
     pub(super) fn open(folder: &Path) -> Result<Self, OutputError> {
-        let mut place = Destination::new(folder)?;
-        place.recover();
-        let is_new = !place.target.exists();
+        let mut destination = Destination::new(folder)?;
+        destination.recover();
+        let is_new = !destination.target.exists();
         let fail = |source| {
             let path = folder.to_owned();
             if is_new {
@@ -130,9 +32,9 @@ impl Staging {
                 OutputError::Write { path, source }
             }
         };
-        let partial = place.partial().inspect_err(|_| place.unmake()).map_err(fail)?;
+        let partial = destination.partial().inspect_err(|_| destination.unmake()).map_err(fail)?;
         // From here on, dropping it clears away what was made.
-        let staging = Self { place, partial, names: Vec::new() };
+        let staging = Self { destination, partial, names: Vec::new() };
         fs::create_dir(&staging.partial.path).map_err(fail)?;
         if !is_new {
             staging.try_target().map_err(fail)?;
@@ -142,12 +44,12 @@ impl Staging {
 
     /// Absolute path of the folder.
     pub(super) fn target(&self) -> &Path {
-        &self.place.target
+        &self.destination.target
     }
 
     /// Tries whether files may be made in a folder: its owner may have locked it.
     fn try_target(&self) -> io::Result<()> {
-        drop(Partial::new(&self.place.target, INSIDE.as_ref(), &[])?);
+        drop(Partial::new(&self.destination.target, INSIDE.as_ref(), &[])?);
         Ok(())
     }
 
@@ -162,8 +64,8 @@ impl Staging {
         name: &str,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<u64, OutputError> {
-        let shown = self.place.folder.join(name);
-        if self.place.target.join(name).is_dir() {
+        let shown = self.destination.folder.join(name);
+        if self.destination.target.join(name).is_dir() {
             return Err(OutputError::Taken { path: shown });
         }
         self.names.push(name.to_owned());
@@ -191,7 +93,7 @@ impl Staging {
         over_others: bool,
         exchange: Exchange,
     ) -> Result<Vec<PathBuf>, OutputError> {
-        let Destination { folder, target, may_rename, .. } = &self.place;
+        let Destination { folder, target, may_rename, .. } = &self.destination;
         let fail = |source| OutputError::Write { path: folder.clone(), source };
         let uninterrupted = Uninterrupted::start();
         for name in Others::read(target).map_err(fail)?.names {
@@ -215,7 +117,7 @@ impl Staging {
 
     /// The results that are in the folder.
     pub(super) fn manifest(&self) -> Option<Manifest> {
-        Manifest::read(&self.place.target)
+        Manifest::read(&self.destination.target)
     }
 }
 
@@ -296,7 +198,7 @@ mod tests {
             fs::write(folder.join("notes/deep.txt"), "mine too").unwrap();
             let mut staging = staged(&folder, &["a.csv", "b.csv"], "new");
             if !may_rename {
-                staging.place.may_rename = false;
+                staging.destination.may_rename = false;
             }
             let written = staging.commit_by(false, exchange).unwrap();
             assert_eq!(written, ["a.csv", "b.csv", SUMMARY].map(|name| folder.join(name)));

@@ -17,11 +17,11 @@ use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport, Sweep
 /// Names and sizes of a report's files.
 pub(super) struct Sizes<'a> {
     pub(super) plan: &'a [SensorNames],
-    /// Of the files of each sensor.
+    /// Size of the files of each sensor, bytes.
     pub(super) bytes: &'a [u64],
 }
 
-/// Where results come from, and which files they are.
+/// Origin of results, and the names of their files.
 #[derive(Serialize)]
 pub(super) struct Head<'a> {
     scene: &'a str,
@@ -40,7 +40,7 @@ pub(super) struct Head<'a> {
 
 impl<'a> Head<'a> {
     pub(super) fn new(report: &'a Report, command: &'a str, scene_file: Option<String>) -> Self {
-        let origin = report.origin.as_ref();
+        let source = report.source.as_ref();
         let values = |list: &'a [(String, Param)]| {
             Ordered(list.iter().map(|(name, value)| (name.as_str(), value)).collect())
         };
@@ -49,9 +49,9 @@ impl<'a> Head<'a> {
             command,
             scene_file,
             params: values(&report.params),
-            variant: origin.and_then(|origin| origin.variant.as_deref()),
-            set: values(origin.map_or(&[], |origin| &origin.set)),
-            quality: origin.map_or(1.0, |origin| origin.quality),
+            variant: source.and_then(|source| source.variant.as_deref()),
+            set: values(source.map_or(&[], |source| &source.set)),
+            quality: source.map_or(1.0, |source| source.quality),
             hash: &report.hash,
             version: &report.version,
             seed: report.seed,
@@ -59,13 +59,13 @@ impl<'a> Head<'a> {
         }
     }
 
-    /// With the names of all files but the summary.
+    /// Adds the names of all files but the summary.
     pub(super) fn with_files(mut self, names: &[String]) -> Self {
         self.files = names.iter().cloned().chain([SUMMARY.to_owned()]).collect();
         self
     }
 
-    /// What was changed in the scene, for a person.
+    /// Text about the changes that were made to the scene.
     pub(super) fn changes(&self) -> String {
         let set =
             self.set.0.iter().map(|(name, value)| (*name, serde_json::json!(value).to_string()));
@@ -73,7 +73,7 @@ impl<'a> Head<'a> {
     }
 }
 
-/// What was changed in a scene, for a person.
+/// Text about the changes that were made to a scene.
 pub(super) fn changes<'a>(
     variant: Option<&str>,
     set: impl Iterator<Item = (&'a str, String)>,
@@ -173,9 +173,9 @@ struct Summary<'a> {
 #[derive(Serialize)]
 struct Entry<'a> {
     unit: &'a str,
-    /// One axis a dimension, slowest first.
+    /// One axis per dimension, slowest first.
     axes: Ordered<'a, Points>,
-    /// What else is known of the points of an axis, as many as it has.
+    /// Points of further axes along the same dimension, as many as it has.
     #[serde(skip_serializing_if = "Ordered::is_empty")]
     coordinates: Ordered<'a, Coordinates>,
     shape: Vec<usize>,
@@ -234,7 +234,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// What was told of a long measurement after its first samples.
+/// Forecast of a long measurement after its first samples.
 #[derive(Serialize)]
 struct Expected {
     seconds: f64,

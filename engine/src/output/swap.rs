@@ -1,4 +1,4 @@
-//! How finished results take their place: old ones or new ones at any moment, never both.
+//! Exchange of old results for new ones: at any moment a folder holds one or the other, never both.
 //!
 //! The new folder is complete, beside the old one, when one call of the system exchanges them. Where it
 //! cannot (some network file systems, Windows), the old one is renamed first. A folder that cannot be
@@ -170,7 +170,7 @@ fn is_unfinished(name: &str) -> bool {
     })
 }
 
-/// What a folder holds beside results.
+/// Files of a folder that are no results.
 #[derive(Debug)]
 pub(super) struct Others {
     /// Names at the top.
@@ -179,7 +179,7 @@ pub(super) struct Others {
 }
 
 impl Others {
-    /// Those in `folder`, which need not be there.
+    /// Lists the files in `folder`, which need not exist.
     pub(super) fn read(folder: &Path) -> io::Result<Self> {
         let mut found = Self { names: Vec::new(), can_be_carried: true };
         if !folder.try_exists()? {

@@ -23,7 +23,7 @@ const TABLE: &str = "point.csv";
 /// Start of the comment line of a point's table that holds the irradiance on the horizontal plane by band.
 const IRRADIANCE: &str = "# irradiance_w_m2_nm: ";
 
-/// Whether `folder` holds all results of this very point.
+/// Returns true if `folder` holds all results of this point.
 #[must_use]
 pub fn is_complete(point: &SweepPoint, folder: &Path) -> bool {
     let Ok(file) = File::open(folder_of(point, folder).join(TABLE)) else { return false };
@@ -34,7 +34,7 @@ pub fn is_complete(point: &SweepPoint, folder: &Path) -> bool {
 /// Writes the results of a point, `point.csv` with them.
 ///
 /// # Errors
-/// As [`write()`](super::write()).
+/// The same as those of [`write()`](super::write()).
 pub fn write_point(
     report: &Report,
     point: &SweepPoint,
@@ -128,7 +128,7 @@ fn folder_of(point: &SweepPoint, folder: &Path) -> PathBuf {
     folder.join("points").join(name)
 }
 
-/// A name for a folder that is safe on every file system; `identity` tells apart what is too long.
+/// Name of a folder that is safe on every file system. A hash of `identity` distinguishes names that are cut.
 #[must_use]
 pub fn folder_name(name: &str, identity: &str) -> String {
     let safe = |letter: char| {

@@ -6,10 +6,10 @@ use crate::extract::{Inventory, Stage};
 use crate::film::Spread;
 use crate::transport::{AbsorbedCounter, Counter as _};
 
-/// What triangles and discs absorb.
+/// Power that triangles and discs absorb.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faces {
-    /// Which they are: [`Inventory::faces`].
+    /// Inventory whose [`Inventory::faces`] they are.
     pub inventory: Arc<Inventory>,
     /// Easting and northing of the local frame's origin, m.
     pub origin: (f64, f64),

@@ -1,29 +1,29 @@
 use super::{AxisPoints, Product, ProductAxis};
 use crate::spectral::BandWindow;
 
-/// What all products of a run share.
+/// Bands and light that all products of a run have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Context {
     /// Names of the bands.
     pub bands: Vec<String>,
     /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
     pub irradiance: Vec<f64>,
-    /// Whether a sky shines: factors are then hemispherical-directional.
+    /// True if there is light of the sky: factors are then hemispherical-directional.
     pub has_sky: bool,
     /// Anchor of the local frame: easting and northing of its origin, m.
     pub origin: (f64, f64),
-    /// What the radiance in each band consists of, shape `[bands]`.
+    /// Sources of the radiance, shape `[bands]`.
     pub sources: Vec<BandSources>,
 }
 
-/// What the radiance in a band consists of.
+/// Sources of the radiance in a band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandSources {
     /// The band's wavelengths.
     pub window: BandWindow,
-    /// Whether it holds what surfaces and the sky emit.
+    /// True if the band holds the emission of surfaces and sky.
     pub emits: bool,
-    /// Whether it holds what is reflected of sun and sky.
+    /// True if the band holds reflected light of sun and sky.
     pub reflects: bool,
 }
 
@@ -35,7 +35,7 @@ impl Context {
         pairs.filter(|(_, source)| source.emits).map(|(name, _)| name.clone()).collect()
     }
 
-    /// The same under an irradiance of 1 in each band.
+    /// Replaces the irradiance by 1 in each band.
     #[must_use]
     pub fn with_unit_irradiance(&self) -> Self {
         Self { irradiance: vec![1.0; self.bands.len()], ..self.clone() }

@@ -54,9 +54,9 @@ pub struct GapSums<'a> {
     pub sums: &'a Replicates,
     /// Values of each cell.
     pub stride: usize,
-    /// Place of the number of gaps among them.
+    /// Index of the number of gaps among them.
     pub gaps: usize,
-    /// Place of the number of samples among them.
+    /// Index of the number of samples among them.
     pub samples: usize,
 }
 
@@ -66,7 +66,7 @@ impl GapSums<'_> {
         (at(self.gaps), at(self.samples))
     }
 
-    /// Returns whether there is any sample.
+    /// Returns true if there is any sample.
     fn is_sampled(&self) -> bool {
         (0..self.sums.sums.len() / self.stride).any(|cell| self.cell(cell).1 > 0.0)
     }
@@ -79,7 +79,7 @@ pub struct LeafAreaIndex {
     pub name: &'static str,
     /// One-sided leaf area per ground area; infinite where no gap was found.
     pub value: f64,
-    /// Its standard error; NaN where nothing is known of it.
+    /// Standard error; NaN where it is unknown.
     pub standard_error: f64,
 }
 
@@ -96,10 +96,10 @@ struct Term {
 /// - `lai_beer`: Beer's law at the hinge angle of 57.5° (ring 55 to 60°), where `G = 0.5` holds
 ///   whatever the directions of the leaves
 /// - `lai_miller`: Miller's integral over rings of 5° up to 75°, see [`lai_of_views`]
-/// - `lai_2000`: the rings that a LAI-2000 sees (0-13, 16-28, 32-43, 47-58, 61-74°)
+/// - `lai_2000`: the rings of a LAI-2000 (0-13, 16-28, 32-43, 47-58, 61-74°)
 ///
 /// The gap fraction of a ring is its mean over solid angle and azimuth. All are effective indices: the
-/// logarithm is that of a mean. Errors are linearised and know how the rings err together.
+/// logarithm is that of a mean. Errors are linearised, with the covariances of the rings.
 ///
 /// Source: Warren Wilson (1960) for the hinge angle; rings: LI-COR (1992), LAI-2000 manual.
 #[must_use]
@@ -142,7 +142,7 @@ pub fn lai_of_rings(rings: &GapSums<'_>) -> Vec<LeafAreaIndex> {
 /// - `lai_2000`: as a LAI-2000 computes it, `2 Σ -ln P cos θ w` over its five rings, where views have all of
 ///   the angles [`LAI_2000_RINGS`]
 ///
-/// Errors are linearised and know how views err together.
+/// Errors are linearised, with the covariances of the views.
 ///
 /// - `zeniths`: of each view, rad
 ///

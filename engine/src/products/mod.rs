@@ -1,4 +1,4 @@
-//! What a run reports: named quantities with unit, axes and standard error, made from films by pure
+//! Products of a run: named quantities with unit, axes and standard error, made from films by pure
 //! functions.
 
 mod absorbed;

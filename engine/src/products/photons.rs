@@ -91,8 +91,8 @@ pub fn brf_cones(spread: &Spread, counter: &ConeCounter, context: &Context) -> P
 /// arrives at the ground: total, uncollided, collided by the canopy alone, and after bounces between
 /// ground and canopy.
 ///
-/// With a virtual plane of the area `A`, `P / (E A)`: what is absorbed in the column below the plane,
-/// or arrives at the ground there, over what falls on the plane.
+/// With a virtual plane of the area `A` they are `P / (E A)`: the power that is absorbed in the column below the
+/// plane, or arrives at the ground there, over the power on the plane.
 #[must_use]
 pub fn fapar(
     spread: &Spread,
@@ -125,8 +125,8 @@ pub fn fapar(
     ]
 }
 
-/// Where the energy went, as fractions of what falls on the scene's rectangle. Of emitted light, under
-/// an irradiance of 1: in W m⁻² nm⁻¹, where `incident` is what surfaces and the sky emit.
+/// Energy balance, as fractions of the flux on the scene's rectangle. For emitted light, under an irradiance of 1,
+/// it is in W m⁻² nm⁻¹, and `incident` is the emission of surfaces and sky.
 ///
 /// # Panics
 /// If a term of [`EnergyCounter`] has no name here.

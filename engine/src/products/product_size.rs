@@ -1,39 +1,39 @@
-//! How much a product will hold, before it is measured.
+//! Size of a product before it is measured.
 
 use super::{Context, Product};
 use crate::components::{ImageMeasure, ImageSensor};
 use crate::transport::ScatteringOrder;
 
-/// What a product consists of.
+/// Number of values of a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProductSize {
     /// Pixels of an image in each of its bands.
     Image {
         /// Columns times rows.
         pixels: u64,
-        /// Its bands.
+        /// Number of bands.
         bands: u64,
     },
     /// Rows of a table.
     Table {
-        /// Points.
+        /// Number of points.
         rows: u64,
-        /// Numbers or names that tell where each of them lies.
+        /// Number of axes without the bands: numbers or names beside each point.
         axes: u64,
-        /// Bands at each.
+        /// Number of bands.
         bands: u64,
     },
     /// Triangles and discs.
     Faces {
-        /// How many.
+        /// Number of triangles and discs.
         faces: u64,
-        /// Bands of each.
+        /// Number of bands.
         bands: u64,
     },
 }
 
 impl ProductSize {
-    /// Of a product that was measured.
+    /// Size of a product that was measured.
     #[must_use]
     pub fn new(product: &Product) -> Self {
         let count = |values: usize, bands: usize| (values / bands.max(1)) as u64;
@@ -54,7 +54,7 @@ impl ProductSize {
         Self::Table { rows: count(product.values.len(), bands), axes, bands: bands as u64 }
     }
 
-    /// Values, each with an error.
+    /// Number of values, each with an error.
     #[must_use]
     pub const fn values(self) -> u64 {
         match self {
@@ -64,7 +64,7 @@ impl ProductSize {
         }
     }
 
-    /// Memory, bytes; `u64::MAX` of more than can be counted.
+    /// Memory, bytes; `u64::MAX` if it is too large to count.
     #[must_use]
     pub const fn memory(self) -> u64 {
         match self {
@@ -75,9 +75,8 @@ impl ProductSize {
         }
     }
 
-    /// Memory that making its files takes beside that, bytes: of an image the channels of its EXR,
-    /// in rows of their own, or its picture without and with a legend, and the values that this is stretched
-    /// by.
+    /// Additional memory for making its files, bytes. For an image these are the rows of its EXR, or its pictures
+    /// and the values that they are stretched by.
     #[must_use]
     pub const fn memory_of_files(self) -> u64 {
         match self {
@@ -90,7 +89,7 @@ impl ProductSize {
     }
 }
 
-/// Indices that fisheyes report beside gaps, at most.
+/// Maximum number of leaf area indices of a fisheye.
 const LEAF_AREA_INDICES: usize = 3;
 
 /// What [`image_products`](super::image_products) and [`image_components`](super::image_components) make of

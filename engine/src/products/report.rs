@@ -8,9 +8,9 @@ use crate::document::Param;
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProductAxis {
-    /// What varies along it, unit as suffix: `zenith_deg`, `band`.
+    /// Quantity that varies along the axis, with its unit as suffix: `zenith_deg`, `band`.
     pub name: String,
-    /// Where its points lie.
+    /// Positions of its points.
     pub points: AxisPoints,
 }
 
@@ -24,7 +24,7 @@ pub enum AxisPoints {
 }
 
 impl AxisPoints {
-    /// How many points.
+    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -33,7 +33,7 @@ impl AxisPoints {
         }
     }
 
-    /// Whether there is no point.
+    /// Returns true if there is no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -46,11 +46,11 @@ impl AxisPoints {
 /// of `dimensions` is one dimension with its axes, slowest first, bands last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product {
-    /// Its name, in the field's terms: `brf`, `albedo`.
+    /// Name in the field's terms: `brf`, `albedo`.
     pub name: String,
-    /// Its unit; `1` for a fraction.
+    /// Unit; `1` for a fraction.
     pub unit: String,
-    /// Dimensions, slowest first; the last is `band` (or a label axis of a ledger).
+    /// Dimensions, slowest first; the last is `band` (or the terms of an energy balance).
     pub dimensions: Vec<Vec<ProductAxis>>,
     /// Values in the order of `dimensions`; of an image, its mean, shape `[bands]`.
     pub values: Vec<f64>,
@@ -58,19 +58,19 @@ pub struct Product {
     pub standard_error: Vec<f64>,
     /// Pixels, where the quantity is an image.
     pub image: Option<Image>,
-    /// What each triangle and disc has, where the quantity is one of theirs; `values` are the mean.
+    /// Values of triangles and discs, where the quantity is one of theirs; `values` are the mean.
     pub faces: Option<Faces>,
 }
 
 impl SensorReport {
-    /// All its numbers and their errors as bits, which are the same in runs that are.
+    /// Bits of all values and errors, to compare runs.
     pub fn bits(&self) -> impl Iterator<Item = u64> {
         self.products.iter().flat_map(Product::bits)
     }
 }
 
 impl Product {
-    /// All its numbers and their errors as bits.
+    /// Bits of all values and errors.
     pub fn bits(&self) -> impl Iterator<Item = u64> {
         let numbers = self.values.iter().chain(&self.standard_error).map(|value| value.to_bits());
         let pixels =
@@ -78,7 +78,7 @@ impl Product {
         numbers.chain(pixels.map(|value| value.to_bits().into()))
     }
 
-    /// Its values with their standard errors; of an image those of the pixels.
+    /// Values with their standard errors; those of the pixels for an image.
     fn estimates(&self) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
         let finite = |(value, _): &(f64, f64)| value.is_finite();
         let Some(image) = &self.image else {
@@ -89,14 +89,14 @@ impl Product {
         Box::new(pairs.map(|(&v, &e)| (f64::from(v), f64::from(e))).filter(finite))
     }
 
-    /// Whether it has values, and all of them are 0.
+    /// Returns true if it has values, and all of them are 0.
     #[must_use]
     pub fn is_black(&self) -> bool {
         let mut estimates = self.estimates().peekable();
         estimates.peek().is_some() && estimates.all(|(value, _)| value == 0.0)
     }
 
-    /// Returns whether it has values, and all of them are infinite: logarithms of what was never found.
+    /// Returns true if it has values, and all of them are infinite: logarithms of gap fractions of 0.
     #[must_use]
     pub fn is_unbounded(&self) -> bool {
         let mut estimates = self.estimates().peekable();
@@ -133,15 +133,15 @@ pub struct Image {
     pub values: Vec<f32>,
     /// Standard errors, same shape; NaN where there is none.
     pub standard_error: Vec<f32>,
-    /// Fraction of each pixel that sees the scene, shape `[rows, columns]`.
+    /// Fraction of each pixel that shows the scene, shape `[rows, columns]`.
     pub coverage: Vec<f32>,
-    /// How its picture is coloured.
+    /// Colours of its picture.
     pub rendering: Rendering,
-    /// Where pixels lie on the ground, for nadir images with north up.
+    /// Position of the pixels on the ground, for nadir images with north up.
     pub georeference: Option<Georeference>,
 }
 
-/// How the picture of an image is coloured.
+/// Colours of the picture of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rendering {
     /// By wavelength, stretched.
@@ -152,12 +152,12 @@ pub enum Rendering {
     Shares(Vec<Class>),
     /// By colours of its own.
     Colours {
-        /// What red, green and blue are.
+        /// Bands or colour-matching functions of red, green and blue.
         channels: Channels,
         /// Stops over the exposure that shows a white surface on the horizontal as white; automatic
         /// if absent.
         exposure: Option<f64>,
-        /// What the image shows of that white surface, shape `[bands]`.
+        /// Value of the image for that white surface, shape `[bands]`.
         white: Vec<f64>,
     },
 }
@@ -189,7 +189,7 @@ pub struct Georeference {
 pub struct SensorReport {
     /// The sensor's name in the scene.
     pub name: String,
-    /// Its products.
+    /// Products of the sensor.
     pub products: Vec<Product>,
     /// Wall time, s.
     pub seconds: f64,
@@ -197,17 +197,16 @@ pub struct SensorReport {
     pub rays: u64,
     /// Paths or photon packets traced.
     pub samples: u64,
-    /// What ended the measurement, for a person: `brf: median relative standard error 4.8e-3 at most
-    /// 5.0e-3`.
+    /// Criterion that ended the measurement: `brf: median relative standard error 4.8e-3 at most 5.0e-3`.
     pub ended_by: String,
-    /// Of photon packets, the largest share of the incident energy that is neither reflected, lost,
-    /// absorbed nor taken by roulette: the rounding of f64.
+    /// Largest fraction of the incident energy of photon packets that is neither reflected, lost, absorbed nor
+    /// ended by roulette: the rounding of f64.
     pub energy_imbalance: Option<f64>,
-    /// What its first samples told of the whole measurement; of one that ended with them, what it took.
+    /// Estimate from the first samples, or the actual cost if the measurement ended with them.
     pub forecast: Forecast,
 }
 
-/// What a sensor will take.
+/// Time, memory and file sizes of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Wall time of the measurement, s.
@@ -219,7 +218,7 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// Whether a person would want to know before.
+    /// Returns true if it takes longer than 10 s.
     #[must_use]
     pub fn is_long(&self) -> bool {
         self.seconds > 10.0
@@ -241,7 +240,7 @@ impl fmt::Display for Forecast {
     }
 }
 
-/// A number of bytes as people write it: `1.5 GiB`.
+/// A number of bytes with a unit: `1.5 GiB`.
 #[must_use]
 pub fn data_size(bytes: u64) -> String {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
@@ -251,10 +250,10 @@ pub fn data_size(bytes: u64) -> String {
     format!("{size:.digits$} {}", UNITS[power])
 }
 
-/// All that a run measured, and how it came about.
+/// Results of a run with their provenance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Projection of eastings and northings, if the terrain's raster tells.
+    /// Projection of eastings and northings, if the terrain's raster names one.
     pub projection: Option<Projection>,
     /// Title of the scene.
     pub scene: String,
@@ -276,20 +275,20 @@ pub struct Report {
     pub irradiance: Vec<f64>,
     /// Wall time of each stage, s.
     pub stages: Vec<(String, f64)>,
-    /// What the scene did not need and was not built.
+    /// Steps that the scene did not need and that were skipped.
     pub skipped: Vec<String>,
-    /// What was taken without a word in the scene, or left out of its files.
+    /// Values that were assumed without a key in the scene, and contents of files that were left out.
     pub notes: Vec<String>,
-    /// What a person should know: dropped faces, say.
+    /// Warnings, such as dropped faces.
     pub warnings: Vec<String>,
-    /// What each sensor measured, in document order.
+    /// Results of each sensor, in document order.
     pub sensors: Vec<SensorReport>,
     /// Values of the scene's parameters.
     pub params: Vec<(String, Param)>,
     /// Azimuth of the sun, degrees clockwise from north, if there is one.
     pub sun_azimuth_deg: Option<f64>,
-    /// Where the scene was read; none of a scene that was built.
-    pub origin: Option<SceneSource>,
+    /// File that the scene was read from; `None` for a scene that was built.
+    pub source: Option<SceneSource>,
 }
 
 /// File that a scene was read from, and what was changed in it.
@@ -299,7 +298,7 @@ pub struct SceneSource {
     pub file: PathBuf,
     /// Variant that was applied.
     pub variant: Option<String>,
-    /// Parameters that were given other values.
+    /// Parameters with other values than in the scene.
     pub set: Vec<(String, Param)>,
     /// Factor on the numbers of samples.
     pub quality: f64,
@@ -327,7 +326,7 @@ pub enum Night {
 }
 
 impl Night {
-    /// Its reason or its warning.
+    /// The reason or the warning.
     #[must_use]
     pub fn text(&self) -> &str {
         match self {
@@ -351,7 +350,7 @@ pub struct Day {
 }
 
 impl SweepPoint {
-    /// Returns why nothing was traced here, if that is so.
+    /// Reason why nothing was traced here.
     #[must_use]
     pub fn darkness(&self) -> Option<&str> {
         match &self.night {
@@ -362,7 +361,7 @@ impl SweepPoint {
 }
 
 impl SweepPoint {
-    /// `sza=30,lai=2`: its parameters as people write them.
+    /// Text of the parameters: `sza=30,lai=2`.
     #[must_use]
     pub fn name(&self) -> String {
         let params: Vec<_> =
@@ -376,7 +375,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_forecast_is_told_in_units_of_people() {
+    fn a_forecast_has_units_that_fit() {
         let of = |seconds, memory, files| Forecast { seconds, memory, files }.to_string();
         assert_eq!(of(0.4, 0, 1), "less than a second, 0 B of memory, 1 B of files");
         assert_eq!(of(12.4, 3 << 29, 2048), "about 12 s, 1.5 GiB of memory, 2.0 KiB of files");

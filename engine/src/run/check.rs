@@ -14,7 +14,7 @@ use crate::transport::{Camera, Partition, RANDOMISATIONS};
 /// Refuses sensors that cannot be measured.
 ///
 /// # Errors
-/// If all sensors together take more memory than is free, or one of them cannot measure what it is asked for.
+/// If all sensors together take more memory than is free, or one of them cannot measure its quantities.
 pub(super) fn check(
     sensors: &[SensorEntity],
     scene: MeasureContext<'_>,

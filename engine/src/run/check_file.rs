@@ -16,7 +16,7 @@ use crate::extract::Stage;
 pub struct Checked {
     /// Warnings and notes, rendered for a person.
     pub warnings: Vec<String>,
-    /// Contents of the scene, if they were asked for.
+    /// Contents of the scene, if they were requested.
     pub facts: Option<SceneFacts>,
 }
 

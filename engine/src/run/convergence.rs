@@ -150,7 +150,7 @@ pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String,
     measurement.products().iter().filter_map(of).collect()
 }
 
-/// Returns whether a product is an energy balance, whose accuracy no criterion asks for: the loss by roulette is 0 but
+/// Returns whether a product is an energy balance, to whose accuracy no criterion applies: the loss by roulette is 0 but
 /// for noise.
 pub(super) fn is_energy_balance(product: &str) -> bool {
     matches!(product, "energy" | "emitted_energy")

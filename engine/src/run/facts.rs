@@ -111,11 +111,11 @@ pub struct SunFacts {
 /// A spectral band.
 #[derive(Clone, Debug, Serialize)]
 pub struct BandFacts {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its centre, nm.
+    /// Centre wavelength, nm.
     pub center_nm: f64,
-    /// Its width, nm.
+    /// Width, nm.
     pub width_nm: f64,
     /// Irradiance of the horizontal plane by sun and sky, W m⁻² nm⁻¹.
     pub irradiance: f64,
@@ -128,9 +128,9 @@ pub struct BandFacts {
 /// A sensor.
 #[derive(Clone, Debug, Serialize)]
 pub struct SensorFacts {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its kind as the scene names it.
+    /// Kind in the scene language.
     pub kind: &'static str,
     /// Quantities that it measures.
     pub measures: Vec<String>,

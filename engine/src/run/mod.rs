@@ -77,7 +77,7 @@ pub fn run_file(
         // After an error there would be no scene: these are warnings.
         report.warnings.splice(0..0, reading.diagnostics.iter().map(failure::one_line));
         report.seconds = start.elapsed().as_secs_f64();
-        report.origin = Some(scene_source(path, options));
+        report.source = Some(scene_source(path, options));
         Ok(report)
     })
 }
@@ -166,7 +166,7 @@ fn run_in(
         sensors: reports,
         params: params(scene),
         sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
-        origin: None,
+        source: None,
     })
 }
 

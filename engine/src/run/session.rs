@@ -50,6 +50,6 @@ impl Session {
         let report = in_pool(&options, || {
             run_in(world, scene, &options, progress).map_err(|failure| failure.with_source(source))
         });
-        report.map(|report| Report { origin: Some(scene_source(file, &options)), ..report })
+        report.map(|report| Report { source: Some(scene_source(file, &options)), ..report })
     }
 }

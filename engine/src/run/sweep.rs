@@ -114,7 +114,7 @@ impl SweepRun {
                 if let Some(Night::WithoutSun(warning)) = &point.night {
                     report.warnings.insert(0, warning.clone());
                 }
-                Report { origin: Some(scene_source(file, &self.options)), ..report }
+                Report { source: Some(scene_source(file, &self.options)), ..report }
             })
             .map_err(|source| wrong_at(point, source))
     }
@@ -144,7 +144,7 @@ impl SweepRun {
             sensors: Vec::new(),
             params: params(&self.scene),
             sun_azimuth_deg: None,
-            origin: Some(scene_source(&self.file, &self.options)),
+            source: Some(scene_source(&self.file, &self.options)),
         }
     }
 }

@@ -29,12 +29,12 @@ pub(super) struct Repeat {
     pub(super) reported: f64,
     /// `Σ (value - truth)² / Σ truth²`, less what the truth's own error makes of it.
     pub(super) square: f64,
-    /// Median of standard error over value, what `until: RelError(..)` asks for.
+    /// Median of standard error over value, as in `until: RelError(..)`.
     pub(super) median: f64,
 }
 
 impl Repeat {
-    /// Of the values that both have; `None` where there are none, or all are 0.
+    /// Compares the values that both have; `None` where there are none, or all are 0.
     pub(super) fn new(seconds: f64, found: &Values, truth: &Values) -> Option<Self> {
         let (mut squares, mut errors, mut off, mut of_truth) = (0.0, 0.0, 0.0, 0.0);
         let mut relative = Vec::new();
@@ -102,7 +102,7 @@ pub(super) struct Fit {
 const EXACT: f64 = 3e-7;
 
 impl Fit {
-    /// Least squares in the logarithms; `None` of fewer than three points, of points at one time, or of
+    /// Fits the logarithms by least squares; `None` for fewer than three points, for points at one time, or for
     /// a value without noise.
     pub(super) fn new(points: &[(f64, f64)]) -> Option<Self> {
         let points: Vec<(f64, f64)> = points
@@ -136,7 +136,7 @@ impl Fit {
 }
 
 impl Curve {
-    /// Of the errors that the runs report.
+    /// Fit of the errors that the runs report.
     pub(super) fn fit(&self) -> Option<Fit> {
         let points: Vec<(f64, f64)> =
             self.levels.iter().map(|level| (level.seconds(), level.reported())).collect();

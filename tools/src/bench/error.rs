@@ -15,11 +15,11 @@ use crate::compare::plan::{Member, Plan};
 use crate::compare::tables::{known, significant, text};
 use crate::progress::Bars;
 
-/// How many times as many samples as the longest run the truth is made of.
+/// Number of samples of the reference estimate, relative to the longest run.
 const TRUTH: f64 = 4.0;
 
 /// Runs the scene with doubled numbers of samples, again and again; writes `bench.csv`,
-/// `bench_fits.csv`, `bench.svg` and `summary.json`; returns a table for a person.
+/// `bench_fits.csv`, `bench.svg` and `summary.json`; returns a table as text.
 pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
     let measured = &arguments.measured;
     let results = measured.results("bench")?;
@@ -63,8 +63,8 @@ pub(crate) fn error(arguments: &ErrorBench) -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// What to say of sensors that have too few samples for that many doublings; `samples` are those of each
-/// run, upwards within a repeat.
+/// Notes on sensors with too few samples for that many doublings; `samples` are those of each run, rising within
+/// a repeat.
 fn too_few(plan: &Plan, samples: &[Vec<u64>], doublings: u32) -> Vec<String> {
     let (Some(least), Some(most)) = (samples.first(), samples.get(doublings as usize)) else {
         return Vec::new();
@@ -98,12 +98,12 @@ fn traced(
     Ok(report?)
 }
 
-/// Whether two curves are of the same product.
+/// Returns true if two curves are of the same product.
 pub(super) fn alike(a: &Curve, b: &Curve) -> bool {
     (&a.sensor, &a.product) == (&b.sensor, &b.product)
 }
 
-/// What the longest runs say of a product: the estimate of the smallest error.
+/// Reference estimate of a product: the one with the smallest error among the longest runs.
 struct Truth<'a> {
     finding: Finding<'a>,
     pixels: bool,
@@ -111,7 +111,7 @@ struct Truth<'a> {
 }
 
 impl<'a> Truth<'a> {
-    /// Of all products, and of the pixels of images.
+    /// Reference estimates of all products, and of the pixels of images.
     fn all(plan: &'a Plan, report: &'a Report) -> Vec<Self> {
         let mut truths = Vec::new();
         for pixels in [false, true] {

@@ -1,4 +1,4 @@
-//! How fast this machine is on a scene: rays a second, and run time against error.
+//! Speed of this machine on a scene: rays per second, and run time against error.
 
 mod curve;
 mod error;

@@ -1,4 +1,4 @@
-//! How fast the ray engine is on a scene.
+//! Ray rate of the ray engine on a scene.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -126,7 +126,7 @@ fn rate(stage: &Stage, rays: &[TracedRay], threads: usize, work: &Work) -> f64 {
     rays.len() as f64 / start.elapsed().as_secs_f64() / 1e6
 }
 
-/// The most memory that this process has held, bytes, where the system tells (Linux).
+/// Maximum memory of this process, bytes, where the system reports it (Linux).
 fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

@@ -4,28 +4,27 @@ use sunfleck::products::{AxisPoints, Product, ProductAxis};
 
 use crate::plot::{range_of, tick};
 
-/// How a product's values lie in a picture: along its first dimension, a curve for each point of the
-/// others.
+/// Curves of a product's values along its first dimension, one for each point of the others.
 #[derive(Debug, PartialEq)]
 pub(super) struct Curves {
     /// Name of the axis.
     pub(super) axis: String,
     /// Names of the points 0, 1, .. along it, if they are no numbers.
     pub(super) labels: Option<Vec<String>>,
-    /// Where the axis starts and ends.
+    /// Range of the axis.
     pub(super) range: Range<f64>,
     pub(super) lines: Vec<Curve>,
 }
 
 #[derive(Debug, PartialEq)]
 pub(super) struct Curve {
-    /// What the other dimensions are.
+    /// Point of the other dimensions.
     pub(super) name: String,
-    /// Place along the axis, and which of the product's values it has.
+    /// Position on the axis, and index of the product's value.
     pub(super) points: Vec<(f64, usize)>,
 }
 
-/// Curves, points of each, and names along an axis: more than that nobody can see.
+/// Maximum numbers of curves, of points of each, and of names along an axis.
 const CURVES: usize = 8;
 const POINTS: usize = 400;
 const LABELS: usize = 16;
@@ -62,7 +61,7 @@ impl Curves {
         self.lines.iter().flat_map(|curve| curve.points.iter().copied())
     }
 
-    /// How far aside one of several systems is drawn, so that none hides another.
+    /// Offset of one of several systems, so that none hides another.
     pub(super) fn aside(&self, number: usize, count: usize) -> f64 {
         let points = self.lines.first().map_or(1, |curve| curve.points.len());
         let spacing = (self.range.end - self.range.start) / points.max(8) as f64;

@@ -12,11 +12,11 @@ pub(crate) struct Finding<'a> {
     pub(crate) unit: &'a str,
     /// In the order in which systems were named; never empty.
     pub(crate) estimates: Vec<Estimate<'a>>,
-    /// Which of them the others are compared with.
+    /// Index of the estimate that the others are compared with.
     pub(crate) reference: usize,
 }
 
-/// What one system finds.
+/// Estimate of one system.
 #[derive(Debug)]
 pub(crate) struct Estimate<'a> {
     pub(crate) system: System,
@@ -33,7 +33,7 @@ pub(crate) struct Values {
     pub(crate) errors: Vec<f64>,
 }
 
-/// What many values of one estimate tell together.
+/// Statistics over many values of one estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Statistics {
     /// Values other than NaN.
@@ -43,27 +43,26 @@ pub(crate) struct Statistics {
     pub(crate) relative_error: f64,
     /// `1 / (relative variance · seconds)` at that median, s⁻¹.
     pub(crate) efficiency: f64,
-    /// Against the reference; of the reference itself, `None`.
+    /// Scores against the reference; `None` for the reference itself.
     pub(crate) z: Option<Scores>,
 }
 
-/// What many z-scores tell together; where all is as it should be they have the mean square 1 and
-/// 0.3 % of them lie beyond 3.
+/// Statistics over many z-scores. Without bias their mean square is 1, and 0.3 % of them lie beyond 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scores {
-    /// How many there are.
+    /// Number of z-scores.
     pub(crate) count: usize,
     /// Number of values that nothing was counted for, whose error is unknown, and that have no z-score.
     pub(crate) uncounted: usize,
     pub(crate) rms: f64,
     /// The largest |z|.
     pub(crate) largest: f64,
-    /// Share of |z| > 3.
+    /// Fraction of |z| > 3.
     pub(crate) beyond_3: f64,
 }
 
 impl<'a> Finding<'a> {
-    /// Of all products that the systems measured, in the order in which they first occur.
+    /// Findings of all products that the systems measured, in the order in which they first occur.
     pub(crate) fn all(plan: &'a Plan, report: &'a Report, reference: System) -> Vec<Self> {
         let mut findings: Vec<Self> = Vec::new();
         for (member, sensor) in plan.members.iter().zip(&report.sensors) {
@@ -95,7 +94,7 @@ impl<'a> Finding<'a> {
     }
 
     /// z-scores of an estimate against the reference, NaN where either has no value or counted nothing;
-    /// `None` for the reference itself. Of the pixels if asked for.
+    /// `None` for the reference itself. Those of the pixels if `pixels` is true.
     pub(crate) fn scores(&self, index: usize, pixels: bool) -> Option<Vec<f64>> {
         if index == self.reference {
             return None;
@@ -136,7 +135,7 @@ impl<'a> Finding<'a> {
         }
     }
 
-    /// What an estimate's values, or pixels, tell together; `None` if there are no pixels.
+    /// Statistics over an estimate's values, or over its pixels; `None` if there are no pixels.
     pub(crate) fn statistics(&self, index: usize, pixels: bool) -> Option<Statistics> {
         let estimate = &self.estimates[index];
         let all = estimate.values(pixels)?;
@@ -160,7 +159,7 @@ impl<'a> Estimate<'a> {
         Self { system, product, seconds: sensor.seconds, rays: sensor.rays }
     }
 
-    /// Its values, or those of its pixels.
+    /// Values of the product, or those of its pixels.
     pub(crate) fn values(&self, pixels: bool) -> Option<Values> {
         let product = self.product;
         if !pixels {

@@ -208,7 +208,7 @@ const LARGEST: f64 = 12.0;
 /// Columns of the histogram, from -5 to 5.
 const COLUMNS: usize = 40;
 
-/// How the pixels' differences are spread, and how they would be by chance alone.
+/// Histogram of the pixels' z-scores beside the normal distribution.
 fn draw_histogram(area: &Area<'_>, finding: &Finding<'_>) -> anyhow::Result<()> {
     let width = 10.0 / COLUMNS as f64;
     let density = |z: &[f64]| -> Vec<f64> {
@@ -261,7 +261,7 @@ fn band(x: Range<f64>, y: Range<f64>) -> Rectangle<(f64, f64)> {
 const LONGEST: usize = 16;
 const ABOVE_LABELS: u32 = 12;
 
-/// A label with its middle left out where it is long: what tells labels apart stands at either end.
+/// Leaves out the middle of a long label: labels differ at their ends.
 fn shortened(label: &str) -> String {
     let count = label.chars().count();
     if count <= LONGEST {

@@ -1,14 +1,14 @@
 use anyhow::bail;
 use sunfleck::document::{Map, Scene, Sensor, System, unknown_name};
 
-/// What is run: a scene with one sensor for each sensor and system.
+/// Scene that is run, with one sensor for each sensor and system.
 #[derive(Debug)]
 pub(crate) struct Plan {
     /// The scene.
     pub(crate) scene: Scene,
     /// Whose sensor and system its sensors are, in its order.
     pub(crate) members: Vec<Member>,
-    /// What a person should know.
+    /// Notes for the user.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ impl Plan {
     /// All sensors of a scene, or those named, by all systems that can.
     ///
     /// # Errors
-    /// If no sensor has a name that is asked for, or no system can measure any.
+    /// If a named sensor does not exist, or no system can measure any.
     pub(crate) fn new(scene: &Scene, named: &[String], systems: &[System]) -> anyhow::Result<Self> {
         if let Some(unknown) = named.iter().find(|name| !scene.sensors.contains_key(*name)) {
             let known = scene.sensors.keys().map(String::as_str);

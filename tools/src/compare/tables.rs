@@ -67,7 +67,7 @@ const SUMMARY: [&str; 12] = [
     "remark",
 ];
 
-/// What all values of a product, or pixels of an image, tell together: one row a system.
+/// Statistics over the values of a product, or the pixels of an image, with one row per system.
 fn rows(findings: &[Finding<'_>], cell: impl Fn(Kind, f64) -> String) -> Vec<Vec<String>> {
     let mut rows = vec![SUMMARY.map(str::to_owned).to_vec()];
     for finding in findings {
@@ -109,7 +109,7 @@ fn rows(findings: &[Finding<'_>], cell: impl Fn(Kind, f64) -> String) -> Vec<Vec
     rows
 }
 
-/// How a person reads a number.
+/// Format of a number.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Value,
@@ -173,7 +173,7 @@ pub(crate) fn known(value: f64) -> String {
     if value.is_finite() { number(value) } else { String::new() }
 }
 
-/// What was written.
+/// Files that were written.
 pub(crate) fn text(writer: csv::Writer<Vec<u8>>) -> anyhow::Result<String> {
     let bytes = writer.into_inner().context("cannot lay out a table")?;
     String::from_utf8(bytes).context("cannot lay out a table")

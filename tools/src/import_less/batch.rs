@@ -8,13 +8,13 @@ use super::conf::{self, Node};
 use super::report::Report;
 use super::text;
 
-/// A batch has no more points.
+/// Maximum number of points of a batch.
 const MOST_POINTS: usize = 100_000;
 
-/// What a batch varies.
+/// Settings that a batch varies.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Its name: that of the file.
+    /// Name of the file.
     pub(super) name: String,
     groups: Vec<Vec<Axis>>,
 }
@@ -46,7 +46,7 @@ impl Axis {
         Ok(())
     }
 
-    /// Its values; `check` has seen that they are numbers.
+    /// Values; `check` refuses those that are no numbers.
     fn values(&self) -> Vec<f64> {
         self.items.iter().filter_map(|item| conf::finite(item)).collect()
     }
@@ -122,7 +122,7 @@ fn axis(name: &str, node: &Node) -> Result<Axis> {
 }
 
 impl Batch {
-    /// What it varies.
+    /// Settings that it varies.
     pub(super) fn axes(&self) -> impl Iterator<Item = &Axis> {
         self.groups.iter().flatten()
     }

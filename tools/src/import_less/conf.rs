@@ -37,7 +37,7 @@ impl Node {
     pub(super) fn read(path: &Path) -> Result<Self> {
         let text = text::whole(path, LARGEST)?;
         let text = text.trim_start_matches('\u{feff}');
-        // All at once first: it limits the depth, and tells where the text is no JSON.
+        // Parses all at once first: this limits the depth and locates errors of syntax.
         serde_json::from_str::<Value>(text).map_err(|error| {
             let (file, line, column) = (path.display(), error.line(), error.column());
             anyhow!("{file}:{line}:{column}: not JSON: {error}")
@@ -56,7 +56,7 @@ impl Node {
         })
     }
 
-    /// How a key without a value is written in the file: absent, null or empty.
+    /// Form of a key without a value in the file: absent, null or empty.
     pub(super) fn lack_of(&self, key: &str) -> &'static str {
         match self.entry(key).map(|node| &node.content) {
             None => "absent",
@@ -175,7 +175,7 @@ impl Node {
         anyhow!("{}: {}: {what}", self.place, self.path)
     }
 
-    /// What it is written as; of an object the first letters.
+    /// Text of the value; `{..}` for an object.
     pub(super) fn shown(&self) -> String {
         match &self.content {
             Content::Scalar(text) => text::excerpt(text),

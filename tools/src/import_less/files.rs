@@ -9,8 +9,8 @@ use super::project::Project;
 impl Project {
     /// The file that a name means, in `Parameters` or where the name says.
     ///
-    /// Projects come from other machines: a path of Windows or of a folder that is not there is looked
-    /// for by its last name, in any case of letters.
+    /// Projects come from other machines: for a path of Windows or a folder that does not exist, the last name counts,
+    /// in upper or lower case.
     pub(super) fn locate(&self, name: &str) -> Result<PathBuf> {
         let name = name.trim().trim_matches('"');
         let portable = name.replace('\\', "/");

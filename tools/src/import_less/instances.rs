@@ -13,7 +13,7 @@ use super::optics::unknown;
 use super::project::{Project, Section};
 use super::text::{self, quoted};
 
-/// Where an object stands: x, y, z (m), yaw (degrees), horizontal and vertical scale.
+/// Placement of an object: x, y, z (m), yaw (degrees), horizontal and vertical scale.
 type Row = [f64; 6];
 
 impl Project {

@@ -14,9 +14,9 @@ use super::text::{list, quoted};
 
 /// Irradiance of the sun outside the atmosphere, from 280 to 4000 nm.
 pub(super) const SOLAR: &str = include_str!("../../../scenes/spectra/sun_astm_g173.csv");
-/// Where the importer puts it.
+/// File that the importer writes it to.
 pub(super) const SOLAR_FILE: &str = "assets/sun_astm_g173.csv";
-/// What it covers, nm.
+/// Range of its wavelengths, nm.
 const SOLAR_RANGE: (f64, f64) = (280.0, 4000.0);
 
 /// Centre and width of a band, nm.
@@ -82,7 +82,7 @@ impl Project {
         Ok(text + "],\n")
     }
 
-    /// Whether the bands lie in the table of the sun's irradiance.
+    /// Returns true if the bands lie in the table of the sun's irradiance.
     pub(super) fn needs_solar_table(&self) -> bool {
         let (low, high) = SOLAR_RANGE;
         let lies_within = |band: &Band| {
@@ -257,7 +257,7 @@ impl Project {
         }
     }
 
-    /// Bands in which a person sees.
+    /// Number of visible bands.
     pub(super) fn visible_bands(&self) -> usize {
         self.bands.iter().filter(|band| (380.0..=780.0).contains(&band.center)).count()
     }

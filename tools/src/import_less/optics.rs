@@ -15,7 +15,7 @@ use super::text::{list, quoted};
 /// Highest temperature that a scene may hold, K.
 pub(super) const HOTTEST_K: f64 = 10_000.0;
 
-/// Name of the temperature of what has none, in a thermal project; that of LESS's window.
+/// Name and value of the temperature of surfaces without one in a thermal project, as in LESS's window.
 const USUAL_TEMPERATURE: (&str, Temperature) = ("T300", Temperature { mean: 300.0, range: 5.0 });
 
 /// Sums of reflectance and transmittance up to this are rounding of LESS's four digits.
@@ -68,7 +68,7 @@ struct Temperature {
     range: f64,
 }
 
-/// An error with the place where it is: places that lead to it would only hide it.
+/// An error with its place, to which no further places are added.
 #[derive(Debug)]
 pub(super) struct Located(String);
 
@@ -80,11 +80,11 @@ impl std::fmt::Display for Located {
 
 impl std::error::Error for Located {}
 
-/// Path, value and what became of it.
+/// Path, value and a note on its conversion.
 type Remark = (String, String, String);
 
 impl Materials {
-    /// The properties of a project with `bands` bands. What is wrong with one is an error once it is used.
+    /// Reads the properties of a project with `bands` bands. A fault of one is an error once it is used.
     pub(super) fn read(scene: &Node, bands: usize, is_thermal: bool) -> Self {
         let mut materials = Self { is_thermal, ..Self::default() };
         for (name, node) in scene.get("optical_properties").map_or(&[][..], Node::entries) {

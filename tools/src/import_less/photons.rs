@@ -47,7 +47,7 @@ pub(super) fn photons(project: &Project, swept: &mut Swept<'_>) -> Result<String
     Ok(text + ")")
 }
 
-/// Takes a setting as read that belongs to a product that is not asked for.
+/// Marks a setting as read whose product is not chosen.
 fn not_asked_for(own: &Node, key: &str, product: &str, report: &Report) {
     if let Some(node) = own.get(key) {
         report.unneeded(&node.path, &node.shown(), format!("`{product}` is not chosen"));
@@ -55,7 +55,7 @@ fn not_asked_for(own: &Node, key: &str, product: &str, report: &Report) {
     }
 }
 
-/// What is measured by direction.
+/// Sensors of quantities by direction.
 fn directional(project: &Project, own: &Node, swept: &mut Swept<'_>) -> Result<Vec<String>> {
     let quantity = if project.is_thermal { "Radiance" } else { "Brf" };
     let cells = swept.term(own, "NumberOfDirections", &Rule::CELLS, &project.report)?;

@@ -21,7 +21,7 @@ impl Remark {
     ];
 }
 
-/// A remark about one setting: the setting, its value, and what became of it.
+/// A remark about one setting: the setting, its value, and a note on its conversion.
 #[derive(Debug, PartialEq)]
 struct Row {
     remark: Remark,

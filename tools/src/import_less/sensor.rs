@@ -25,7 +25,7 @@ pub(super) enum Kind {
 impl Kind {
     const ALL: [Self; 4] = [Self::Orthographic, Self::Perspective, Self::Fisheye, Self::Photons];
 
-    /// Its name in LESS, which is also the key of its settings.
+    /// Name in LESS, which is also the key of its settings.
     pub(super) const fn key(self) -> &'static str {
         match self {
             Self::Orthographic => "orthographic",

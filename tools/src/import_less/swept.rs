@@ -1,4 +1,4 @@
-//! Which settings a scene takes from its parameters.
+//! Settings that a scene takes from its parameters.
 
 use anyhow::Result;
 use indexmap::IndexMap;

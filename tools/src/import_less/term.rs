@@ -27,7 +27,7 @@ impl Term {
         }
     }
 
-    /// As a whole number where it is one.
+    /// Text of the term, as a whole number where it is one.
     pub(super) fn whole(&self) -> String {
         match self {
             Self::Number(number) => format!("{number}"),

@@ -13,7 +13,7 @@ const LONGEST_LINE: u64 = 1 << 20;
 /// A regular file, open for reading.
 fn open(path: &Path) -> Result<File> {
     let cannot = || format!("cannot read {}", path.display());
-    // Asked before it is opened: opening a pipe would wait for its writer.
+    // Checked before it is opened: opening a pipe would wait for its writer.
     if !fs::metadata(path).with_context(cannot)?.is_file() {
         bail!("{} is not a file", path.display());
     }
@@ -30,7 +30,7 @@ fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The same, with letters of unknown encodings replaced.
+/// The text of a file of at most `limit` bytes, with letters of unknown encodings replaced.
 pub(super) fn whole_lossy(path: &Path, limit: u64) -> Result<String> {
     Ok(String::from_utf8_lossy(&bytes(path, limit)?).into_owned())
 }
@@ -46,7 +46,7 @@ pub(super) fn whole(path: &Path, limit: u64) -> Result<String> {
 /// Advice for files of other encodings, such as GBK.
 const SAVE_AS: &str = "open it in an editor and save it with the encoding UTF-8";
 
-/// Gives each line that is not blank to `each`. An error of `each` gets `file:line` before it.
+/// Calls `each` with every line that is not blank, and puts `file:line` before its errors.
 pub(super) fn lines(path: &Path, mut each: impl FnMut(&str) -> Result<()>) -> Result<()> {
     raw_lines(path, |bytes, number| {
         let line = str::from_utf8(bytes)

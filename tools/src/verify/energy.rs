@@ -1,12 +1,12 @@
-//! The ledger of photon packets.
+//! The energy balance of photon packets.
 
 use super::finding::Finding;
 use super::measured::{forest, measure, product};
 
-/// What the rounding of f64 may hide of the incident energy.
+/// Maximum error of the balance by rounding of f64, relative to the incident energy.
 const BALANCE: f64 = 1e-9;
 
-/// Of the sun.
+/// Zenith angle of the sun, degrees.
 const ZENITH_DEG: f64 = 55.0;
 
 /// *Scene*: the small forest under sun and sky, periodic and isolated, with a cruel roulette.

@@ -1,17 +1,17 @@
-//! A number beside what it must be.
+//! A measured value and its expected value.
 
 use serde_json::json;
 
 use super::measured::Estimate;
 
-/// Standard errors that an estimate may be off. They come from 31 degrees of freedom or fewer: of
-/// 10 000 estimates one is farther off.
+/// Maximum error of an estimate in standard errors. These have at most 31 degrees of freedom, so that one of
+/// 10 000 estimates exceeds it.
 const MOST_ERRORS: f64 = 4.5;
 
-/// What makes an estimate count besides: rounding of f32 along a path, where there is no spread.
+/// Relative tolerance for the rounding of f32 along a path, where there is no spread.
 const ROUNDING: f64 = 1e-5;
 
-/// A measured quantity, and what it must be.
+/// A measured quantity and its expected value.
 #[derive(Clone, Debug)]
 pub(super) struct Finding {
     pub(super) quantity: String,
@@ -22,19 +22,18 @@ pub(super) struct Finding {
     limit: Limit,
 }
 
-/// How far it may be off.
+/// Tolerance of a quantity.
 #[derive(Clone, Copy, Debug)]
 enum Limit {
-    /// [`MOST_ERRORS`] and this share of what is expected; the standard error itself is at most
-    /// `error` of it.
+    /// [`MOST_ERRORS`] plus this fraction of the expected value; the standard error is at most `error` of it.
     Estimate { share: f64, error: f64 },
-    /// This share of what is expected, or as much if that is 0.
+    /// Fraction of the expected value, or absolute error if that is 0.
     Share(f64),
 }
 
 impl Finding {
-    /// An estimate that is to hit `expected` but for its error; which must be at most the share
-    /// `error` of it, so that chance does not pass for truth.
+    /// An estimate that is `expected` within its error. The relative error must be at most `error`, so that the
+    /// check is not passed by chance.
     pub(super) fn estimate(
         quantity: impl Into<String>,
         expected: f64,
@@ -50,8 +49,8 @@ impl Finding {
         }
     }
 
-    /// The same of a scene that comes only within `share` of the one that the expected value is of.
-    pub(super) fn but_for(self, share: f64) -> Self {
+    /// Adds a tolerance for a scene whose exact value differs by the fraction `share` from the expected one.
+    pub(super) fn with_tolerance(self, share: f64) -> Self {
         let Limit::Estimate { error, .. } = self.limit else { return self };
         Self { limit: Limit::Estimate { share, error }, ..self }
     }
@@ -159,7 +158,7 @@ mod tests {
         assert!(!of(2.05, 0.01), "5 standard errors");
         assert!(!of(2.05, 0.05), "too coarse to tell");
         assert!(!of(f64::NAN, 0.01) && !of(2.0, f64::NAN));
-        let nearly = Finding::estimate("a", 2.0, found(2.05, 0.01), 0.01).but_for(0.005);
+        let nearly = Finding::estimate("a", 2.0, found(2.05, 0.01), 0.01).with_tolerance(0.005);
         assert!(nearly.holds());
     }
 

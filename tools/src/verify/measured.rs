@@ -16,7 +16,7 @@ pub(super) const THERMAL: &str = r#"bands: [
 ],"#;
 pub(super) const THERMAL_NM: [f64; 3] = [10_000.0, 10_500.0, 11_000.0];
 
-/// What a scene of these keys measures; it may name no file.
+/// Runs a scene of these keys, which may name no file.
 pub(super) fn measure(keys: &str) -> anyhow::Result<Report> {
     let text = format!("Scene(\nformat: 1,\n{keys}\n)");
     let reading = document::read_text("verify.ron", &text, &document::ReadOptions::default())?;
@@ -84,7 +84,7 @@ pub(super) fn bits(report: &Report) -> Vec<u64> {
     report.sensors.iter().flat_map(SensorReport::bits).collect()
 }
 
-/// How many numbers of two reports differ.
+/// Number of values that differ between two reports.
 pub(super) fn differing(one: &[u64], other: &[u64]) -> f64 {
     let differ = one.iter().zip(other).filter(|(a, b)| a != b).count();
     (differ + one.len().abs_diff(other.len())) as f64

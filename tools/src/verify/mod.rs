@@ -23,9 +23,9 @@ use finding::Finding;
 /// A claim about the program, and how it is put to the test.
 #[derive(Clone, Copy)]
 pub(crate) struct Check {
-    /// What `--only` calls it.
+    /// Name for `--only`.
     pub(crate) name: &'static str,
-    /// What must hold, and why.
+    /// Statement that must hold, and its reason.
     statement: &'static str,
     /// Measures it.
     run: fn() -> anyhow::Result<Vec<Finding>>,
@@ -80,7 +80,7 @@ pub(crate) const CHECKS: [Check; 9] = [
     },
 ];
 
-/// What became of a check.
+/// Result of a check.
 struct Outcome {
     check: Check,
     findings: anyhow::Result<Vec<Finding>>,

@@ -5,7 +5,7 @@ use sunfleck::products::Report;
 use super::finding::Finding;
 use super::measured::{bits, differing, forest, measure, value};
 
-/// How far, m.
+/// Translation, m.
 const FAR: f64 = 1e6;
 
 /// *Scene*: the small forest here, with its frame anchored 1000 km away, and moved by 1000 km in its frame.

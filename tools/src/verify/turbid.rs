@@ -16,8 +16,8 @@ const SIDE: f64 = 1.25;
 /// Layers of other leaves, all of the same kind.
 const REPEATS: u32 = 24;
 
-/// What leaves of this size in place of ever smaller ones make of a flux, as a share: they hide each
-/// other's shadow near the hot spot, whose width is their size over the height of the layer.
+/// Relative error of a flux by the finite size of leaves: they hide each other's shadow near the hot spot, whose
+/// width is their size over the height of the layer.
 const OF_LEAF_SIZE: f64 = 0.003;
 
 /// Views (zenith, azimuth), degrees, away from the hot spot: those of the BRF on the far side of the
@@ -25,8 +25,8 @@ const OF_LEAF_SIZE: f64 = 0.003;
 const BRF_VIEWS: [(f64, f64); 2] = [(21.0, 180.0), (61.0, 180.0)];
 const GAP_VIEWS: [(f64, f64); 3] = [(0.0, 0.0), (30.0, 90.0), (60.0, 250.0)];
 
-/// What the turbid layer has in the near infrared under the sun at 20°: albedo, absorbed by leaves,
-/// flux at the soil, the same uncollided, and the BRF of [`BRF_VIEWS`].
+/// Values of the turbid layer in the near infrared under the sun at 20°: albedo, absorbed by leaves,
+/// flux at the soil, uncollided flux at the soil, and the BRF of [`BRF_VIEWS`].
 ///
 /// Source: solved apart from this program by adding and doubling of layers, which closes energy to 1e-5
 /// and is reciprocal to 1e-9; the uncollided flux is `exp(-LAI / (2 cos 20°))`.
@@ -66,12 +66,12 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
         .map(|((quantity, expected, share), values)| {
             let found = Estimate::from_repeats(values);
             let finding = Finding::estimate(quantity, expected, found, 0.02);
-            if share > 0.0 { finding.but_for(share) } else { finding }
+            if share > 0.0 { finding.with_tolerance(share) } else { finding }
         })
         .collect())
 }
 
-/// What one layer measures, in the order of the quantities.
+/// Measurements of one layer, in the order of the quantities.
 fn layer(seed: u32) -> anyhow::Result<Vec<f64>> {
     let views = |views: &[(f64, f64)]| {
         let views: Vec<_> = views.iter().map(|(z, a)| format!("({z:?}, {a:?})")).collect();
