@@ -11,7 +11,7 @@ use std::{error::Error, f64::consts::PI, fs, path::Path, time::Instant};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use sunfleck::{
-    accel::{Batch, Boundary, Domain, Hit, InstanceInput, MeshInput, Ray, Scene},
+    accel::{Domain, Hit, InstanceInput, MeshInput, Ray, RayBatch, TwoLevelBvh},
     components::{Mesh, MeshPart},
     geometry::basis,
 };
@@ -54,9 +54,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         MeshInput { mesh: &tree, surfaces: &[LEAF, TRUNK] },
         MeshInput { mesh: &ground, surfaces: &[SOIL] },
     ];
-    let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(side), boundary: Boundary::Isolated };
+    let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(side), is_periodic: false };
     let start = Instant::now();
-    let scene = Scene::build(&meshes, &instances, domain)?;
+    let scene = TwoLevelBvh::build(&meshes, &instances, domain)?;
     println!("build {:.3} s, {} instances", start.elapsed().as_secs_f64(), instances.len());
 
     let corner = DVec2::splat((side / 200.0).floor() * 100.0 + 25.0);
@@ -96,7 +96,13 @@ impl Random {
 
 /// Sum of the radiances of one row of pixels for unit irradiance across the beam, times π, and the
 /// number of rays.
-fn trace_row(scene: &Scene, corner: DVec2, row: u32, pixels: u32, samples: u32) -> (f64, u64) {
+fn trace_row(
+    scene: &TwoLevelBvh,
+    corner: DVec2,
+    row: u32,
+    pixels: u32,
+    samples: u32,
+) -> (f64, u64) {
     let mut random = Random(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(u64::from(row) + 1));
     for _ in 0..8 {
         random.next();
@@ -118,10 +124,10 @@ fn trace_row(scene: &Scene, corner: DVec2, row: u32, pixels: u32, samples: u32) 
             let shadows: Vec<Ray> = flights.iter().filter_map(|flight| flight.shadow).collect();
             let onwards: Vec<Ray> = flights.iter().filter_map(|flight| flight.onward).collect();
             let (mut dark, mut hits) = (vec![false; shadows.len()], vec![None; onwards.len()]);
-            scene.trace_each(Batch {
-                shadows: &shadows,
-                dark: &mut dark,
-                rays: &onwards,
+            scene.trace_each(RayBatch {
+                shadow_rays: &shadows,
+                occluded: &mut dark,
+                closest_rays: &onwards,
                 hits: &mut hits,
             });
             rays += (shadows.len() + onwards.len()) as u64;

@@ -6,7 +6,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DMat3, DVec2, DVec3};
-use sunfleck::accel::{Boundary, Domain, InstanceInput, MeshInput, Ray, Scene};
+use sunfleck::accel::{Domain, InstanceInput, MeshInput, Ray, TwoLevelBvh};
 use sunfleck::assets::grow_crown;
 use sunfleck::components::Mesh;
 use sunfleck::document::{CrownShape, GeneratedCrown, LeafShape};
@@ -19,7 +19,7 @@ fn crown(leaves: f64, leaf: LeafShape, leaf_area: f64) -> Mesh {
         .expect("a lawful crown")
 }
 
-fn scene(mesh: &Mesh) -> Scene {
+fn scene(mesh: &Mesh) -> TwoLevelBvh {
     let instances: Vec<_> = (0..25)
         .map(|i| InstanceInput {
             mesh: 0,
@@ -31,9 +31,9 @@ fn scene(mesh: &Mesh) -> Scene {
             ),
         })
         .collect();
-    let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(20.0), boundary: Boundary::Periodic };
+    let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(20.0), is_periodic: true };
     let surfaces = vec![0; mesh.parts.len()];
-    Scene::build(&[MeshInput { mesh, surfaces: &surfaces }], &instances, domain)
+    TwoLevelBvh::build(&[MeshInput { mesh, surfaces: &surfaces }], &instances, domain)
         .expect("a lawful scene")
 }
 

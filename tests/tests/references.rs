@@ -264,7 +264,7 @@ fn layers_of_small_leaves_have_the_fluxes_and_the_brf_of_a_turbid_medium() {
         let layers: Vec<Vec<f64>> =
             (1..=LAYERS).map(|layer| measured(group, cases, layer, relative_error())).collect();
         let expected = expected(cases);
-        let spread = Spread::of(expected.len(), layers.iter().map(Vec::as_slice));
+        let spread = Spread::from_rows(expected.len(), layers.iter().map(Vec::as_slice));
         let errors = spread.standard_error();
         for (((what, expected), found), error) in expected.iter().zip(spread.mean()).zip(errors) {
             if *expected < RARE && *found == 0.0 {

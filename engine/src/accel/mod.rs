@@ -5,25 +5,14 @@
               enables it"
 )]
 
-mod binary;
-mod collapse;
-mod error;
-mod exact;
-mod instance;
-mod mesh;
-mod planar;
-mod ray;
-mod scene;
+mod build;
+mod layout;
 mod simd;
-mod tile;
-mod trace;
-mod tree;
-mod types;
+mod traversal;
 
 #[cfg(test)]
 mod tests;
 
-pub use error::BuildError;
-pub use scene::Scene;
-pub use trace::Batch;
-pub use types::{Boundary, Departure, Domain, Hit, InstanceInput, Memory, MeshInput, Ray};
+pub use build::{BuildError, InstanceInput, MeshInput};
+pub use layout::{BvhMemory, Domain, TwoLevelBvh};
+pub use traversal::{Departure, Hit, Ray, RayBatch};

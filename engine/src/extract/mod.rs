@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use hecs::World;
 
-use crate::accel::{self, Boundary, BuildError, Domain, InstanceInput, MeshInput};
+use crate::accel::{BuildError, Domain, InstanceInput, MeshInput, TwoLevelBvh};
 use crate::components::{
     Instance, MaterialId, Mesh, Name, PartMaterials, SceneId, SurfaceOptics, TerrainPatch,
 };
@@ -29,8 +29,8 @@ pub use thermal::{SurfaceBlackBody, Thermal};
 pub struct Setting {
     /// Number of spectral bands.
     pub bands: usize,
-    /// Boundary of the scene.
-    pub boundary: Boundary,
+    /// `true` if the terrain's rectangle repeats without end.
+    pub is_periodic: bool,
     /// Rules of transport.
     pub rules: Rules,
 }
@@ -51,7 +51,7 @@ pub struct Setting {
 pub fn extract(
     world: &World,
     setting: &Setting,
-    built: Option<Arc<accel::Scene>>,
+    built: Option<Arc<TwoLevelBvh>>,
 ) -> Result<Stage, BuildError> {
     let mut terrains = world.query::<&TerrainPatch>();
     let terrain = terrains.iter().next().expect("a scene has a terrain");
@@ -78,8 +78,8 @@ pub fn extract(
             .chain(of_parts.map(|(&(_, mesh, _), surfaces)| MeshInput { mesh, surfaces }))
             .collect();
         let (min, max) = (terrain.corner, terrain.corner + terrain.size);
-        let domain = Domain { min, max, boundary: setting.boundary };
-        Arc::new(accel::Scene::build(&meshes, &instances, domain)?)
+        let domain = Domain { min, max, is_periodic: setting.is_periodic };
+        Arc::new(TwoLevelBvh::build(&meshes, &instances, domain)?)
     };
     let inventory = reported_absorption(world).map(|per| {
         let meshes: Vec<_> = prototypes.iter().map(|&(_, mesh, _)| mesh).collect();
@@ -97,7 +97,7 @@ pub fn extract(
         mean_ground: terrain.mean_height(),
         has_holes: terrain.has_holes(),
         first_cut: terrain.first_cut,
-        periodic: setting.boundary == Boundary::Periodic,
+        periodic: setting.is_periodic,
         thermal,
         models,
         surface_names,

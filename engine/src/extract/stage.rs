@@ -39,7 +39,7 @@ pub struct Stage {
     /// Instances and their faces, where a sensor reports each.
     pub inventory: Option<Arc<Inventory>>,
     /// Geometry that rays are traced through.
-    pub geometry: Arc<accel::Scene>,
+    pub geometry: Arc<accel::TwoLevelBvh>,
 }
 
 /// Rules by which paths are traced.

@@ -1,4 +1,4 @@
-//! Mergeable accumulators in f64, and the standard error of what they hold.
+//! Mergeable accumulators in f64, and the standard errors of their sums.
 //!
 //! Work is cut into fixed blocks; each fills its own [`Sums`], and they are folded in block order,
 //! so a result does not depend on the number of threads. A measurement is repeated as independent

@@ -1,9 +1,9 @@
 /// Mean over samples whose number is itself random, with its standard error: `Σ sums / Σ counts`.
 ///
-/// - `sums`: of each randomisation, shape `[randomisations, bands]`
+/// - `sums`: sums of each randomisation, shape `[randomisations, bands]`
 /// - `counts`: samples that count in each randomisation, shape `[randomisations]`
-/// - returns: mean and standard error, shape `[bands]`; NaN where nothing counts, and an error of
-///   NaN of fewer than two randomisations
+/// - returns: mean and standard error, shape `[bands]`; NaN where nothing counts, and a standard error of
+///   NaN for fewer than two randomisations
 ///
 /// With equal counts this is the mean of means and its standard error.
 ///
@@ -16,9 +16,9 @@ pub fn ratio(sums: &[f64], counts: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mean: Vec<f64> =
         (0..bands).map(|band| sums.iter().skip(band).step_by(bands).sum::<f64>() / total).collect();
     let error = (0..bands).map(|band| {
-        let of_band = sums.iter().skip(band).step_by(bands);
+        let sums_of_band = sums.iter().skip(band).step_by(bands);
         let squares: f64 =
-            of_band.zip(counts).map(|(sum, count)| (sum - mean[band] * count).powi(2)).sum();
+            sums_of_band.zip(counts).map(|(sum, count)| (sum - mean[band] * count).powi(2)).sum();
         (squares / (n * (n - 1.0))).sqrt() / (total / n)
     });
     let error = error.collect();
@@ -34,7 +34,7 @@ mod tests {
     fn with_equal_counts_a_ratio_is_a_mean_of_means() {
         let (mean, error) = ratio(&[2.0, 20.0, 4.0, 60.0, 9.0, 10.0], &[2.0, 2.0, 2.0]);
         let rows = [[1.0, 10.0], [2.0, 30.0], [4.5, 5.0]];
-        let spread = Spread::of(2, rows.iter().map(<[f64; 2]>::as_slice));
+        let spread = Spread::from_rows(2, rows.iter().map(<[f64; 2]>::as_slice));
         for band in 0..2 {
             assert!((mean[band] - spread.mean()[band]).abs() < 1e-12);
             assert!((error[band] - spread.standard_error()[band]).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Sums with what is needed for the error of anything that is computed from them.
+//! Sums with the deviations from which the standard error of any function of them follows.
 
 /// Sums, and independent deviations from them that vary and covary as the errors of the sums do.
 ///
@@ -9,14 +9,14 @@
 /// estimators).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Replicates {
-    /// The sums, shape `[values]`.
+    /// Sums, shape `[values]`.
     pub sums: Vec<f64>,
-    /// The deviations, shape `[replicates, values]`; empty where nothing is known of the error.
+    /// Deviations, shape `[replicates, values]`; empty if the error is unknown.
     pub deviations: Vec<f64>,
 }
 
 impl Replicates {
-    /// Replicates of independent randomisations of the same sums: what each deviates from their mean by.
+    /// Replicates of independent randomisations of the same sums: the deviations of these from their mean.
     #[must_use]
     pub fn from_randomisations(rows: &[&[f64]]) -> Self {
         let values = rows.first().map_or(0, |row| row.len());
@@ -32,12 +32,12 @@ impl Replicates {
         Self { deviations: deviations.collect(), sums }
     }
 
-    /// Replicates of half-samples: of strata that are each sampled by two independent nets, each replicate
-    /// takes one net of every stratum, drawn at random.
+    /// Replicates of half-samples. Each stratum is sampled by two independent nets; each replicate takes one net of
+    /// every stratum, drawn at random.
     ///
-    /// - `nets`: sums of all strata by net, shape `[2][values]`
-    /// - `halves`: those of the strata from which a replicate takes this net, shape `[replicates][2][values]`
-    /// - `samples`: samples of each stratum by net
+    /// - `nets`: sums over all strata by net, shape `[2][values]`
+    /// - `halves`: sums over the strata from which a replicate takes this net, shape `[replicates][2][values]`
+    /// - `samples`: number of samples of each stratum by net
     ///
     /// Source: `McCarthy` (1969), "Pseudo-replication: half samples", Rev. Int. Stat. Inst. 37, 239-264.
     #[must_use]
@@ -61,14 +61,15 @@ impl Replicates {
         Self { sums, deviations }
     }
 
-    /// Standard error of a function of the sums from its differential: `(value, slope)` of the sums that it
-    /// depends on, each once; NaN if nothing is known of the error.
+    /// Standard error of a function of the sums from its differential: index and partial derivative for each sum that
+    /// it depends on; NaN if the error is unknown.
     #[must_use]
     pub fn standard_error(&self, slopes: &[(usize, f64)]) -> f64 {
         let values = self.sums.len().max(1);
         let rows = self.deviations.chunks_exact(values);
         let count = rows.len() as f64;
-        let change = |row: &[f64]| slopes.iter().map(|&(at, slope)| slope * row[at]).sum::<f64>();
+        let change =
+            |row: &[f64]| slopes.iter().map(|&(index, slope)| slope * row[index]).sum::<f64>();
         (rows.map(|row| change(row).powi(2)).sum::<f64>() / count).sqrt()
     }
 }

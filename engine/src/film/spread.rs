@@ -12,18 +12,18 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// No randomisation yet, of this many values.
+    /// Spread of no randomisation yet, for this number of values.
     #[must_use]
     pub fn new(values: usize) -> Self {
         Self { count: 0, mean: zeroed(values), squares: zeroed(values) }
     }
 
-    /// Spread of the rows given.
+    /// Spread of these randomisations, each of `values` values.
     ///
     /// # Panics
     /// If the rows differ in length.
     #[must_use]
-    pub fn of<'a>(values: usize, rows: impl IntoIterator<Item = &'a [f64]>) -> Self {
+    pub fn from_rows<'a>(values: usize, rows: impl IntoIterator<Item = &'a [f64]>) -> Self {
         let mut spread = Self::new(values);
         for row in rows {
             spread.push(row);
@@ -31,10 +31,10 @@ impl Spread {
         spread
     }
 
-    /// Takes one randomisation in.
+    /// Adds one randomisation.
     ///
     /// # Panics
-    /// If it has another number of values.
+    /// If its number of values differs.
     pub fn push(&mut self, randomisation: &[f64]) {
         assert_eq!(randomisation.len(), self.mean.len(), "one value each");
         self.count += 1;
@@ -47,10 +47,10 @@ impl Spread {
         }
     }
 
-    /// Spread of the values at these places, each times a factor.
+    /// Spread of the values at these indices, each multiplied by a factor.
     ///
     /// # Panics
-    /// If there is no such place.
+    /// If an index is out of range.
     #[must_use]
     pub fn select(&self, places: impl IntoIterator<Item = (usize, f64)>) -> Self {
         let scaled = |(place, scale): (usize, f64)| {
@@ -89,7 +89,7 @@ impl Spread {
             .map(|(error, mean)| error / mean.abs())
             .collect();
         if relative.is_empty() {
-            // All is black, and exactly so.
+            // All values are exactly 0.
             return if self.count < 2 { f64::INFINITY } else { 0.0 };
         }
         let middle = relative.len() / 2;
@@ -115,6 +115,6 @@ mod tests {
 
     #[test]
     fn one_randomisation_has_no_standard_error() {
-        assert!(Spread::of(1, [[2.0].as_slice()]).standard_error()[0].is_nan());
+        assert!(Spread::from_rows(1, [[2.0].as_slice()]).standard_error()[0].is_nan());
     }
 }

@@ -5,58 +5,58 @@ use indexmap::IndexSet;
 pub struct Sums {
     bands: usize,
     values: Vec<f64>,
-    /// Cells that have values, in the order of these; `None` if all have.
+    /// Cells that have values, in the order of `values`; `None` if all have.
     touched: Option<IndexSet<usize>>,
 }
 
-/// Values from which a block's sums hold only the cells that it touches, 512 KiB.
-const MANY: usize = 1 << 16;
+/// Number of values from which a block's sums hold only the cells that it touches, 512 KiB.
+const SPARSE_FROM: usize = 1 << 16;
 
-/// Memory of the index of a cell, bytes: a number and its hash in a list that grows by doubling, and a
-/// place in a hash table that is a quarter full at least.
-const INDEX: u64 = 72;
+/// Memory of the index of a cell, bytes: a number and its hash in a list that grows by doubling, and an
+/// entry of a hash table that is at least a quarter full.
+const INDEX_BYTES: u64 = 72;
 
 impl Sums {
-    /// All zero.
+    /// Sums that are all zero.
     #[must_use]
     pub fn new(cells: usize, bands: usize) -> Self {
         Self { bands, values: zeroed(cells * bands), touched: None }
     }
 
-    /// All zero, to be merged into others: of many cells, it takes the memory of those alone that
-    /// something is added to. Sums come out the same, bit for bit.
+    /// Sums of a block, all zero, which will be merged into others: if there are many cells, only those that
+    /// something is added to take memory. The merged sums are the same, bit for bit.
     #[must_use]
-    pub fn of_block(cells: usize, bands: usize) -> Self {
-        if cells.saturating_mul(bands) < MANY {
+    pub fn new_for_block(cells: usize, bands: usize) -> Self {
+        if cells.saturating_mul(bands) < SPARSE_FROM {
             return Self::new(cells, bands);
         }
         Self { bands, values: Vec::new(), touched: Some(IndexSet::new()) }
     }
 
-    /// Memory of what [`Self::new`] makes, bytes; `u64::MAX` of more than can be counted.
+    /// Memory of the sums that [`Self::new`] returns, bytes; `u64::MAX` if the number does not fit.
     #[must_use]
     pub fn bytes(cells: usize, bands: usize) -> u64 {
         let bytes = cells as u128 * bands as u128 * size_of::<f64>() as u128;
         bytes.try_into().unwrap_or(u64::MAX)
     }
 
-    /// The most memory of what [`Self::of_block`] makes once so many cells were added to, bytes.
+    /// Maximum memory of the sums that [`Self::new_for_block`] returns once `touched` cells were added to, bytes.
     #[must_use]
     pub fn block_bytes(cells: usize, bands: usize, touched: u64) -> u64 {
         let all = Self::bytes(cells, bands);
-        if all < Self::bytes(MANY, 1) {
+        if all < Self::bytes(SPARSE_FROM, 1) {
             return all;
         }
-        // Values grow by doubling; of each cell there is an index.
-        let values = Self::bytes(2 * bands, 1).saturating_add(INDEX);
+        // Values grow by doubling; each cell has an index.
+        let values = Self::bytes(2 * bands, 1).saturating_add(INDEX_BYTES);
         let touched = touched.min(cells as u64);
         values.saturating_mul(touched)
     }
 
-    /// Where the sums of a cell start among [`Self::values_mut`]; they stay there.
+    /// Index of the first sum of a cell in [`Self::values_mut`]; it does not change.
     ///
     /// # Panics
-    /// If there is no such cell.
+    /// If the cell is out of range.
     pub fn start(&mut self, cell: usize) -> usize {
         let row = self.touched.as_mut().map_or(cell, |touched| {
             let (row, is_new) = touched.insert_full(cell);
@@ -65,14 +65,14 @@ impl Sums {
             }
             row
         });
-        assert!((row + 1) * self.bands <= self.values.len(), "there is such a cell");
+        assert!((row + 1) * self.bands <= self.values.len(), "the cell is in range");
         row * self.bands
     }
 
-    /// The sums of a cell, shape `[bands]`, to be added to.
+    /// Sums of a cell, shape `[bands]`.
     ///
     /// # Panics
-    /// If there is no such cell.
+    /// If the cell is out of range.
     pub fn cell_mut(&mut self, cell: usize) -> &mut [f64] {
         let start = self.start(cell);
         &mut self.values[start..start + self.bands]
@@ -81,7 +81,7 @@ impl Sums {
     /// Adds a value to one band of a cell.
     ///
     /// # Panics
-    /// If there is no such cell or band.
+    /// If the cell or the band is out of range.
     pub fn add_at(&mut self, cell: usize, band: usize, value: f64) {
         self.cell_mut(cell)[band] += value;
     }
@@ -106,22 +106,22 @@ impl Sums {
         }
     }
 
-    /// The sums, shape `[cells, bands]`, bands fastest.
+    /// Sums, shape `[cells, bands]`, bands fastest.
     ///
     /// # Panics
-    /// If they are of a block.
+    /// If these are sums of a block.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        assert!(self.touched.is_none(), "a block's sums are there to be merged");
+        assert!(self.touched.is_none(), "sums of a block are only merged");
         &self.values
     }
 
-    /// The same, mutable.
+    /// Mutable sums; those of a block hold only the cells that it touches.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// Bands of a cell.
+    /// Number of bands of a cell.
     #[must_use]
     pub const fn bands(&self) -> usize {
         self.bands
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_block_that_holds_only_what_it_touches_merges_to_the_same_bits() {
-        let cells = MANY / 2;
+        let cells = SPARSE_FROM / 2;
         let fill = |sums: &mut Sums, seed: usize| {
             for step in 0..1000 {
                 let cell = (step * step * 7919 + seed) % 97 * (cells / 97);
@@ -154,7 +154,7 @@ mod tests {
         };
         let (mut sparse, mut dense) = (Sums::new(cells, 2), Sums::new(cells, 2));
         for seed in 1..5 {
-            let (mut block, mut all) = (Sums::of_block(cells, 2), Sums::new(cells, 2));
+            let (mut block, mut all) = (Sums::new_for_block(cells, 2), Sums::new(cells, 2));
             fill(&mut block, seed);
             fill(&mut all, seed);
             assert!(block.values.len() <= 2 * 97 && all.values.len() == 2 * cells);

@@ -210,7 +210,7 @@ mod tests {
         // Share of the power that a surface of reflectance 0.4 sends into each cell.
         let shares: Vec<f64> =
             hemisphere.cells().map(|cell| 0.4 * cell.projected_solid_angle / PI).collect();
-        let spread = Spread::of(150, [shares.as_slice(), shares.as_slice()]);
+        let spread = Spread::from_rows(150, [shares.as_slice(), shares.as_slice()]);
         let context = Context {
             bands: vec!["b".to_owned()],
             irradiance: vec![1.5],

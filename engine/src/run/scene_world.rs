@@ -16,7 +16,7 @@ pub struct SceneWorld {
     /// Settings, entities by name, and messages.
     pub resources: Resources,
     /// Ray engine of the scene; `None` until it is built, and after a change of the geometry.
-    pub(super) geometry: Option<Arc<accel::Scene>>,
+    pub(super) geometry: Option<Arc<accel::TwoLevelBvh>>,
     /// Number of times that the ray engine was built.
     pub(super) builds: usize,
     /// Names of the systems that the last change made run.

@@ -1,4 +1,3 @@
-use crate::accel::Boundary;
 use crate::document::{self, Scene};
 use crate::extract::{Rules, Setting, Stage};
 use crate::products::{BandSources, Context};
@@ -26,10 +25,7 @@ pub(super) fn setting(scene: &Scene) -> Setting {
     let transport = &scene.transport;
     Setting {
         bands: scene.bands.len(),
-        boundary: match scene.boundary {
-            document::Boundary::Periodic => Boundary::Periodic,
-            document::Boundary::Isolated => Boundary::Isolated,
-        },
+        is_periodic: scene.boundary == document::Boundary::Periodic,
         rules: Rules {
             seed: transport.seed,
             roulette_after: transport.roulette.after_order,

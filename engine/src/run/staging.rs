@@ -49,7 +49,7 @@ fn located(error: &BuildError, world: &SceneWorld) -> Diagnostic {
             }
         }
         BuildError::Domain { .. } => "terrain".to_owned(),
-        BuildError::TooManyImages { .. } => "instances".to_owned(),
+        BuildError::TooManyCopies { .. } => "instances".to_owned(),
     };
     Diagnostic::error(path, error.to_string())
 }

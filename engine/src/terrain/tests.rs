@@ -223,18 +223,15 @@ fn no_ray_gets_under_a_periodic_ground() {
     let wanted: u64 = wanted.unwrap_or(200_000);
     let heights = cells(24, 16, |x, y| hills(3.0 * x, 3.0 * y) + 0.4 * x - 0.7 * y);
     let patch = raster(&heights, 0.3, None, soil(), true).expect("data");
-    let domain = accel::Domain {
-        min: patch.corner,
-        max: patch.corner + patch.size,
-        boundary: accel::Boundary::Periodic,
-    };
+    let domain =
+        accel::Domain { min: patch.corner, max: patch.corner + patch.size, is_periodic: true };
     let input = accel::MeshInput { mesh: &patch.mesh, surfaces: &[0] };
     let instance = accel::InstanceInput {
         mesh: 0,
         linear: patch.world_from_object(),
         translation: patch.origin(),
     };
-    let scene = accel::Scene::build(&[input], &[instance], domain).expect("a scene");
+    let scene = accel::TwoLevelBvh::build(&[input], &[instance], domain).expect("a scene");
     let key = Key::new(7).path("rays");
     let (mut rays, mut walls, mut start) = (0, 0, 0);
     while rays < wanted {

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
-use sunfleck::accel::{Batch, Ray};
+use sunfleck::accel::{Ray, RayBatch};
 use sunfleck::extract::Stage;
 use sunfleck::run;
 use sunfleck::sampling::Key;
@@ -96,10 +96,10 @@ fn as_paths(stage: &Stage, rays: &[TracedRay]) {
         };
         let (shadows, rays) = (of_kind(true), of_kind(false));
         let (mut dark, mut hits) = (vec![false; shadows.len()], vec![None; rays.len()]);
-        stage.geometry.trace_each(Batch {
-            shadows: &shadows,
-            dark: &mut dark,
-            rays: &rays,
+        stage.geometry.trace_each(RayBatch {
+            shadow_rays: &shadows,
+            occluded: &mut dark,
+            closest_rays: &rays,
             hits: &mut hits,
         });
         black_box((dark, hits));

@@ -1,9 +1,9 @@
-//! Eight `f32` lanes, chosen at run time, and a stack: the only folder with `unsafe` code.
+//! Vectors of eight `f32` lanes, dispatch over instruction sets, and a stack: the only folder with `unsafe` code.
 //!
-//! The traversal is generic over [`Isa`] and inlined into one wrapper an instruction set, which
-//! alone carries `#[target_feature]`. A value of [`Avx2`] or [`Avx512`] exists only inside its
-//! wrapper, and a wrapper is called only for a [`Level`] that the processor was found to have: that
-//! is what makes the intrinsics below sound.
+//! A [`Kernel`] is generic over [`Isa`] and inlined into one wrapper per instruction set, which
+//! alone carries `#[target_feature]`. A value of `Avx2` or `Avx512` exists only inside its
+//! wrapper, and a wrapper is called only for a [`SimdLevel`] that the processor was found to have.
+//! Therefore the intrinsics in this folder are sound.
 #![allow(
     unsafe_code,
     reason = "intrinsics need a processor feature that is checked at run time; the stack leaves \
@@ -15,25 +15,22 @@ mod stack;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use super::scene::Scene;
-use super::trace::{self, Batch, Found, Query};
-
 use portable::Portable;
-pub(super) use stack::{Space, Stack};
+pub(super) use stack::{Stack, StackMemory};
 
-/// Eight values, one a lane.
+/// Eight values, one per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub(super) struct Lanes(pub [f32; 8]);
 
-/// Eight words, one a lane.
+/// Eight words, one per lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(32))]
 pub(super) struct Words(pub [u32; 8]);
 
-/// Arithmetic on eight lanes. Comparisons give bit masks, lane 0 in bit 0.
+/// Arithmetic on eight lanes. Comparisons return bit masks, lane 0 in bit 0.
 ///
-/// Only bounds that hold with and without fused multiplication are decided with it.
+/// It decides only by bounds that hold with and without fused multiplication.
 pub(super) trait Isa: Copy {
     type F: Copy;
     fn splat(self, value: f32) -> Self::F;
@@ -50,23 +47,22 @@ pub(super) trait Isa: Copy {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     fn abs(self, a: Self::F) -> Self::F;
-    /// `a` with its sign turned where `sign` is negative.
-    fn turn(self, a: Self::F, sign: Self::F) -> Self::F;
+    /// `a`, negated where `sign` is negative.
+    fn xor_sign(self, a: Self::F, sign: Self::F) -> Self::F;
     /// `b` where the sign bit of `by` is set, `a` elsewhere.
-    fn pick(self, a: Self::F, b: Self::F, by: Self::F) -> Self::F;
+    fn select(self, a: Self::F, b: Self::F, by: Self::F) -> Self::F;
     /// `a <= b`; false for NaN.
     fn le(self, a: Self::F, b: Self::F) -> u32;
     /// `!(a > b)`; true for NaN.
     fn not_gt(self, a: Self::F, b: Self::F) -> u32;
-    /// The lanes of a node's children whose box is entered before it is left, in the order
-    /// `order`: how many, where they are entered, and the children.
-    fn arrange(
+    /// Children of a node whose boxes are entered before they are left, moved to the front in the order `order`.
+    fn compress_hits(
         self,
         order: u32,
         enter: Self::F,
         leave: Self::F,
         child: &Words,
-    ) -> (usize, Self::F, Self::F);
+    ) -> HitChildren<Self::F>;
     /// Writes all lanes, as words.
     ///
     /// # Safety
@@ -74,10 +70,28 @@ pub(super) trait Isa: Copy {
     unsafe fn write(self, value: Self::F, to: *mut u32);
 }
 
-/// The instruction set that rays are traced with.
+/// Children of a node that a ray hits; lanes beyond `count` are not defined.
+#[derive(Clone, Copy)]
+pub(super) struct HitChildren<F> {
+    pub count: usize,
+    /// Distances at which their boxes are entered.
+    pub near: F,
+    /// References, as bits.
+    pub children: F,
+}
+
+/// Work that is compiled once per instruction set.
+///
+/// Implementations of `run` must be `#[inline(always)]`, and so must everything that they call with an [`Isa`].
+pub(super) trait Kernel {
+    type Output;
+    fn run<I: Isa>(self, isa: I) -> Self::Output;
+}
+
+/// Instruction set that rays are traced with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Level {
-    /// Whatever the program was compiled for.
+pub(super) enum SimdLevel {
+    /// Instructions that the program was compiled for.
     Portable,
     /// AVX2 and FMA.
     #[cfg(target_arch = "x86_64")]
@@ -87,13 +101,13 @@ pub(super) enum Level {
     Avx512,
 }
 
-impl Level {
-    /// The best that this processor has.
+impl SimdLevel {
+    /// Best level that this processor has.
     pub(super) fn detect() -> Self {
         Self::available().last().copied().unwrap_or(Self::Portable)
     }
 
-    /// All that this processor has, best last.
+    /// All levels that this processor has, best last.
     pub(super) fn available() -> Vec<Self> {
         let mut levels = vec![Self::Portable];
         #[cfg(target_arch = "x86_64")]
@@ -112,45 +126,17 @@ impl Level {
         levels
     }
 
-    /// The closest primitive on a ray.
+    /// Runs a kernel with this instruction set.
     #[inline]
-    pub(super) fn closest(self, query: &Query<'_>) -> Option<Found> {
+    pub(super) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
-            Self::Portable => trace::trace(Portable, query, false),
+            Self::Portable => kernel.run(Portable),
             // SAFETY: `detect` and `available` name a level only when the processor has it.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { x86::closest_avx2(query) },
+            Self::Avx2 => unsafe { x86::run_avx2(kernel) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { x86::closest_avx512(query) },
-        }
-    }
-
-    /// Answers a batch.
-    #[inline]
-    pub(super) fn each(self, scene: &Scene, batch: Batch<'_>) {
-        match self {
-            Self::Portable => trace::trace_each(Portable, scene, batch),
-            // SAFETY: as in `closest`.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { x86::each_avx2(scene, batch) },
-            // SAFETY: as in `closest`.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { x86::each_avx512(scene, batch) },
-        }
-    }
-
-    /// Whether any primitive is on a ray.
-    #[inline]
-    pub(super) fn occluded(self, query: &Query<'_>) -> bool {
-        match self {
-            Self::Portable => trace::trace(Portable, query, true).is_some(),
-            // SAFETY: as in `closest`.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { x86::occluded_avx2(query) },
-            // SAFETY: as in `closest`.
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { x86::occluded_avx512(query) },
+            Self::Avx512 => unsafe { x86::run_avx512(kernel) },
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What any processor can do: plain loops, which the compiler may vectorise.
+//! Fallback for any processor: plain loops, which the compiler may vectorise.
 
-use super::{Isa, Lanes, Words};
+use super::{HitChildren, Isa, Lanes, Words};
 
-/// What any processor can do.
+/// Instructions that the program was compiled for.
 #[derive(Clone, Copy)]
-pub(in crate::accel) struct Portable;
+pub(super) struct Portable;
 
 impl Portable {
     #[inline(always)]
@@ -69,11 +69,11 @@ impl Isa for Portable {
         Lanes(a.0.map(f32::abs))
     }
     #[inline(always)]
-    fn turn(self, a: Lanes, sign: Lanes) -> Lanes {
+    fn xor_sign(self, a: Lanes, sign: Lanes) -> Lanes {
         Self::zip(a, sign, |a, s| f32::from_bits(a.to_bits() ^ (s.to_bits() & 0x8000_0000)))
     }
     #[inline(always)]
-    fn pick(self, a: Lanes, b: Lanes, by: Lanes) -> Lanes {
+    fn select(self, a: Lanes, b: Lanes, by: Lanes) -> Lanes {
         Lanes(std::array::from_fn(|i| if by.0[i].is_sign_negative() { b.0[i] } else { a.0[i] }))
     }
     #[inline(always)]
@@ -86,13 +86,13 @@ impl Isa for Portable {
         Self::mask(a, b, |a, b| !(a > b))
     }
     #[inline(always)]
-    fn arrange(
+    fn compress_hits(
         self,
         order: u32,
         enter: Lanes,
         leave: Lanes,
         child: &Words,
-    ) -> (usize, Lanes, Lanes) {
+    ) -> HitChildren<Lanes> {
         let (mut near, mut children) = (Lanes([0.0; 8]), Lanes([0.0; 8]));
         let mut count = 0;
         for place in 0..8 {
@@ -101,7 +101,7 @@ impl Isa for Portable {
             children.0[count] = f32::from_bits(child.0[lane]);
             count += usize::from(enter.0[lane] <= leave.0[lane]);
         }
-        (count, near, children)
+        HitChildren { count, near, children }
     }
     #[inline(always)]
     unsafe fn write(self, value: Lanes, to: *mut u32) {

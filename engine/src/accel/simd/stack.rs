@@ -1,28 +1,27 @@
-//! What a ray has still to visit.
+//! Stack of nodes and leaves that a ray has still to visit.
 
 use std::mem::MaybeUninit;
 
-use super::Isa;
+use super::{HitChildren, Isa};
 
-/// Entries that one ray may have waiting: seven a level of both trees, whose depth the builder
-/// limits.
-pub(in crate::accel) const STACK: usize = 512;
+/// Maximum number of entries of one ray: seven per level of both hierarchies, whose depth the build limits.
+const STACK: usize = 512;
 
-/// What a ray has still to visit, nearest last.
+/// Nodes and leaves that a ray has still to visit, with the distances of their boxes, nearest last.
 ///
-/// The memory is the caller's, so that the length stays in a register.
+/// The memory is borrowed, so that the length stays in a register.
 pub(in crate::accel) struct Stack<'a> {
-    space: &'a mut Space,
+    memory: &'a mut StackMemory,
     len: usize,
 }
 
 /// Memory of a [`Stack`].
-pub(in crate::accel) struct Space {
+pub(in crate::accel) struct StackMemory {
     refs: [MaybeUninit<u32>; STACK + 8],
     near: [MaybeUninit<u32>; STACK + 8],
 }
 
-impl Space {
+impl StackMemory {
     #[inline(always)]
     pub(in crate::accel) fn new() -> Self {
         let empty = [const { MaybeUninit::uninit() }; STACK + 8];
@@ -32,8 +31,8 @@ impl Space {
 
 impl<'a> Stack<'a> {
     #[inline(always)]
-    pub(in crate::accel) fn new(space: &'a mut Space) -> Self {
-        Self { space, len: 0 }
+    pub(in crate::accel) fn new(memory: &'a mut StackMemory) -> Self {
+        Self { memory, len: 0 }
     }
 
     #[inline(always)]
@@ -48,28 +47,28 @@ impl<'a> Stack<'a> {
 
     #[inline(always)]
     pub(in crate::accel) fn push(&mut self, item: u32, near: f32) {
-        self.space.refs[self.len] = MaybeUninit::new(item);
-        self.space.near[self.len] = MaybeUninit::new(near.to_bits());
+        self.memory.refs[self.len] = MaybeUninit::new(item);
+        self.memory.near[self.len] = MaybeUninit::new(near.to_bits());
         self.len += 1;
     }
 
-    /// Pushes the first `count` of eight lanes.
+    /// Pushes the children that a ray hits.
     #[inline(always)]
     pub(in crate::accel) fn extend<I: Isa>(
         &mut self,
         isa: I,
-        (count, near, refs): (usize, I::F, I::F),
+        HitChildren { count, near, children }: HitChildren<I::F>,
     ) {
-        assert!(self.len <= STACK, "the builder limits the depth of trees");
+        assert!(self.len <= STACK, "the build limits the depth of hierarchies");
         // SAFETY: there is room for eight beyond `STACK`.
         unsafe {
-            isa.write(refs, self.space.refs.as_mut_ptr().add(self.len).cast());
-            isa.write(near, self.space.near.as_mut_ptr().add(self.len).cast());
+            isa.write(children, self.memory.refs.as_mut_ptr().add(self.len).cast());
+            isa.write(near, self.memory.near.as_mut_ptr().add(self.len).cast());
         }
         self.len += count.min(8);
     }
 
-    /// The newest entry above the first `base`.
+    /// Removes and returns the newest entry above the first `base`.
     #[inline(always)]
     pub(in crate::accel) fn pop(&mut self, base: usize) -> Option<(u32, f32)> {
         if self.len <= base {
@@ -80,8 +79,8 @@ impl<'a> Stack<'a> {
         // or by `extend`.
         unsafe {
             Some((
-                self.space.refs.get_unchecked(self.len).assume_init(),
-                f32::from_bits(self.space.near.get_unchecked(self.len).assume_init()),
+                self.memory.refs.get_unchecked(self.len).assume_init(),
+                f32::from_bits(self.memory.near.get_unchecked(self.len).assume_init()),
             ))
         }
     }

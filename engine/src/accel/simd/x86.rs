@@ -3,47 +3,27 @@
 #[allow(clippy::wildcard_imports, reason = "a list of intrinsics says nothing")]
 use std::arch::x86_64::*;
 
-use super::{Batch, Found, Isa, Lanes, Query, Scene, Words, trace};
+use super::{HitChildren, Isa, Kernel, Lanes, Words};
 
-/// Proof that AVX2 and FMA are there: made only inside the two wrappers.
+/// Proof that the processor has AVX2 and FMA: constructed only inside its wrapper.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(());
 
-/// Proof that AVX-512 F and VL are there too: made only inside the two wrappers.
+/// Proof that the processor has AVX-512 F and VL too: constructed only inside its wrapper.
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(());
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn closest_avx2(query: &Query<'_>) -> Option<Found> {
-    trace::trace(Avx2(()), query, false)
-}
-
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn occluded_avx2(query: &Query<'_>) -> bool {
-    trace::trace(Avx2(()), query, true).is_some()
-}
-
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn each_avx2(scene: &Scene, batch: Batch<'_>) {
-    trace::trace_each(Avx2(()), scene, batch);
+pub(super) fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx2(()))
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn each_avx512(scene: &Scene, batch: Batch<'_>) {
-    trace::trace_each(Avx512(()), scene, batch);
+pub(super) fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx512(()))
 }
 
-#[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn closest_avx512(query: &Query<'_>) -> Option<Found> {
-    trace::trace(Avx512(()), query, false)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn occluded_avx512(query: &Query<'_>) -> bool {
-    trace::trace(Avx512(()), query, true).is_some()
-}
-
-/// The methods that both instruction sets do alike.
+/// Methods that are the same for both instruction sets.
 macro_rules! common {
     () => {
         type F = __m256;
@@ -108,12 +88,12 @@ macro_rules! common {
             unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
         }
         #[inline(always)]
-        fn turn(self, a: __m256, sign: __m256) -> __m256 {
+        fn xor_sign(self, a: __m256, sign: __m256) -> __m256 {
             // SAFETY: see `splat`.
             unsafe { _mm256_xor_ps(a, _mm256_and_ps(sign, _mm256_set1_ps(-0.0))) }
         }
         #[inline(always)]
-        fn pick(self, a: __m256, b: __m256, by: __m256) -> __m256 {
+        fn select(self, a: __m256, b: __m256, by: __m256) -> __m256 {
             // SAFETY: see `splat`.
             unsafe { _mm256_blendv_ps(a, b, by) }
         }
@@ -123,17 +103,17 @@ macro_rules! common {
             unsafe { _mm256_storeu_ps(to.cast(), value) };
         }
         #[inline(always)]
-        fn arrange(
+        fn compress_hits(
             self,
             order: u32,
             enter: __m256,
             leave: __m256,
             child: &Words,
-        ) -> (usize, __m256, __m256) {
+        ) -> HitChildren<__m256> {
             // SAFETY: see `splat`; `Words` is 32 bytes at a 32-byte boundary.
             unsafe {
                 let shifts = _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21);
-                // Permutations heed the lowest three bits of each lane only.
+                // Permutations use only the lowest three bits of each lane.
                 let lanes = _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), shifts);
                 let hit = self.le(
                     _mm256_permutevar8x32_ps(enter, lanes),
@@ -141,18 +121,18 @@ macro_rules! common {
                 );
                 let lanes = Self::compress(hit, lanes);
                 let children = _mm256_load_ps(child.0.as_ptr().cast());
-                (
-                    hit.count_ones() as usize,
-                    _mm256_permutevar8x32_ps(enter, lanes),
-                    _mm256_permutevar8x32_ps(children, lanes),
-                )
+                HitChildren {
+                    count: hit.count_ones() as usize,
+                    near: _mm256_permutevar8x32_ps(enter, lanes),
+                    children: _mm256_permutevar8x32_ps(children, lanes),
+                }
             }
         }
     };
 }
 
 impl Avx2 {
-    /// The lanes of a mask, moved to the front.
+    /// Lanes of a mask, moved to the front.
     ///
     /// # Safety
     /// A value of this type must exist.
@@ -160,7 +140,7 @@ impl Avx2 {
     unsafe fn compress(mask: u32, value: __m256i) -> __m256i {
         // SAFETY: the caller's value proves the features.
         unsafe {
-            // Each bit of the mask becomes a byte, and picks the byte that counts its lane.
+            // Each bit of the mask becomes a byte, and selects the byte that holds the number of its lane.
             let bytes = _pdep_u64(mask.into(), 0x0101_0101_0101_0101) * 0xFF;
             let lanes = _pext_u64(0x0706_0504_0302_0100, bytes);
             let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(lanes as i64));
@@ -170,7 +150,7 @@ impl Avx2 {
 }
 
 impl Avx512 {
-    /// The lanes of a mask, moved to the front.
+    /// Lanes of a mask, moved to the front.
     ///
     /// # Safety
     /// A value of this type must exist.

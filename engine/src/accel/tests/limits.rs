@@ -1,15 +1,15 @@
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-use super::random::{Random, at, domain, mesh, scene, square};
+use super::random::{Random, at, isolated, mesh, periodic, scene, square};
 use crate::{
-    accel::{Boundary, BuildError, Domain, InstanceInput, MeshInput, Ray, Scene},
+    accel::{BuildError, Domain, InstanceInput, MeshInput, Ray, TwoLevelBvh},
     components::{Disc, Mesh},
 };
 
-fn build(mesh: &Mesh) -> Result<Scene, BuildError> {
+fn build(mesh: &Mesh) -> Result<TwoLevelBvh, BuildError> {
     let fine = square(1.0);
     let inputs = [MeshInput { mesh: &fine, surfaces: &[0] }, MeshInput { mesh, surfaces: &[0] }];
-    Scene::build(&inputs, &[at(1, DVec3::ZERO)], domain(1.0, Boundary::Isolated))
+    TwoLevelBvh::build(&inputs, &[at(1, DVec3::ZERO)], isolated(1.0))
 }
 
 #[test]
@@ -36,20 +36,21 @@ fn what_is_not_a_scene_is_named() {
 
     let mesh = square(1.0);
     let inputs = [MeshInput { mesh: &mesh, surfaces: &[0] }];
-    let place = |instance, domain| Scene::build(&inputs, &[at(0, DVec3::ZERO), instance], domain);
-    let isolated = domain(1.0, Boundary::Isolated);
+    let place =
+        |instance, domain| TwoLevelBvh::build(&inputs, &[at(0, DVec3::ZERO), instance], domain);
+    let fine = isolated(1.0);
     let named = BuildError::Mesh { instance: 1, mesh: 3, count: 1 };
-    assert_eq!(place(at(3, DVec3::ZERO), isolated).unwrap_err(), named);
+    assert_eq!(place(at(3, DVec3::ZERO), fine).unwrap_err(), named);
     let flat = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0));
     for linear in [flat, DMat3::IDENTITY * f64::NAN, DMat3::IDENTITY * 1e-60] {
         let instance = InstanceInput { mesh: 0, linear, translation: DVec3::ZERO };
-        let error = place(instance, isolated).unwrap_err();
+        let error = place(instance, fine).unwrap_err();
         assert_eq!(error, BuildError::Transform { instance: 1 });
     }
     let lost = at(0, DVec3::new(0.0, f64::NAN, 0.0));
-    assert_eq!(place(lost, isolated).unwrap_err(), BuildError::Transform { instance: 1 });
+    assert_eq!(place(lost, fine).unwrap_err(), BuildError::Transform { instance: 1 });
     for max in [DVec2::ZERO, DVec2::new(1.0, f64::NAN), DVec2::new(1.0, f64::INFINITY)] {
-        let domain = Domain { max, ..isolated };
+        let domain = Domain { max, ..fine };
         assert!(matches!(place(at(0, DVec3::ZERO), domain), Err(BuildError::Domain { .. })));
     }
 }
@@ -61,9 +62,9 @@ fn nothing_is_never_hit() {
     let none: &[u32] = &[];
     let inputs =
         [MeshInput { mesh: &empty, surfaces: none }, MeshInput { mesh: &flat, surfaces: &[0] }];
-    for boundary in [Boundary::Isolated, Boundary::Periodic] {
+    for domain in [isolated(1.0), periodic(1.0)] {
         for instances in [vec![], vec![at(0, DVec3::ZERO), at(1, DVec3::ZERO)]] {
-            let scene = Scene::build(&inputs, &instances, domain(1.0, boundary)).unwrap();
+            let scene = TwoLevelBvh::build(&inputs, &instances, domain).unwrap();
             let ray = Ray { origin: DVec3::Z, direction: -DVec3::Z, from: None };
             assert!(scene.closest(&ray).is_none() && !scene.occluded(&ray));
             assert_eq!((scene.bottom(), scene.top()), (0.0, 0.0));
@@ -83,13 +84,13 @@ fn thousands_of_equal_primitives_neither_panic_nor_hide() {
     let nested = mesh(nested, (0..120).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(), vec![]);
     let many = vec![at(0, DVec3::ZERO); 200];
     let ray = Ray { origin: DVec3::new(0.5, -0.5, 1.0), direction: -DVec3::Z, from: None };
-    let scene = scene(&[same, nested], &many, domain(1.0, Boundary::Isolated));
+    let scene = scene(&[same, nested], &many, isolated(1.0));
     let hit = scene.closest(&ray).unwrap();
     assert_eq!((hit.instance, hit.primitive), (0, 0), "the lowest of equals");
     let deep = [mesh(corners.into(), vec![[0, 1, 2]], vec![])];
     let lined: Vec<_> =
         (0..2_000).map(|i| at(0, DVec3::new(0.0, 0.0, -f64::from(i).exp2().recip()))).collect();
-    let scene = self::scene(&deep, &lined, domain(1.0, Boundary::Isolated));
+    let scene = self::scene(&deep, &lined, isolated(1.0));
     assert!(scene.occluded(&ray));
 }
 
@@ -105,7 +106,7 @@ fn bounds_hold_all_geometry_and_are_exact_in_height() {
         linear: DMat3::from_rotation_z(0.7),
         translation: DVec3::new(10.0, 20.0, 100.0),
     };
-    let scene = scene(&[tower], &[turned], domain(1.0, Boundary::Isolated));
+    let scene = scene(&[tower], &[turned], isolated(1.0));
     assert!((scene.top() - (100.0 + f64::from(7.3_f32))).abs() < 1e-13 * 100.0, "{}", scene.top());
     assert!((scene.bottom() - 99.75).abs() < 1e-13 * 100.0);
     let (min, max) = scene.bounds();
@@ -133,9 +134,7 @@ fn threads_do_not_change_a_bit() {
         .collect();
     let scenes = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            scene(std::slice::from_ref(&cloud), &instances, domain(9.0, Boundary::Periodic))
-        })
+        pool.install(|| scene(std::slice::from_ref(&cloud), &instances, periodic(9.0)))
     });
     for _ in 0..3_000 {
         let ray = Ray { origin: random.vector(20.0), direction: random.direction(), from: None };

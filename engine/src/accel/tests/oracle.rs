@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::{
-    accel::{Batch, Ray, Scene},
+    accel::{Ray, RayBatch, TwoLevelBvh},
     components::{Disc, Mesh},
 };
 
@@ -20,14 +20,14 @@ const MARGIN: f64 = 1e-9;
 
 /// The closest hit by brute force. Copies of everything stand at `shifts`.
 pub(super) fn closest(
-    scene: &Scene,
+    scene: &TwoLevelBvh,
     meshes: &[Mesh],
     count: usize,
     ray: &Ray,
     shifts: &[DVec3],
 ) -> Range {
     let mut range = Range { earliest: f64::INFINITY, latest: f64::INFINITY };
-    for record in &scene.records()[..count] {
+    for record in &scene.records[..count] {
         let object_from_world = DMat3::from_cols_array(&record.object_from_world.map(f64::from));
         let mesh = &meshes[record.mesh as usize];
         let direction = object_from_world * ray.direction;
@@ -114,7 +114,7 @@ fn disc(range: &mut Range, disc: &Disc, origin: DVec3, direction: DVec3) {
 
 /// Checks one ray on all instruction sets against the oracle; returns whether it hit.
 pub(super) fn check(
-    scenes: &[Scene],
+    scenes: &[TwoLevelBvh],
     meshes: &[Mesh],
     count: usize,
     ray: &Ray,
@@ -131,13 +131,18 @@ pub(super) fn check(
     let behind = scenes[0].closest(&back);
     for scene in scenes {
         assert_eq!(scene.closest(ray), hit, "instruction sets differ: {ray:?}");
-        // More rays than lines, of both kinds.
+        // More rays than slots, of both kinds.
         let rays = [*ray, back, back, *ray, back, *ray];
-        let (mut dark, mut hits) = ([false; 6], [None; 6]);
-        scene.trace_each(Batch { shadows: &rays, dark: &mut dark, rays: &rays, hits: &mut hits });
+        let (mut occluded, mut hits) = ([false; 6], [None; 6]);
+        scene.trace_each(RayBatch {
+            shadow_rays: &rays,
+            occluded: &mut occluded,
+            closest_rays: &rays,
+            hits: &mut hits,
+        });
         let answers = [hit, behind, behind, hit, behind, hit];
         assert_eq!(hits, answers, "side by side: {ray:?}");
-        assert_eq!(dark, answers.map(|hit| hit.is_some()), "side by side: {ray:?}");
+        assert_eq!(occluded, answers.map(|hit| hit.is_some()), "side by side: {ray:?}");
         assert_eq!(scene.occluded(ray), hit.is_some(), "any hit: {ray:?}");
         if let Some(hit) = hit {
             assert!(scene.occluded_within(ray, hit.distance.next_up()), "{ray:?}");
@@ -148,8 +153,8 @@ pub(super) fn check(
 }
 
 /// The same scene for every instruction set of this processor.
-pub(super) fn on_all_levels(build: impl Fn() -> Scene) -> Vec<Scene> {
-    crate::accel::simd::Level::available()
+pub(super) fn on_all_levels(build: impl Fn() -> TwoLevelBvh) -> Vec<TwoLevelBvh> {
+    crate::accel::simd::SimdLevel::available()
         .into_iter()
         .map(|level| build().with_level(level))
         .collect()

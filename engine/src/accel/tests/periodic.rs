@@ -2,10 +2,10 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::{
     oracle::{check, on_all_levels},
-    random::{Random, at, domain, mesh, quad, scene, square},
+    random::{Random, at, mesh, periodic, quad, scene, square},
 };
 use crate::{
-    accel::{Boundary, Domain, InstanceInput, Ray, Scene},
+    accel::{Domain, InstanceInput, Ray, TwoLevelBvh},
     components::{Disc, Mesh},
 };
 
@@ -13,7 +13,7 @@ const SIZE: DVec2 = DVec2::new(4.0, 3.0);
 
 fn tile() -> Domain {
     let min = DVec2::new(-1.0, 2.0);
-    Domain { min, max: min + SIZE, boundary: Boundary::Periodic }
+    Domain { min, max: min + SIZE, is_periodic: true }
 }
 
 fn crown(random: &mut Random) -> Mesh {
@@ -108,7 +108,7 @@ fn a_crown_moved_by_whole_periods_is_the_same_crown() {
 /// One leaf in a small tile: leaving it, a ray meets the copies at one period, never itself.
 #[test]
 fn a_ray_skips_the_leaf_it_leaves_but_not_its_copies() {
-    let domain = domain(1.0, Boundary::Periodic);
+    let domain = periodic(1.0);
     // A vertical leaf across the plane x = 0.98, so that rays along x meet it once a period, and
     // one that is cut by the border.
     for x in [0.5, 0.0, 0.999_999, 7.25] {
@@ -155,7 +155,8 @@ fn nothing_leaks_through_the_ground_at_the_seam() {
 #[test]
 fn a_horizontal_ray_ends() {
     let scene = scene(&[square(0.2)], &[at(0, DVec3::new(1.0, 3.0, 0.0))], tile());
-    let above: Scene = self::scene(&[square(0.2)], &[at(0, DVec3::ZERO), at(0, DVec3::Z)], tile());
+    let above: TwoLevelBvh =
+        self::scene(&[square(0.2)], &[at(0, DVec3::ZERO), at(0, DVec3::Z)], tile());
     let level = |z: f64| Ray { origin: DVec3::new(0.0, 3.0, z), direction: DVec3::X, from: None };
     assert!(scene.closest(&level(0.0)).is_none(), "in the plane of a leaf");
     assert!(scene.closest(&level(0.1)).is_none());

@@ -1,7 +1,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::{
-    accel::{Boundary, Domain, InstanceInput, MeshInput, Scene},
+    accel::{Domain, InstanceInput, MeshInput, TwoLevelBvh},
     components::{Disc, Mesh, MeshPart},
 };
 
@@ -82,8 +82,12 @@ pub(super) fn square(half: f32) -> Mesh {
     )
 }
 
-pub(super) fn domain(size: f64, boundary: Boundary) -> Domain {
-    Domain { min: glam::DVec2::ZERO, max: glam::DVec2::splat(size), boundary }
+pub(super) fn isolated(size: f64) -> Domain {
+    Domain { min: glam::DVec2::ZERO, max: glam::DVec2::splat(size), is_periodic: false }
+}
+
+pub(super) fn periodic(size: f64) -> Domain {
+    Domain { is_periodic: true, ..isolated(size) }
 }
 
 pub(super) fn at(mesh: u32, translation: DVec3) -> InstanceInput {
@@ -91,12 +95,12 @@ pub(super) fn at(mesh: u32, translation: DVec3) -> InstanceInput {
 }
 
 /// A scene whose meshes have one part each, of the mesh's own number as surface.
-pub(super) fn scene(meshes: &[Mesh], instances: &[InstanceInput], domain: Domain) -> Scene {
+pub(super) fn scene(meshes: &[Mesh], instances: &[InstanceInput], domain: Domain) -> TwoLevelBvh {
     let surfaces: Vec<u32> = (0..meshes.len() as u32).collect();
     let inputs: Vec<_> = meshes
         .iter()
         .zip(surfaces.chunks(1))
         .map(|(mesh, surfaces)| MeshInput { mesh, surfaces })
         .collect();
-    Scene::build(&inputs, instances, domain).unwrap()
+    TwoLevelBvh::build(&inputs, instances, domain).unwrap()
 }

@@ -1,8 +1,8 @@
 use glam::{DMat3, DVec3, Vec3};
 
-use super::random::{Random, at, domain, mesh, quad, scene, square};
+use super::random::{Random, at, isolated, mesh, quad, scene, square};
 use crate::{
-    accel::{Boundary, InstanceInput, MeshInput, Ray, Scene},
+    accel::{InstanceInput, MeshInput, Ray, TwoLevelBvh},
     components::{Disc, Mesh, MeshPart},
 };
 
@@ -17,7 +17,7 @@ fn two_leaves_a_tenth_of_a_millimetre_apart_are_told_apart_anywhere() {
     {
         let leaf = square(0.05);
         let both = [at(0, place), at(0, place + DVec3::new(0.0, 0.0, gap))];
-        let scene = scene(&[leaf], &both, domain(1.0, Boundary::Isolated));
+        let scene = scene(&[leaf], &both, isolated(1.0));
         let mut random = Random(11);
         for _ in 0..1_000 {
             let spot =
@@ -43,11 +43,7 @@ fn two_leaves_a_tenth_of_a_millimetre_apart_are_told_apart_anywhere() {
 
 #[test]
 fn a_far_origin_loses_nothing() {
-    let scene = scene(
-        &[square(0.05)],
-        &[at(0, DVec3::new(1.0, 2.0, 3.0))],
-        domain(1.0, Boundary::Isolated),
-    );
+    let scene = scene(&[square(0.05)], &[at(0, DVec3::new(1.0, 2.0, 3.0))], isolated(1.0));
     let direction = DVec3::new(0.3, -0.2, -1.0).try_normalize().unwrap();
     for off in [0.0499, 0.0501] {
         let target = DVec3::new(1.0 + off, 2.0, 3.0);
@@ -75,7 +71,7 @@ fn a_hit_names_its_surface_primitive_and_front() {
             translation: DVec3::ZERO,
         };
         let input = [MeshInput { mesh: &leaf, surfaces: &[7, 9] }];
-        let scene = Scene::build(&input, &[one], domain(1.0, Boundary::Isolated)).unwrap();
+        let scene = TwoLevelBvh::build(&input, &[one], isolated(1.0)).unwrap();
         let disc = scene.closest(&down(DVec3::new(0.1, 0.2, 9.0))).unwrap();
         assert_eq!((disc.surface, disc.primitive, disc.instance), (9, 4, 0));
         assert_eq!((disc.normal, disc.distance), (-DVec3::Z, 7.0));
@@ -94,11 +90,7 @@ fn a_hit_names_its_surface_primitive_and_front() {
 fn a_quadrilateral_is_a_parallelogram_only_if_it_is_one() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
     let blocks = |mesh: &Mesh| {
-        let scene = scene(
-            std::slice::from_ref(mesh),
-            &[at(0, DVec3::ZERO)],
-            domain(1.0, Boundary::Isolated),
-        );
+        let scene = scene(std::slice::from_ref(mesh), &[at(0, DVec3::ZERO)], isolated(1.0));
         let block = &scene.mesh_of(0).planar[0];
         block.edge.0.iter().filter(|&&edge| edge >= 0.0).count()
     };
@@ -113,8 +105,7 @@ fn a_quadrilateral_is_a_parallelogram_only_if_it_is_one() {
     let part = |triangles| MeshPart { name: "half".into(), triangles, discs: 0..0 };
     two_parts.parts = vec![part(0..1), part(1..2)];
     let input = [MeshInput { mesh: &two_parts, surfaces: &[0, 1] }];
-    let scene =
-        Scene::build(&input, &[at(0, DVec3::ZERO)], domain(1.0, Boundary::Isolated)).unwrap();
+    let scene = TwoLevelBvh::build(&input, &[at(0, DVec3::ZERO)], isolated(1.0)).unwrap();
     let surface = |x, y| scene.closest(&down(DVec3::new(x, y, 1.0))).unwrap().surface;
     assert_eq!((surface(0.9, 0.1), surface(0.1, 0.9)), (0, 1), "two materials are two primitives");
 }
@@ -137,7 +128,7 @@ fn a_ray_leaves_its_surface_on_the_side_that_it_goes_to() {
         let far = 10_f64.powf(random.within(0.0, 6.0));
         let place = random.vector(far);
         let one = InstanceInput { mesh: 0, linear: random.linear(), translation: place };
-        let scene = scene(&[shape], &[one], domain(1.0, Boundary::Isolated));
+        let scene = scene(&[shape], &[one], isolated(1.0));
         let middle = one.linear * ((a + b + c) / 3.0).as_dvec3() + place;
         let direction = random.direction();
         let ray =

@@ -2,10 +2,10 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::{
     oracle::{check, on_all_levels},
-    random::{Random, domain, mesh, scene},
+    random::{Random, isolated, mesh, scene},
 };
 use crate::{
-    accel::{Boundary, InstanceInput, Ray},
+    accel::{InstanceInput, Ray},
     components::{Disc, Mesh},
 };
 
@@ -83,7 +83,7 @@ fn random_soups_are_hit_as_by_brute_force() {
             let scenes = on_all_levels(|| {
                 let one =
                     InstanceInput { mesh: 0, linear: DMat3::IDENTITY, translation: DVec3::ZERO };
-                scene(&meshes, &[one], domain(1.0, Boundary::Isolated))
+                scene(&meshes, &[one], isolated(1.0))
             });
             for _ in 0..500 {
                 let ray = any_ray(&mut random, size);
@@ -108,7 +108,7 @@ fn turned_scaled_and_mirrored_instances_are_hit_as_by_brute_force() {
                 translation: random.vector(2.0),
             })
             .collect();
-        let scenes = on_all_levels(|| scene(&meshes, &instances, domain(1.0, Boundary::Isolated)));
+        let scenes = on_all_levels(|| scene(&meshes, &instances, isolated(1.0)));
         for _ in 0..500 {
             let ray = any_ray(&mut random, 2.0);
             hits += u32::from(check(&scenes, &meshes, instances.len(), &ray, &[DVec3::ZERO]));
@@ -138,7 +138,7 @@ fn rays_on_a_lattice_are_hit_as_by_brute_force() {
     let meshes = [mesh(vertices, triangles, discs)];
     let scenes = on_all_levels(|| {
         let one = InstanceInput { mesh: 0, linear: DMat3::IDENTITY, translation: DVec3::ZERO };
-        scene(&meshes, &[one], domain(1.0, Boundary::Isolated))
+        scene(&meshes, &[one], isolated(1.0))
     });
     for _ in 0..20_000 {
         let origin = 0.5 * whole(&mut random);

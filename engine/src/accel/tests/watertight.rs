@@ -3,9 +3,9 @@ use std::collections::HashMap;
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::random::{Random, at, domain, mesh, scene};
+use super::random::{Random, at, isolated, mesh, scene};
 use crate::{
-    accel::{Boundary, InstanceInput, Ray, Scene},
+    accel::{InstanceInput, Ray, TwoLevelBvh},
     components::Mesh,
 };
 
@@ -53,7 +53,7 @@ fn icosphere(times: u32, radius: f32) -> Mesh {
     mesh(vertices, triangles, Vec::new())
 }
 
-fn leaks(scene: &Scene, rays: u64, center: DVec3, radius: f64) -> usize {
+fn leaks(scene: &TwoLevelBvh, rays: u64, center: DVec3, radius: f64) -> usize {
     (0..rays / 1000)
         .into_par_iter()
         .map(|chunk| {
@@ -79,7 +79,7 @@ fn no_ray_leaves_a_closed_sphere() {
             linear: DMat3::from_rotation_z(0.3) * DMat3::from_diagonal(DVec3::new(1.0, 2.0, 0.7)),
             translation: place,
         };
-        let scene = scene(&[sphere], &[turned], domain(1.0, Boundary::Isolated));
+        let scene = scene(&[sphere], &[turned], isolated(1.0));
         assert_eq!(leaks(&scene, 500_000, place, 0.7 * f64::from(radius)), 0);
     }
 }
@@ -87,7 +87,7 @@ fn no_ray_leaves_a_closed_sphere() {
 /// Run by hand, in release: 10⁸ rays.
 #[test]
 fn no_ray_of_a_hundred_million_leaves_a_closed_sphere() {
-    let scene = scene(&[icosphere(4, 1.0)], &[at(0, DVec3::ZERO)], domain(1.0, Boundary::Isolated));
+    let scene = scene(&[icosphere(4, 1.0)], &[at(0, DVec3::ZERO)], isolated(1.0));
     assert_eq!(leaks(&scene, 100_000_000, DVec3::ZERO, 0.9), 0);
 }
 
@@ -100,7 +100,7 @@ fn no_ray_leaves_through_a_corner_or_an_edge() {
         .iter()
         .map(|t| 0.5 * (corners[t[0] as usize] + corners[t[1] as usize]))
         .collect();
-    let scene = scene(&[sphere], &[at(0, DVec3::ZERO)], domain(1.0, Boundary::Isolated));
+    let scene = scene(&[sphere], &[at(0, DVec3::ZERO)], isolated(1.0));
     let mut random = Random(5);
     for _ in 0..20 {
         let inside = random.vector(0.5);
@@ -128,7 +128,7 @@ fn no_ray_leaves_a_box_of_parallelograms() {
     let mut random = Random(6);
     let linear = random.linear();
     let one = InstanceInput { mesh: 0, linear, translation: DVec3::new(3.0, 5.0, 7.0) };
-    let scene = scene(&[cube], &[one], domain(1.0, Boundary::Isolated));
+    let scene = scene(&[cube], &[one], isolated(1.0));
     for _ in 0..20_000 {
         let object = DVec3::splat(0.05) + random.vector(0.045);
         let origin = linear * object + one.translation;

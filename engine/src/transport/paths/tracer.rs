@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::accel::{Batch, Hit, Ray};
+use crate::accel::{Hit, Ray, RayBatch};
 use crate::extract::Stage;
 use crate::film::Sums;
 use crate::sampling::Sampler;
@@ -209,21 +209,26 @@ impl<P: PathTracer> PathBatch<P> {
         let none = QueuedRays { shadow: 0, closest: 0 };
         let mut active: Vec<(usize, QueuedRays)> = (0..count).map(|path| (path, first)).collect();
         let mut next = RayQueue::default();
-        let (mut dark, mut hits) = (Vec::new(), Vec::new());
+        let (mut occluded, mut hits) = (Vec::new(), Vec::new());
         while !active.is_empty() {
-            let RayQueue { shadow: shadows, closest: rays } = &self.queue;
+            let RayQueue { shadow: shadow_rays, closest: closest_rays } = &self.queue;
             if let Some(log) = &mut self.log {
-                log.extend(shadows.iter().map(|&ray| TracedRay { ray, any: true }));
-                log.extend(rays.iter().map(|&ray| TracedRay { ray, any: false }));
+                log.extend(shadow_rays.iter().map(|&ray| TracedRay { ray, any: true }));
+                log.extend(closest_rays.iter().map(|&ray| TracedRay { ray, any: false }));
             }
-            self.rays += (shadows.len() + rays.len()) as u64;
-            dark.resize(shadows.len(), false);
-            hits.resize(rays.len(), None);
-            stage.geometry.trace_each(Batch { shadows, dark: &mut dark, rays, hits: &mut hits });
-            let (mut dark, mut hits) = (dark.iter(), hits.iter());
+            self.rays += (shadow_rays.len() + closest_rays.len()) as u64;
+            occluded.resize(shadow_rays.len(), false);
+            hits.resize(closest_rays.len(), None);
+            stage.geometry.trace_each(RayBatch {
+                shadow_rays,
+                occluded: &mut occluded,
+                closest_rays,
+                hits: &mut hits,
+            });
+            let (mut occluded, mut hits) = (occluded.iter(), hits.iter());
             next.clear();
             active.retain_mut(|(path, queued)| {
-                let is_lit = queued.shadow > 0 && dark.next() == Some(&false);
+                let is_lit = queued.shadow > 0 && occluded.next() == Some(&false);
                 let hit =
                     if queued.closest > 0 { hits.next().and_then(Option::as_ref) } else { None };
                 let before = next.len();

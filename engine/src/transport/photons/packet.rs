@@ -132,7 +132,8 @@ impl<'a> Packet<'a> {
     fn new(tracer: &'a PacketTracer<'a>, initial: f32) -> Self {
         let PacketTracer { stage, counters, kind, .. } = tracer;
         let (models, bands) = (&stage.models, stage.bands);
-        let sums = counters.iter().map(|counter| Sums::of_block(counter.cells(), bands)).collect();
+        let sums =
+            counters.iter().map(|counter| Sums::new_for_block(counter.cells(), bands)).collect();
         Self {
             stage,
             counters,

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::virtual_photon_roulette::VirtualPhotonRoulette;
 use super::{Counter, Event, Tally, WeightFactor};
-use crate::accel::{Batch, Ray};
+use crate::accel::{Ray, RayBatch};
 use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::scattering::Lobe;
@@ -189,10 +189,14 @@ impl Counter for ViewCounter {
     fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
         let (photons, rays) = self.sample(stage, event);
         let (Event::Arrival { hit, .. } | Event::Emission { hit, .. }) = event else { return 0 };
-        let mut dark = vec![false; rays.len()];
-        let batch = Batch { shadows: &rays, dark: &mut dark, rays: &[], hits: &mut [] };
-        stage.geometry.trace_each(batch);
-        let visible = photons.into_iter().zip(&dark).filter(|(_, is_dark)| !**is_dark);
+        let mut occluded = vec![false; rays.len()];
+        stage.geometry.trace_each(RayBatch {
+            shadow_rays: &rays,
+            occluded: &mut occluded,
+            closest_rays: &[],
+            hits: &mut [],
+        });
+        let visible = photons.into_iter().zip(&occluded).filter(|(_, is_occluded)| !**is_occluded);
         for (VirtualPhoton { camera, first_cell, factor, scale }, _) in visible {
             camera.for_each_pixel(hit.point, stage, |pixel| {
                 tally.add(first_cell + pixel, factor, scale);

@@ -2,53 +2,71 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Domain, Ray, scene::Scene, trace::Query, types::Boundary};
+use crate::accel::layout::{Domain, TwoLevelBvh};
 
-/// Tiles that a ray may cross before it counts as gone: far more than any ray that is not exactly
+use super::hit::{Departure, Ray};
+
+/// Ray in one tile.
+#[derive(Clone, Copy)]
+pub(super) struct TileRay<'a> {
+    pub bvh: &'a TwoLevelBvh,
+    /// Origin in the tile's frame, m.
+    pub origin: DVec3,
+    pub direction: DVec3,
+    /// Number of periods from the frame of the ray to that of the tile.
+    pub tile: [i32; 2],
+    pub from: Option<Departure>,
+    /// Primitives at this distance or farther do not count.
+    pub limit: f64,
+}
+
+/// Maximum number of tiles that a ray crosses: far more than any ray that is not exactly
 /// horizontal crosses between the heights of a scene, and the only end of one that is.
-pub(super) const MOST_TILES: u32 = 1 << 20;
+const MAX_TILES: u32 = 1 << 20;
 
-/// The tiles that a ray crosses up to `limit`, each as the query to ask in it.
+/// Iterator over the tiles that a ray crosses up to `limit`.
 ///
-/// The ray is the same in every tile but for its origin, which is moved by whole periods from where
-/// the ray really starts: nothing adds up from tile to tile. In an isolated scene there is one
+/// The ray is the same in every tile except for its origin, which is the original one moved by whole
+/// periods: errors do not accumulate from tile to tile. In an isolated scene there is one
 /// tile without sides.
-pub(super) struct Tiles<'a> {
-    scene: &'a Scene,
+pub(super) struct TileIter<'a> {
+    bvh: &'a TwoLevelBvh,
     ray: &'a Ray,
     limit: f64,
-    /// The next tile, if there is one.
+    /// Next tile, if there is one.
     tile: Option<DVec2>,
-    /// Distances at which the ray enters it, and leaves the heights of the scene.
+    /// Distance at which the ray enters that tile.
     enter: f64,
+    /// Distance at which the ray leaves the heights of the scene.
     end: f64,
+    /// Number of tiles left.
     left: u32,
 }
 
-impl<'a> Tiles<'a> {
+impl<'a> TileIter<'a> {
     #[inline]
-    pub(super) fn new(scene: &'a Scene, ray: &'a Ray, limit: f64) -> Self {
+    pub(super) fn new(bvh: &'a TwoLevelBvh, ray: &'a Ray, limit: f64) -> Self {
         let mut tiles =
-            Self { scene, ray, limit, tile: Some(DVec2::ZERO), enter: 0.0, end: 0.0, left: 1 };
-        let domain = scene.domain();
-        if domain.boundary == Boundary::Periodic {
+            Self { bvh, ray, limit, tile: Some(DVec2::ZERO), enter: 0.0, end: 0.0, left: 1 };
+        let domain = &bvh.domain;
+        if domain.is_periodic {
             let (z, slope) = (ray.origin.z, ray.direction.z);
-            match height_range(z, slope, scene.bottom(), scene.top()) {
+            match height_range(z, slope, bvh.bottom(), bvh.top()) {
                 None => tiles.tile = None,
                 Some((start, end)) => {
                     let entry = ray.origin + start * ray.direction;
-                    tiles.tile = Some(((entry.truncate() - domain.min) / scene.size()).floor());
-                    (tiles.enter, tiles.end, tiles.left) = (start, end, MOST_TILES);
+                    tiles.tile = Some(((entry.truncate() - domain.min) / domain.size()).floor());
+                    (tiles.enter, tiles.end, tiles.left) = (start, end, MAX_TILES);
                 }
             }
         }
         tiles
     }
 
-    /// The query of a periodic tile; the tile after it becomes the next.
-    fn cross(&mut self, tile: DVec2) -> Query<'a> {
+    /// Returns the ray in a periodic tile; the tile after it becomes the next.
+    fn cross(&mut self, tile: DVec2) -> TileRay<'a> {
         let &Ray { origin, direction, from } = self.ray;
-        let (domain, size) = (self.scene.domain(), self.scene.size());
+        let (domain, size) = (&self.bvh.domain, self.bvh.domain.size());
         let ahead = DVec2::new(
             f64::from(u8::from(direction.x > 0.0)),
             f64::from(u8::from(direction.y > 0.0)),
@@ -78,25 +96,25 @@ impl<'a> Tiles<'a> {
         };
         self.tile = (!is_last).then_some(tile + step);
         let tile = [tile.x as i32, tile.y as i32];
-        Query { scene: self.scene, origin: here, direction, tile, from, limit }
+        TileRay { bvh: self.bvh, origin: here, direction, tile, from, limit }
     }
 }
 
-impl<'a> Iterator for Tiles<'a> {
-    type Item = Query<'a>;
+impl<'a> Iterator for TileIter<'a> {
+    type Item = TileRay<'a>;
 
     #[inline]
-    fn next(&mut self) -> Option<Query<'a>> {
+    fn next(&mut self) -> Option<TileRay<'a>> {
         let tile = self.tile.take()?;
-        if self.scene.domain().boundary == Boundary::Periodic {
+        if self.bvh.domain.is_periodic {
             return Some(self.cross(tile));
         }
         let &Ray { origin, direction, from } = self.ray;
-        Some(Query { scene: self.scene, origin, direction, tile: [0, 0], from, limit: self.limit })
+        Some(TileRay { bvh: self.bvh, origin, direction, tile: [0, 0], from, limit: self.limit })
     }
 }
 
-/// Where a ray is between two heights, as a range of distances.
+/// Range of distances at which a ray is between two heights; `None` if it never is.
 fn height_range(z: f64, slope: f64, bottom: f64, top: f64) -> Option<(f64, f64)> {
     if slope == 0.0 {
         return (bottom <= z && z <= top).then_some((0.0, f64::INFINITY));
@@ -106,12 +124,12 @@ fn height_range(z: f64, slope: f64, bottom: f64, top: f64) -> Option<(f64, f64)>
     (end >= 0.0).then_some((start.max(0.0), end))
 }
 
-/// The same place in the tile of a periodic domain, and how many periods it was moved back.
+/// Point in the tile of a periodic domain that corresponds to `point`, and the number of periods between the two.
 pub(super) fn wrap(domain: &Domain, point: DVec3) -> (DVec3, [i32; 2]) {
-    if domain.boundary == Boundary::Isolated {
+    if !domain.is_periodic {
         return (point, [0, 0]);
     }
-    let size = domain.max - domain.min;
+    let size = domain.size();
     let shift = ((point.truncate() - domain.min) / size).floor();
     let moved = point - (shift * size).extend(0.0);
     let inside = moved.truncate().clamp(domain.min, domain.max);

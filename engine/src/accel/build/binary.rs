@@ -1,4 +1,4 @@
-//! Binary trees: built by obvhs, and below a thousand primitives built again for full leaves.
+//! Binary hierarchies: built by obvhs; subtrees of up to a thousand primitives are rebuilt for full leaves.
 
 use glam::Vec3;
 use obvhs::{
@@ -6,65 +6,68 @@ use obvhs::{
     ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
 };
 
+use crate::accel::layout::Bounds32;
+
 use super::{
-    collapse::{Cost, cost_of},
-    tree::{Box3, Plan},
+    collapse::{ForestCost, cost_of},
+    wide::BuildSettings,
 };
 
-/// A binary tree whose subtrees each hold a range of `order`; children come after their parent.
-pub(super) struct Binary {
+/// Binary hierarchy, each subtree of which holds a range of `order`; children come after their parent.
+pub(super) struct BinaryBvh {
     pub nodes: Vec<BinaryNode>,
-    pub costs: Vec<Cost>,
+    pub costs: Vec<ForestCost>,
     /// Primitives.
     pub order: Vec<u32>,
 }
 
 pub(super) struct BinaryNode {
-    pub bounds: Box3,
-    /// The two children; no children at all if the first is 0.
+    pub bounds: Bounds32,
+    /// Indices of the two children; a leaf if the first is 0.
     pub children: [u32; 2],
     pub start: u32,
     pub count: u32,
 }
 
-impl Binary {
-    pub(super) fn bounds(&self) -> Box3 {
+impl BinaryBvh {
+    pub(super) fn bounds(&self) -> Bounds32 {
         self.nodes[0].bounds
     }
 }
 
-/// Subtrees of at most this many primitives are built again; more takes longer and gains nothing.
-const AGAIN: u32 = 1024;
+/// Maximum number of primitives of a subtree that is rebuilt; more takes longer and gains nothing.
+const MAX_REBUILT: u32 = 1024;
 
-/// Builds the tree over some of the boxes.
+/// Builds the hierarchy over the boxes with the indices `members`.
 pub(super) fn build(
-    boxes: &[Box3],
+    boxes: &[Bounds32],
     members: &[u32],
-    plan: Plan,
-    kind: &impl Fn(u32) -> bool,
-) -> Binary {
-    let own: Vec<Box3> = members.iter().map(|&member| boxes[member as usize]).collect();
-    let source = ploc(&own, plan.reinsertion);
-    drop(own);
+    settings: BuildSettings,
+    is_second_kind: &impl Fn(u32) -> bool,
+) -> BinaryBvh {
+    let member_boxes: Vec<Bounds32> =
+        members.iter().map(|&member| boxes[member as usize]).collect();
+    let source = ploc(&member_boxes, settings.reinsertion);
+    drop(member_boxes);
     let counts = counts(&source);
-    let mut copy = Copy {
+    let mut builder = BinaryBuilder {
         boxes,
         members,
-        plan,
-        kind,
+        settings,
+        is_second_kind,
         source: &source,
         counts,
-        tree: Binary {
+        tree: BinaryBvh {
             nodes: Vec::with_capacity(source.nodes.len()),
             costs: Vec::with_capacity(source.nodes.len()),
             order: Vec::with_capacity(members.len()),
         },
     };
-    copy.all();
-    copy.tree
+    builder.copy_all();
+    builder.tree
 }
 
-fn ploc(boxes: &[Box3], reinsertion: f32) -> Bvh2 {
+fn ploc(boxes: &[Bounds32], reinsertion: f32) -> Bvh2 {
     let indices = (0..boxes.len() as u32).collect();
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
         PlocSearchDistance::Medium,
@@ -99,20 +102,21 @@ fn counts(source: &Bvh2) -> Vec<u32> {
     counts
 }
 
-struct Copy<'a, K> {
-    boxes: &'a [Box3],
+/// Copy of the hierarchy of obvhs in progress.
+struct BinaryBuilder<'a, K> {
+    boxes: &'a [Bounds32],
     members: &'a [u32],
-    plan: Plan,
-    kind: &'a K,
+    settings: BuildSettings,
+    is_second_kind: &'a K,
     source: &'a Bvh2,
     counts: Vec<u32>,
-    tree: Binary,
+    tree: BinaryBvh,
 }
 
-impl<K: Fn(u32) -> bool> Copy<'_, K> {
-    /// Copies the tree of obvhs, depth first, small subtrees in the cheaper of two forms.
-    fn all(&mut self) {
-        // Where to copy from, and whose which child it is.
+impl<K: Fn(u32) -> bool> BinaryBuilder<'_, K> {
+    /// Copies the hierarchy of obvhs, depth first; rebuilds small subtrees where that is cheaper.
+    fn copy_all(&mut self) {
+        // Source node; index of its parent in the copy, and which child of it this is.
         let mut waiting = vec![(0_u32, None)];
         while let Some((from, parent)) = waiting.pop() {
             let index = self.tree.nodes.len() as u32;
@@ -121,34 +125,34 @@ impl<K: Fn(u32) -> bool> Copy<'_, K> {
                 parent.children[side] = index;
             }
             let count = self.counts[from as usize];
-            let small = count <= AGAIN && count > self.plan.leaf;
-            if small {
-                self.cheaper(from);
+            let is_small = count <= MAX_REBUILT && count > self.settings.leaf_size;
+            if is_small {
+                self.copy_or_rebuild(from);
             } else {
-                self.one(from, index, &mut waiting);
+                self.copy_node(from, index, &mut waiting);
             }
         }
-        self.finish(0);
+        self.set_costs(0);
     }
 
-    /// Copies one node and asks for its children, the first one next.
-    fn one(&mut self, from: u32, index: u32, waiting: &mut Vec<(u32, Option<(u32, usize)>)>) {
+    /// Copies one node and pushes its children, the first one last.
+    fn copy_node(&mut self, from: u32, index: u32, waiting: &mut Vec<(u32, Option<(u32, usize)>)>) {
         let node = &self.source.nodes[from as usize];
-        let bounds = Box3 { min: node.aabb().min.into(), max: node.aabb().max.into() };
+        let bounds = Bounds32 { min: node.aabb().min.into(), max: node.aabb().max.into() };
         let (start, count) = (self.tree.order.len() as u32, self.counts[from as usize]);
         self.tree.nodes.push(BinaryNode { bounds, children: [0; 2], start, count });
-        self.tree.costs.push(Cost::UNKNOWN);
+        self.tree.costs.push(ForestCost::UNKNOWN);
         if node.is_leaf() {
-            let own = self.source.primitive_indices[node.first_index as usize];
-            self.tree.order.push(self.members[own as usize]);
+            let member = self.source.primitive_indices[node.first_index as usize];
+            self.tree.order.push(self.members[member as usize]);
         } else {
             waiting.push((node.first_index + 1, Some((index, 1))));
             waiting.push((node.first_index, Some((index, 0))));
         }
     }
 
-    /// Copies a subtree as it is, or builds it again if that is cheaper.
-    fn cheaper(&mut self, from: u32) {
+    /// Copies a subtree as it is, or rebuilds it if that is cheaper.
+    fn copy_or_rebuild(&mut self, from: u32) {
         let (first, start) = (self.tree.nodes.len(), self.tree.order.len());
         let mut waiting = vec![(from, None)];
         while let Some((from, parent)) = waiting.pop() {
@@ -157,74 +161,74 @@ impl<K: Fn(u32) -> bool> Copy<'_, K> {
                 let parent: &mut BinaryNode = &mut self.tree.nodes[parent as usize];
                 parent.children[side] = index;
             }
-            self.one(from, index, &mut waiting);
+            self.copy_node(from, index, &mut waiting);
         }
-        self.finish(first);
-        let kept = (self.tree.nodes.split_off(first), self.tree.costs.split_off(first));
-        let kept_order = self.tree.order[start..].to_vec();
-        let mut order = kept_order.clone();
-        self.again(&mut order, start as u32);
+        self.set_costs(first);
+        let copied = (self.tree.nodes.split_off(first), self.tree.costs.split_off(first));
+        let copied_order = self.tree.order[start..].to_vec();
+        let mut order = copied_order.clone();
+        self.rebuild(&mut order, start as u32);
         self.tree.order.truncate(start);
         self.tree.order.extend(order);
-        self.finish(first);
-        if kept.1[0].as_one() <= self.tree.costs[first].as_one() {
+        self.set_costs(first);
+        if copied.1[0].as_one_tree() <= self.tree.costs[first].as_one_tree() {
             self.tree.nodes.truncate(first);
             self.tree.costs.truncate(first);
             self.tree.order.truncate(start);
-            self.tree.nodes.extend(kept.0);
-            self.tree.costs.extend(kept.1);
-            self.tree.order.extend(kept_order);
+            self.tree.nodes.extend(copied.0);
+            self.tree.costs.extend(copied.1);
+            self.tree.order.extend(copied_order);
         }
     }
 
-    /// Builds top-down, at each cut with the least sum of area times blocks; says where.
-    fn again(&mut self, order: &mut [u32], start: u32) -> u32 {
+    /// Builds top-down, with the lowest sum of area times blocks at each cut; returns the index of the root.
+    fn rebuild(&mut self, order: &mut [u32], start: u32) -> u32 {
         let index = self.tree.nodes.len();
-        let bounds = self.around(order);
+        let bounds = self.union(order);
         let count = order.len() as u32;
         self.tree.nodes.push(BinaryNode { bounds, children: [0; 2], start, count });
-        self.tree.costs.push(Cost::UNKNOWN);
-        let is_second = |&primitive: &u32| (self.kind)(primitive);
+        self.tree.costs.push(ForestCost::UNKNOWN);
+        let is_second = |&primitive: &u32| (self.is_second_kind)(primitive);
         let seconds = order.iter().filter(|p| is_second(p)).count();
-        let mixed = seconds > 0 && seconds < order.len();
-        if count <= self.plan.leaf && !mixed {
+        let is_mixed = seconds > 0 && seconds < order.len();
+        if count <= self.settings.leaf_size && !is_mixed {
             return index as u32;
         }
-        let cut = if mixed {
+        let cut = if is_mixed {
             order.sort_by_key(|p| is_second(p));
             order.len() - seconds
         } else {
-            self.cut(order)
+            self.sort_and_cut(order)
         };
         let (low, high) = order.split_at_mut(cut);
-        let children = [self.again(low, start), self.again(high, start + cut as u32)];
+        let children = [self.rebuild(low, start), self.rebuild(high, start + cut as u32)];
         self.tree.nodes[index].children = children;
         index as u32
     }
 
-    fn around(&self, order: &[u32]) -> Box3 {
-        order.iter().map(|&p| self.boxes[p as usize]).fold(Box3::EMPTY, Box3::union)
+    fn union(&self, order: &[u32]) -> Bounds32 {
+        order.iter().map(|&p| self.boxes[p as usize]).fold(Bounds32::EMPTY, Bounds32::union)
     }
 
-    /// Sorts along the best axis and says how many come before the cut.
-    fn cut(&self, order: &mut [u32]) -> usize {
-        let blocks = |count: usize| count.div_ceil(self.plan.leaf as usize) as f32;
+    /// Sorts along the best axis and returns the number of primitives before the cut.
+    fn sort_and_cut(&self, order: &mut [u32]) -> usize {
+        let blocks = |count: usize| count.div_ceil(self.settings.leaf_size as usize) as f32;
         let sort = |order: &mut [u32], axis: usize| {
-            let middle = |p: u32| -> Vec3 { self.boxes[p as usize].middle() };
+            let center = |p: u32| -> Vec3 { self.boxes[p as usize].double_center() };
             order.sort_unstable_by(|&a, &b| {
-                middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(&b))
+                center(a)[axis].total_cmp(&center(b)[axis]).then(a.cmp(&b))
             });
         };
         let mut best = (f32::INFINITY, 0, 1);
         let mut above = vec![0.0; order.len()];
         for axis in 0..3 {
             sort(order, axis);
-            let mut bounds = Box3::EMPTY;
+            let mut bounds = Bounds32::EMPTY;
             for (index, &p) in order.iter().enumerate().rev() {
                 bounds = bounds.union(self.boxes[p as usize]);
                 above[index] = bounds.half_area() * blocks(order.len() - index);
             }
-            bounds = Box3::EMPTY;
+            bounds = Bounds32::EMPTY;
             for cut in 1..order.len() {
                 bounds = bounds.union(self.boxes[order[cut - 1] as usize]);
                 let cost = bounds.half_area() * blocks(cut) + above[cut];
@@ -237,11 +241,12 @@ impl<K: Fn(u32) -> bool> Copy<'_, K> {
         best.2
     }
 
-    /// Costs of all nodes from `first` on that are not known yet.
-    fn finish(&mut self, first: usize) {
+    /// Computes the costs of all nodes from `first` on that are not known yet.
+    fn set_costs(&mut self, first: usize) {
         for index in (first..self.tree.nodes.len()).rev() {
             if !self.tree.costs[index].is_known() {
-                self.tree.costs[index] = cost_of(&self.tree, index, self.plan, self.kind);
+                self.tree.costs[index] =
+                    cost_of(&self.tree, index, self.settings, self.is_second_kind);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Primitives in `f64`: what decides every hit, whatever instruction set found the candidate.
+//! Tests of primitives in `f64`, which decide every hit, whatever instruction set found the candidate.
 
 use glam::DVec3;
 
@@ -12,15 +12,15 @@ pub(super) fn plane_distance(corners: &[DVec3; 3], origin: DVec3, direction: DVe
     (slope != 0.0).then(|| normal.dot(a - origin) / slope)
 }
 
-/// Whether the line of a ray passes through a triangle or parallelogram, or by it at less than
-/// `blur`, a bound on how far rounding may have moved the ray.
+/// Returns whether the line of a ray passes through a triangle or parallelogram, or by it at less than
+/// `blur`, a bound of the distance that rounding may have moved the ray by.
 ///
 /// A ray through a common edge or corner of several primitives thus hits at least one of them, even
-/// if they belong to instances with their own rounding. One that is seen edge-on is not hit.
+/// if they belong to instances with their own rounding. A primitive that is parallel to the ray is not hit.
 #[inline(always)]
 pub(super) fn contains(
     corners: &[DVec3; 3],
-    parallelogram: bool,
+    is_parallelogram: bool,
     origin: DVec3,
     direction: DVec3,
     blur: f64,
@@ -43,7 +43,7 @@ pub(super) fn contains(
         i32::from(area > room) - i32::from(area < -room)
     };
     let [a, b, c] = corners.map(flat);
-    let sides = if parallelogram {
+    let sides = if is_parallelogram {
         let d = flat(corners[1] + corners[2] - corners[0]);
         [side(a, b), side(b, d), side(d, c), side(c, a)]
     } else {
@@ -55,7 +55,9 @@ pub(super) fn contains(
 /// Distance along a ray to a disc; `None` if it misses or is parallel.
 #[inline(always)]
 pub(super) fn disc_distance(
-    (center, normal, radius): (DVec3, DVec3, f64),
+    center: DVec3,
+    normal: DVec3,
+    radius: f64,
     origin: DVec3,
     direction: DVec3,
 ) -> Option<f64> {

@@ -1,23 +1,24 @@
-//! A ray in the space of one tree, and its tests against eight boxes or primitives at a time.
+//! Rays in the space of one hierarchy, and their tests against eight boxes or primitives at a time.
 
 use glam::{DMat3, DVec3};
 
-use super::{
-    exact,
-    mesh::{DiscBlock, MeshTree, PARALLELOGRAM, PlanarBlock},
+use crate::accel::{
+    layout::{DiscBlock, MeshBvh, PARALLELOGRAM, PlanarBlock, WideNode},
     simd::{Isa, Lanes},
-    trace::Query,
-    tree::Node,
 };
 
-/// A ray in the space of one tree.
+use super::{exact, tiles::TileRay};
+
+/// Ray in the space of one hierarchy, for the slab test.
 #[derive(Clone, Copy)]
 pub(super) struct BoxRay<I: Isa> {
+    /// Inverse of the direction.
     pub inverse: [I::F; 3],
+    /// `-origin / direction`.
     pub shift: [I::F; 3],
-    /// 1 where the ray runs down an axis.
+    /// 1 for axes that the ray runs down.
     pub side: [usize; 3],
-    /// The same as bits.
+    /// Bits of `side`.
     pub octant: usize,
 }
 
@@ -37,10 +38,10 @@ impl<I: Isa> BoxRay<I> {
         }
     }
 
-    /// Where the ray enters and leaves the boxes of children, between 0 and `limit`; it meets those
-    /// that it enters first.
+    /// Distances at which the ray enters and leaves the boxes of children, between 0 and `limit`; it hits those
+    /// that it enters before it leaves them.
     #[inline(always)]
-    pub(super) fn children(&self, isa: I, node: &Node, limit: I::F) -> (I::F, I::F) {
+    pub(super) fn children(&self, isa: I, node: &WideNode, limit: I::F) -> (I::F, I::F) {
         let plane = |axis: usize, side: usize| {
             let bounds = isa.load(&node.bounds[axis][side & 1]);
             isa.mul_add(bounds, self.inverse[axis], self.shift[axis])
@@ -54,47 +55,50 @@ impl<I: Isa> BoxRay<I> {
     }
 }
 
-/// A ray in the space of one mesh.
+/// Ray in the space of one mesh.
 pub(super) struct MeshRay {
-    /// Exact up to `f64` rounding; distances along it are those of the world.
+    /// Origin, exact up to `f64` rounding; distances along the ray are those of the world.
     pub origin: DVec3,
     pub direction: DVec3,
     /// Distance at which the `f32` ray starts.
     pub start: f64,
+    /// Origin of the `f32` ray.
     pub start_near: [f32; 3],
     pub direction_near: [f32; 3],
-    /// Bounds of rounding: of side determinants per edge length, and of distances per squared one.
+    /// Bound of the rounding error of side determinants, per edge length.
     pub side_error: f32,
+    /// Bound of the rounding error of distances, per squared edge length.
     pub distance_error: f32,
-    /// Beyond the whole mesh, from `start`.
+    /// Distance from `start` that is beyond the whole mesh.
     pub beyond: f32,
     /// Size of the coordinates that rounding is relative to.
     pub size: f32,
+    /// Bound of the length of the direction.
     pub length: f32,
 }
 
 impl MeshRay {
     #[inline(always)]
     pub(super) fn new(
-        query: &Query<'_>,
+        tile_ray: &TileRay<'_>,
         record: u32,
-        mesh: &MeshTree,
+        mesh: &MeshBvh,
         mut start: f64,
     ) -> Option<Self> {
-        let record = &query.scene.records()[record as usize];
+        let record = &tile_ray.bvh.records[record as usize];
         let object_from_world = DMat3::from_cols_array(&record.object_from_world.map(f64::from));
-        let origin = object_from_world * (query.origin - record.translation);
-        let direction = object_from_world * query.direction;
+        let origin = object_from_world * (tile_ray.origin - record.translation);
+        let direction = object_from_world * tile_ray.direction;
         let mut point = origin + start * direction;
-        let reach = f64::from(mesh.reach);
-        if point.abs().max_element() > 4.0 * reach {
-            // The box of a strongly squeezed instance is far from the mesh: go to the mesh's own.
+        let max_coordinate = f64::from(mesh.max_coordinate);
+        if point.abs().max_element() > 4.0 * max_coordinate {
+            // The box of a strongly squeezed instance is far from the mesh: start at the box of the mesh.
             start = mesh.clip(origin, direction)?;
             point = origin + start * direction;
         }
         // Rounding the ray moves it by 2⁻²⁴ of its coordinates; the products of the tests below
         // then add less than 128 roundings of that size, relative to edges and distances.
-        let size = (reach + point.abs().max_element()) as f32;
+        let size = (max_coordinate + point.abs().max_element()) as f32;
         let direction_near = direction.as_vec3();
         // √3 times the largest component bounds the length, and spares a square root.
         let largest = direction_near.abs().max_element();
@@ -114,13 +118,13 @@ impl MeshRay {
     }
 }
 
-/// 128 roundings of `f32`.
+/// Relative error of 128 roundings of `f32`.
 const ROUNDING: f32 = 128.0 / (1 << 24) as f32;
 
-/// The distance of a lane that is perhaps or surely hit, if it is.
+/// Distance of a lane that is perhaps or surely hit; `None` if it is not hit.
 #[inline(always)]
 pub(super) fn planar_distance(
-    query: &Query<'_>,
+    tile_ray: &TileRay<'_>,
     record: u32,
     ray: &MeshRay,
     block: &PlanarBlock,
@@ -129,23 +133,24 @@ pub(super) fn planar_distance(
 ) -> Option<f64> {
     let corners = block.lane(lane);
     let distance = exact::plane_distance(&corners, ray.origin, ray.direction)?;
-    let parallelogram = block.id.0[lane & 7] & PARALLELOGRAM != 0;
-    let hit = is_sure || {
-        let blur = blur(query, record, distance);
-        exact::contains(&corners, parallelogram, ray.origin, ray.direction, blur)
+    let is_parallelogram = block.id.0[lane & 7] & PARALLELOGRAM != 0;
+    let is_hit = is_sure || {
+        let blur = blur(tile_ray, record, distance);
+        exact::contains(&corners, is_parallelogram, ray.origin, ray.direction, blur)
     };
-    hit.then_some(distance)
+    is_hit.then_some(distance)
 }
 
-/// How far, in object space, rounding in `f64` may move the point at a distance along a ray.
+/// Bound of the error, in object space, that rounding in `f64` makes of the point at a distance along a ray.
 #[cold]
-fn blur(query: &Query<'_>, record: u32, distance: f64) -> f64 {
-    let record = &query.scene.records()[record as usize];
+fn blur(tile_ray: &TileRay<'_>, record: u32, distance: f64) -> f64 {
+    let record = &tile_ray.bvh.records[record as usize];
     let stretch: f64 = record.object_from_world.iter().map(|&v| f64::from(v.abs())).sum();
-    let place = query.origin.abs().max_element() + record.translation.abs().max_element();
-    8.0 * f64::EPSILON * stretch * (place + distance.abs())
+    let size = tile_ray.origin.abs().max_element() + record.translation.abs().max_element();
+    8.0 * f64::EPSILON * stretch * (size + distance.abs())
 }
 
+/// [`MeshRay`] in all lanes, for the tests of blocks.
 pub(super) struct WideRay<I: Isa> {
     pub origin: [I::F; 3],
     pub direction: [I::F; 3],
@@ -189,11 +194,11 @@ impl<I: Isa> WideRay<I> {
         let p = cross(self.direction, ac);
         let q = cross(from_a, ab);
         let det = dot(ab, p);
-        let u = isa.turn(dot(from_a, p), det);
-        let v = isa.turn(dot(self.direction, q), det);
-        let t = isa.turn(dot(ac, q), det);
+        let u = isa.xor_sign(dot(from_a, p), det);
+        let v = isa.xor_sign(dot(self.direction, q), det);
+        let t = isa.xor_sign(dot(ac, q), det);
         let det = isa.abs(det);
-        let used = isa.pick(isa.add(u, v), isa.max(u, v), isa.load_bits(&block.id));
+        let used = isa.select(isa.add(u, v), isa.max(u, v), isa.load_bits(&block.id));
         let inside = isa.min(isa.min(u, v), isa.sub(det, used));
         let edge = isa.load(&block.edge);
         let side_error = isa.mul(self.side_error, edge);
@@ -210,11 +215,11 @@ impl<I: Isa> WideRay<I> {
         let sure = isa.le(side_error, inside)
             & isa.le(distance_error, t)
             & isa.le(isa.add(t, distance_error), far);
-        // An unused lane's error is negative: never perhaps, though it may look sure.
+        // An unused lane's error is negative: `perhaps` is false there, though `sure` may be true.
         (perhaps, perhaps & sure)
     }
 
-    /// As [`Self::planar`], for discs.
+    /// Lanes of discs that are perhaps hit between 0 and `limit`, and those that surely are.
     #[inline(always)]
     pub(super) fn discs(
         &self,
@@ -229,10 +234,10 @@ impl<I: Isa> WideRay<I> {
         let dot = |a: [I::F; 3], b: [I::F; 3]| {
             isa.mul_add(a[0], b[0], isa.mul_add(a[1], b[1], isa.mul(a[2], b[2])))
         };
-        let to = [0, 1, 2].map(|i| isa.sub(center[i], self.origin[i]));
+        let to_center = [0, 1, 2].map(|i| isa.sub(center[i], self.origin[i]));
         let slope = dot(normal, self.direction);
-        let t = isa.div(dot(normal, to), slope);
-        let off = [0, 1, 2].map(|i| isa.sub(isa.mul(self.direction[i], t), to[i]));
+        let t = isa.div(dot(normal, to_center), slope);
+        let off = [0, 1, 2].map(|i| isa.sub(isa.mul(self.direction[i], t), to_center[i]));
         let off = dot(off, off);
         // The distance is off by rounding over the slope, and the point by that along the ray.
         let steep = isa.div(isa.splat(ray.distance_error), isa.abs(slope));

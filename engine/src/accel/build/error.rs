@@ -1,4 +1,4 @@
-/// Why meshes and instances are not a scene that rays can be traced in.
+/// Reason why no hierarchy can be built over meshes and instances.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]
@@ -36,8 +36,8 @@ pub enum BuildError {
     )]
     Domain { min_x: f64, min_y: f64, max_x: f64, max_y: f64 },
     #[error(
-        "{count} instances and images of instances in the periodic tile; at most {limit} fit: use \
+        "{count} instances and periodic copies of instances; at most {limit} fit: use \
          a larger tile"
     )]
-    TooManyImages { count: usize, limit: usize },
+    TooManyCopies { count: usize, limit: usize },
 }

@@ -1,4 +1,4 @@
-//! Triangles with an area, two at a time where they form a parallelogram.
+//! Detection of parallelograms: pairs of triangles that are traced as one primitive.
 
 use std::num::NonZeroU32;
 
@@ -7,55 +7,67 @@ use rayon::prelude::*;
 
 use crate::components::Mesh;
 
-/// The planar primitives of a mesh, in the order of their first triangles: each one's triangle, and
-/// the second one of a parallelogram.
-pub(super) fn primitives(mesh: &Mesh) -> Vec<(u32, Option<NonZeroU32>)> {
+/// Triangle with an area, or parallelogram of two triangles.
+#[derive(Clone, Copy)]
+pub(super) struct PlanarPrimitive {
+    pub first: u32,
+    /// Second triangle of a parallelogram, which is never triangle 0.
+    pub second: Option<NonZeroU32>,
+}
+
+/// Planar primitives of a mesh, in the order of their first triangles.
+pub(super) fn planar_primitives(mesh: &Mesh) -> Vec<PlanarPrimitive> {
     let seconds = pairs(mesh);
     let triangles = seconds.par_iter().enumerate();
     triangles
-        .filter_map(|(first, &second)| match second {
-            TAKEN => None,
-            ALONE => has_area(mesh.corners(first)).then_some((first as u32, None)),
-            second => Some((first as u32, NonZeroU32::new(second))),
+        .filter_map(|(triangle, &second)| {
+            let first = triangle as u32;
+            match second {
+                TAKEN => None,
+                ALONE => has_area(mesh.corners(triangle))
+                    .then_some(PlanarPrimitive { first, second: None }),
+                second => Some(PlanarPrimitive { first, second: NonZeroU32::new(second) }),
+            }
         })
         .collect()
 }
 
-/// The corners of a triangle, or those of a parallelogram but the fourth.
+/// Corners of a triangle, or the first three of a parallelogram.
 pub(super) fn corners(mesh: &Mesh, first: u32, second: Option<u32>) -> [Vec3; 3] {
     second
         .and_then(|second| parallelogram(mesh, first as usize, second as usize))
         .map_or_else(|| mesh.corners(first as usize), |(corners, _)| corners)
 }
 
-/// By how much of its shorter edge a parallelogram's fourth corner may be off, where rounding to
+/// Tolerance of a parallelogram's fourth corner, as a fraction of the shorter edge, where rounding to
 /// six decimals would allow more.
-const SAME_SHAPE: f64 = 1.0 / 4096.0;
+const MAX_SKEW: f64 = 1.0 / 4096.0;
 
-/// A triangle that is none of two.
+/// Mark of a triangle that is not part of a parallelogram.
 const ALONE: u32 = u32::MAX;
-/// A triangle that is the second of two.
+/// Mark of the second triangle of a parallelogram.
 const TAKEN: u32 = u32::MAX - 1;
 
-/// For each triangle the one that completes it to a parallelogram, of the same part.
+/// Second triangle of each triangle that a parallelogram begins with, or [`ALONE`] or [`TAKEN`]; both belong to one
+/// part of the mesh. Shape `[triangles]`.
 fn pairs(mesh: &Mesh) -> Vec<u32> {
     let mut uses = vec![0_u8; mesh.vertices.len()];
     for &corner in mesh.triangles.iter().flatten() {
         uses[corner as usize] = uses[corner as usize].saturating_add(1);
     }
     let part = |triangle: u32| mesh.parts.partition_point(|part| part.triangles.end <= triangle);
-    let fit = |first: u32, second: u32| {
+    let fits = |first: u32, second: u32| {
         part(first) == part(second)
             && parallelogram(mesh, first as usize, second as usize).is_some_and(|(_, fourth)| {
                 // If it is not the fourth corner exactly, a ray could pass between this
                 // parallelogram and a neighbour that uses the true corner.
-                fourth.exact || uses[fourth.vertex as usize] == 1
+                fourth.is_exact || uses[fourth.vertex as usize] == 1
             })
     };
     let mut seconds = vec![ALONE; mesh.triangles.len()];
     let join = |seconds: &mut Vec<u32>, first: u32, second: u32| {
         let free = |triangle: u32| seconds[triangle as usize] == ALONE;
-        if free(first) && free(second) && fit(first, second) {
+        if free(first) && free(second) && fits(first, second) {
             seconds[first as usize] = second;
             seconds[second as usize] = TAKEN;
         }
@@ -70,7 +82,7 @@ fn pairs(mesh: &Mesh) -> Vec<u32> {
     seconds
 }
 
-/// Triangles, alone so far, that share an edge: the lower first, in order.
+/// Pairs of triangles that share an edge and are not part of a parallelogram yet: the lower number first, sorted.
 fn neighbours(mesh: &Mesh, seconds: &[u32]) -> Vec<(u32, u32)> {
     let mut edges: Vec<([u32; 2], u32)> = mesh
         .triangles
@@ -85,31 +97,32 @@ fn neighbours(mesh: &Mesh, seconds: &[u32]) -> Vec<(u32, u32)> {
         })
         .collect();
     edges.par_sort_unstable();
-    let mut found: Vec<_> = edges
+    let mut pairs: Vec<_> = edges
         .windows(2)
         .filter(|pair| pair[0].0 == pair[1].0)
         .map(|pair| (pair[0].1, pair[1].1))
         .collect();
     drop(edges);
-    found.par_sort_unstable();
-    found
+    pairs.par_sort_unstable();
+    pairs
 }
 
+/// Fourth corner of a parallelogram.
 struct Fourth {
     vertex: u32,
-    /// Whether it is `b + c - a` without rounding.
-    exact: bool,
+    /// `true` if it equals `b + c - a` without rounding.
+    is_exact: bool,
 }
 
-/// The corners of the parallelogram that two triangles form within rounding: the first one's apex,
-/// then the diagonal in the first one's own sense, then the fourth corner.
+/// Corners of the parallelogram that two triangles form within rounding: the apex of the first, then the
+/// diagonal in the orientation of the first, then the fourth corner.
 fn parallelogram(mesh: &Mesh, first: usize, second: usize) -> Option<([Vec3; 3], Fourth)> {
-    let (own, next) = (mesh.triangles[first], mesh.triangles[second]);
+    let (triangle, other) = (mesh.triangles[first], mesh.triangles[second]);
     let (turn, vertex) = (0..3).find_map(|i| {
-        let (b, c) = (own[(i + 1) % 3], own[(i + 2) % 3]);
-        (0..3).find(|&k| next[k] == c && next[(k + 1) % 3] == b).map(|k| (i, next[(k + 2) % 3]))
+        let (b, c) = (triangle[(i + 1) % 3], triangle[(i + 2) % 3]);
+        (0..3).find(|&k| other[k] == c && other[(k + 1) % 3] == b).map(|k| (i, other[(k + 2) % 3]))
     })?;
-    let corners = [0, 1, 2].map(|k| mesh.vertices[own[(turn + k) % 3] as usize]);
+    let corners = [0, 1, 2].map(|k| mesh.vertices[triangle[(turn + k) % 3] as usize]);
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     let fourth = mesh.vertices[vertex as usize].as_dvec3();
     let ideal = b + c - a;
@@ -117,9 +130,9 @@ fn parallelogram(mesh: &Mesh, first: usize, second: usize) -> Option<([Vec3; 3],
     let rounding = f64::from(f32::EPSILON) * (a.abs() + b.abs() + c.abs()) + 4.0 * 0.5e-6;
     let shortest = (b - a).length().min((c - a).length());
     let off = (ideal - fourth).abs();
-    let close = off.cmple(rounding).all() && off.max_element() <= SAME_SHAPE * shortest;
-    let exact = ideal == fourth;
-    (has_area(corners) && close).then_some((corners, Fourth { vertex, exact }))
+    let is_close = off.cmple(rounding).all() && off.max_element() <= MAX_SKEW * shortest;
+    let is_exact = ideal == fourth;
+    (has_area(corners) && is_close).then_some((corners, Fourth { vertex, is_exact }))
 }
 
 fn has_area(corners: [Vec3; 3]) -> bool {

@@ -1,0 +1,172 @@
+//! Eight-wide hierarchies over boxes: built by obvhs as binary ones, collapsed here by cost.
+
+use obvhs::{Boundable, aabb::Aabb};
+use rayon::prelude::*;
+
+use crate::accel::{
+    layout::{Bounds32, ChildRef, WideBvh, WideNode},
+    simd::Words,
+};
+
+use super::{
+    binary,
+    collapse::{self, CollapsedBvh},
+};
+
+impl Boundable for Bounds32 {
+    fn aabb(&self) -> Aabb {
+        Aabb { min: self.min.into(), max: self.max.into() }
+    }
+}
+
+/// Parameters of a build.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BuildSettings {
+    /// Maximum number of primitives of a leaf.
+    pub leaf_size: u32,
+    /// Cost of testing a leaf, relative to that of testing a node's boxes.
+    pub leaf_cost: f32,
+    /// Padding of boxes, which covers the rounding of the traversal.
+    pub padding: f32,
+    /// Fraction of nodes that reinsertion tries to move.
+    pub reinsertion: f32,
+}
+
+/// Maximum number of primitives that one binary hierarchy is built over: it bounds the memory of a build, and
+/// subsets are built in parallel.
+const MAX_SUBSET: usize = 1 << 18;
+
+/// Builds the hierarchy over `boxes`.
+///
+/// - `is_second_kind`: kind of a primitive; primitives of both kinds may not share a leaf
+/// - `make_leaves`: takes the number of leaves and returns a function that stores the primitives of one leaf, all
+///   of one kind, and returns the reference to it
+///
+/// Leaves and nodes are in depth-first order.
+pub(super) fn build<L: FnMut(&[u32]) -> ChildRef>(
+    boxes: Vec<Bounds32>,
+    settings: BuildSettings,
+    is_second_kind: impl Fn(u32) -> bool + Sync,
+    make_leaves: impl FnOnce(usize) -> L,
+) -> WideBvh {
+    if boxes.is_empty() {
+        return WideBvh { root: ChildRef::NONE, nodes: Vec::new() };
+    }
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut subsets = Vec::new();
+    let splits = split_at_medians(&boxes, &mut order, &mut subsets);
+    let subsets: Vec<(Bounds32, CollapsedBvh)> = subsets
+        .into_par_iter()
+        .map(|members| {
+            let tree = binary::build(&boxes, members, settings, &is_second_kind);
+            (tree.bounds(), collapse::collapse(&boxes, tree, settings, &is_second_kind))
+        })
+        .collect();
+    drop(boxes);
+    drop(order);
+    let leaves = subsets.iter().map(|(_, subset)| subset.leaves.len()).sum();
+    let inner: usize = subsets.iter().map(|(_, subset)| subset.nodes.len()).sum();
+    let mut merge = Merge {
+        make_leaf: make_leaves(leaves),
+        nodes: Vec::with_capacity(inner + subsets.len()),
+        padding: settings.padding,
+        subsets: subsets.into_iter().map(Some).collect(),
+    };
+    let root = merge.append_split(&splits).1;
+    WideBvh { root, nodes: merge.nodes }
+}
+
+/// Division of the primitives at medians: the index of a subset, or two halves.
+enum MedianSplit {
+    Subset(usize),
+    Halves(Box<[Self; 2]>),
+}
+
+/// Splits at the median of the longest axis of the centres until subsets are small enough.
+fn split_at_medians<'a>(
+    boxes: &[Bounds32],
+    order: &'a mut [u32],
+    subsets: &mut Vec<&'a mut [u32]>,
+) -> MedianSplit {
+    if order.len() <= MAX_SUBSET {
+        subsets.push(order);
+        return MedianSplit::Subset(subsets.len() - 1);
+    }
+    let center = |index: u32| boxes[index as usize].double_center();
+    let centers = order.iter().fold(Bounds32::EMPTY, |centers, &index| {
+        let center = center(index);
+        centers.union(Bounds32 { min: center, max: center })
+    });
+    let axis = (centers.max - centers.min).max_position();
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&a, &b| {
+        center(a)[axis].total_cmp(&center(b)[axis]).then(a.cmp(&b))
+    });
+    let (low, high) = order.split_at_mut(half);
+    MedianSplit::Halves(Box::new([
+        split_at_medians(boxes, low, subsets),
+        split_at_medians(boxes, high, subsets),
+    ]))
+}
+
+/// Merges the hierarchies of all subsets into one.
+struct Merge<L> {
+    make_leaf: L,
+    nodes: Vec<WideNode>,
+    padding: f32,
+    subsets: Vec<Option<(Bounds32, CollapsedBvh)>>,
+}
+
+impl<L: FnMut(&[u32]) -> ChildRef> Merge<L> {
+    /// Appends the hierarchy of a split; returns its box and the reference to it.
+    fn append_split(&mut self, split: &MedianSplit) -> (Bounds32, ChildRef) {
+        let mut children = vec![split];
+        if let MedianSplit::Subset(subset) = *split {
+            let Some((bounds, subset)) = self.subsets[subset].take() else {
+                return (Bounds32::EMPTY, ChildRef::NONE);
+            };
+            return (bounds, self.append_subset(subset));
+        }
+        // Halves have equal sizes, and stay alike when the first split is always the next to be replaced.
+        while let Some(at) =
+            children.iter().position(|split| matches!(split, MedianSplit::Halves(_)))
+        {
+            if children.len() == 8 {
+                break;
+            }
+            if let MedianSplit::Halves(halves) = children.remove(at) {
+                children.extend(halves.iter());
+            }
+        }
+        let index = self.nodes.len();
+        self.nodes.push(WideNode::new());
+        let mut union = Bounds32::EMPTY;
+        for (slot, split) in children.into_iter().enumerate() {
+            let (bounds, child) = self.append_split(split);
+            union = union.union(bounds);
+            self.nodes[index].set(slot, bounds.padded(self.padding), child);
+        }
+        self.nodes[index].sort_children();
+        (union, ChildRef(index as u32))
+    }
+
+    /// Appends the hierarchy of a subset, stores its leaves and returns the reference to its root.
+    fn append_subset(&mut self, subset: CollapsedBvh) -> ChildRef {
+        let first = self.nodes.len() as u32;
+        let leaves: Vec<ChildRef> = subset
+            .leaves
+            .iter()
+            .map(|leaf| (self.make_leaf)(&subset.order[leaf.clone()]))
+            .collect();
+        let moved = |child: ChildRef| match child {
+            ChildRef::NONE => ChildRef::NONE,
+            child if child.is_inner() => ChildRef(child.0 + first),
+            child => leaves[child.index()],
+        };
+        self.nodes.extend(subset.nodes.into_iter().map(|mut node| {
+            node.child = Words(node.child.0.map(|child| moved(ChildRef(child)).0));
+            node
+        }));
+        moved(subset.root)
+    }
+}
