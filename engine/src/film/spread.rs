@@ -52,11 +52,11 @@ impl Spread {
     /// # Panics
     /// If an index is out of range.
     #[must_use]
-    pub fn select(&self, places: impl IntoIterator<Item = (usize, f64)>) -> Self {
-        let scaled = |(place, scale): (usize, f64)| {
-            (self.mean[place] * scale, self.squares[place] * scale * scale)
+    pub fn select(&self, indices: impl IntoIterator<Item = (usize, f64)>) -> Self {
+        let scaled = |(index, scale): (usize, f64)| {
+            (self.mean[index] * scale, self.squares[index] * scale * scale)
         };
-        let (mean, squares) = places.into_iter().map(scaled).unzip();
+        let (mean, squares) = indices.into_iter().map(scaled).unzip();
         Self { count: self.count, mean, squares }
     }
 

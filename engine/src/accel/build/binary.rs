@@ -83,23 +83,31 @@ fn ploc(boxes: &[Bounds32], reinsertion: f32) -> Bvh2 {
 /// Number of primitives below each node.
 fn counts(source: &Bvh2) -> Vec<u32> {
     let mut order = Vec::with_capacity(source.nodes.len());
-    let mut waiting = vec![0_u32];
-    while let Some(at) = waiting.pop() {
-        order.push(at);
-        let node = &source.nodes[at as usize];
+    let mut pending = vec![0_u32];
+    while let Some(index) = pending.pop() {
+        order.push(index);
+        let node = &source.nodes[index as usize];
         if !node.is_leaf() {
-            waiting.extend([node.first_index, node.first_index + 1]);
+            pending.extend([node.first_index, node.first_index + 1]);
         }
     }
     let mut counts = vec![1; source.nodes.len()];
-    for &at in order.iter().rev() {
-        let node = &source.nodes[at as usize];
+    for &index in order.iter().rev() {
+        let node = &source.nodes[index as usize];
         if !node.is_leaf() {
             let first = node.first_index as usize;
-            counts[at as usize] = counts[first] + counts[first + 1];
+            counts[index as usize] = counts[first] + counts[first + 1];
         }
     }
     counts
+}
+
+/// Node of obvhs that is still to be copied.
+#[derive(Clone, Copy)]
+struct PendingNode {
+    source: u32,
+    /// Parent in the copy, and which of its two children the node is.
+    parent: Option<(u32, usize)>,
 }
 
 /// Copy of the hierarchy of obvhs in progress.
@@ -116,52 +124,54 @@ struct BinaryBuilder<'a, K> {
 impl<K: Fn(u32) -> bool> BinaryBuilder<'_, K> {
     /// Copies the hierarchy of obvhs, depth first; rebuilds small subtrees where that is cheaper.
     fn copy_all(&mut self) {
-        // Source node; index of its parent in the copy, and which child of it this is.
-        let mut waiting = vec![(0_u32, None)];
-        while let Some((from, parent)) = waiting.pop() {
-            let index = self.tree.nodes.len() as u32;
-            if let Some((parent, side)) = parent {
-                let parent: &mut BinaryNode = &mut self.tree.nodes[parent as usize];
-                parent.children[side] = index;
-            }
-            let count = self.counts[from as usize];
-            let is_small = count <= MAX_REBUILT && count > self.settings.leaf_size;
-            if is_small {
-                self.copy_or_rebuild(from);
+        let mut pending = vec![PendingNode { source: 0, parent: None }];
+        while let Some(node) = pending.pop() {
+            let count = self.counts[node.source as usize];
+            if count <= MAX_REBUILT && count > self.settings.leaf_size {
+                self.link(node);
+                self.copy_or_rebuild(node.source);
             } else {
-                self.copy_node(from, index, &mut waiting);
+                self.copy_node(node, &mut pending);
             }
         }
         self.set_costs(0);
     }
 
+    /// Makes the next node of the copy a child of its parent.
+    fn link(&mut self, node: PendingNode) {
+        let index = self.tree.nodes.len() as u32;
+        if let Some((parent, side)) = node.parent {
+            self.tree.nodes[parent as usize].children[side] = index;
+        }
+    }
+
     /// Copies one node and pushes its children, the first one last.
-    fn copy_node(&mut self, from: u32, index: u32, waiting: &mut Vec<(u32, Option<(u32, usize)>)>) {
-        let node = &self.source.nodes[from as usize];
+    fn copy_node(&mut self, pending_node: PendingNode, pending: &mut Vec<PendingNode>) {
+        self.link(pending_node);
+        let index = self.tree.nodes.len() as u32;
+        let node = &self.source.nodes[pending_node.source as usize];
         let bounds = Bounds32 { min: node.aabb().min.into(), max: node.aabb().max.into() };
-        let (start, count) = (self.tree.order.len() as u32, self.counts[from as usize]);
+        let start = self.tree.order.len() as u32;
+        let count = self.counts[pending_node.source as usize];
         self.tree.nodes.push(BinaryNode { bounds, children: [0; 2], start, count });
         self.tree.costs.push(ForestCost::UNKNOWN);
         if node.is_leaf() {
             let member = self.source.primitive_indices[node.first_index as usize];
             self.tree.order.push(self.members[member as usize]);
         } else {
-            waiting.push((node.first_index + 1, Some((index, 1))));
-            waiting.push((node.first_index, Some((index, 0))));
+            for side in [1, 0] {
+                let source = node.first_index + side;
+                pending.push(PendingNode { source, parent: Some((index, side as usize)) });
+            }
         }
     }
 
     /// Copies a subtree as it is, or rebuilds it if that is cheaper.
-    fn copy_or_rebuild(&mut self, from: u32) {
+    fn copy_or_rebuild(&mut self, source: u32) {
         let (first, start) = (self.tree.nodes.len(), self.tree.order.len());
-        let mut waiting = vec![(from, None)];
-        while let Some((from, parent)) = waiting.pop() {
-            let index = self.tree.nodes.len() as u32;
-            if let Some((parent, side)) = parent {
-                let parent: &mut BinaryNode = &mut self.tree.nodes[parent as usize];
-                parent.children[side] = index;
-            }
-            self.copy_node(from, index, &mut waiting);
+        let mut pending = vec![PendingNode { source, parent: None }];
+        while let Some(node) = pending.pop() {
+            self.copy_node(node, &mut pending);
         }
         self.set_costs(first);
         let copied = (self.tree.nodes.split_off(first), self.tree.costs.split_off(first));

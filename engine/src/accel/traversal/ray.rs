@@ -27,8 +27,9 @@ impl<I: Isa> BoxRay<I> {
     pub(super) fn new(isa: I, origin: [f32; 3], direction: [f32; 3]) -> Self {
         // A component this small moves the ray by less than the padding of any box.
         let [x, y, z] = direction.map(f32::abs);
-        let least = x.max(y).max(z) * 1e-18;
-        let inverse = direction.map(|d| 1.0 / if d.abs() < least { least.copysign(d) } else { d });
+        let smallest = x.max(y).max(z) * 1e-18;
+        let inverse =
+            direction.map(|d| 1.0 / if d.abs() < smallest { smallest.copysign(d) } else { d });
         let side = direction.map(|d| usize::from(d.is_sign_negative()));
         Self {
             inverse: inverse.map(|i| isa.splat(i)),

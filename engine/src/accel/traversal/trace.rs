@@ -1,9 +1,9 @@
 //! Traversal of both levels by one ray, generic over the instruction set.
 //!
 //! Boxes and primitives are tested eight at a time in `f32`, with bounds on the rounding error, so
-//! that a test says "missed", "certainly hit" or "perhaps". Distances, and whatever is only
-//! perhaps hit, are decided in `f64` by [`super::exact`]. The answer is therefore the least
-//! `(distance, instance, primitive)` over all primitives, and depends neither on the tree nor on
+//! that the result of a test is "missed", "surely hit" or "perhaps hit". Distances, and whatever is only
+//! perhaps hit, are decided in `f64` by [`super::exact`]. The result is therefore the minimum of
+//! `(distance, instance, primitive)` over all primitives, and depends neither on the hierarchy nor on
 //! the instruction set nor on threads.
 
 use std::cmp::Ordering;
