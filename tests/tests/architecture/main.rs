@@ -5,7 +5,7 @@ mod source;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use source::{SourceFile, engine, read_engine};
+use source::{Modules, SourceFile, engine, read_engine};
 
 /// Rows of the table of modules: the name of each, and what it may use.
 fn table() -> Vec<(String, BTreeSet<String>)> {
@@ -56,6 +56,53 @@ fn rows_of_the_table_use_rows_above_them() {
         assert!(below.is_empty(), "`{module}` uses {below:?}, which stand below it");
         above.insert(module);
     }
+}
+
+/// Folder below a module that a file lies in, or the file itself where it lies in none.
+fn room(path: &str) -> Option<String> {
+    let mut parts = path.split('/');
+    let (module, room) = (parts.next()?, parts.next()?);
+    Some(format!("{module}/{room}"))
+}
+
+#[test]
+fn folders_of_the_ray_engine_and_of_transport_have_no_circles() {
+    let files = read_engine();
+    let modules = Modules::new(&files);
+    for module in ["accel/", "transport/"] {
+        let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for file in files.iter().filter(|file| file.path.starts_with(module)) {
+            let from = room(&file.path).expect("it lies in a folder");
+            let used = file.used();
+            let declaring = used.iter().filter_map(|path| modules.declaring(path));
+            let to = declaring.filter(|file| file.path.starts_with(module));
+            let to = to.filter_map(|file| room(&file.path)).filter(|to| *to != from);
+            uses.entry(from.clone()).or_default().extend(to);
+        }
+        assert!(uses.len() > 3, "{module} has folders");
+        // Rooms that use no other are taken away until none is left.
+        while let Some(leaf) = uses.iter().find(|(_, to)| to.is_empty()) {
+            let leaf = leaf.0.clone();
+            uses.remove(&leaf);
+            for to in uses.values_mut() {
+                to.remove(&leaf);
+            }
+        }
+        assert_eq!(uses, BTreeMap::new(), "folders that use each other in a circle");
+    }
+}
+
+#[test]
+fn names_of_public_types_are_unique() {
+    let mut homes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for file in read_engine() {
+        for name in file.public_types() {
+            homes.entry(name).or_default().push(file.path.clone());
+        }
+    }
+    assert!(homes.contains_key("Sensor") && homes.len() > 300, "declared by macros too");
+    homes.retain(|_, files| files.len() > 1);
+    assert_eq!(homes, BTreeMap::new());
 }
 
 /// Lines of code that name a word, outside the places where they may.

@@ -74,6 +74,11 @@ impl SourceFile {
         absolute.filter_map(|path| Some((path.last()?.clone(), path))).collect()
     }
 
+    /// Names of the types that it makes public.
+    pub(crate) fn public_types(&self) -> Vec<String> {
+        self.syntax.items.iter().filter_map(public_type).collect()
+    }
+
     fn absolute(&self, path: &[String]) -> Option<ModulePath> {
         let (first, rest) = path.split_first()?;
         match first.as_str() {
@@ -87,6 +92,27 @@ impl SourceFile {
             _ => Some([&self.module, path].concat()),
         }
     }
+}
+
+/// Name of an item that is a public type, declared in plain Rust or by `record!` or `choice!`.
+fn public_type(item: &Item) -> Option<String> {
+    let (visibility, name) = match item {
+        Item::Struct(item) => (&item.vis, item.ident.to_string()),
+        Item::Enum(item) => (&item.vis, item.ident.to_string()),
+        Item::Trait(item) => (&item.vis, item.ident.to_string()),
+        Item::Type(item) => (&item.vis, item.ident.to_string()),
+        // `macro_rules!` has a name, calls have none.
+        Item::Macro(item) if item.ident.is_none() => {
+            let tokens = item.mac.tokens.to_string();
+            let words: Vec<&str> = tokens.split_whitespace().collect();
+            let declaration = words
+                .windows(3)
+                .find(|three| three[0] == "pub" && ["struct", "enum"].contains(&three[1]))?;
+            return Some(declaration[2].to_owned());
+        }
+        _ => return None,
+    };
+    matches!(visibility, Visibility::Public(_)).then_some(name)
 }
 
 /// Collects paths: of `use` declarations, re-exports or not, and paths that start with `crate` or `super`.
@@ -139,5 +165,38 @@ impl<'ast> Visit<'ast> for Paths {
             self.found.push(parts);
         }
         visit::visit_path(self, path);
+    }
+}
+
+/// Files by module, with their re-exports.
+pub(crate) struct Modules<'f> {
+    files: BTreeMap<&'f [String], &'f SourceFile>,
+    reexports: BTreeMap<&'f [String], BTreeMap<String, ModulePath>>,
+}
+
+impl<'f> Modules<'f> {
+    pub(crate) fn new(files: &'f [SourceFile]) -> Self {
+        Self {
+            files: files.iter().map(|file| (file.module.as_slice(), file)).collect(),
+            reexports: files
+                .iter()
+                .map(|file| (file.module.as_slice(), file.reexports()))
+                .collect(),
+        }
+    }
+
+    /// File that declares what a path names, behind all re-exports; `None` outside the crate.
+    pub(crate) fn declaring(&self, path: &[String]) -> Option<&'f SourceFile> {
+        let mut path = path.to_vec();
+        // A chain of re-exports is no longer than the folders are deep.
+        for _ in 0..8 {
+            let depth = (1..=path.len()).rev().find(|&n| self.files.contains_key(&path[..n]))?;
+            let behind = path.get(depth).and_then(|name| self.reexports[&path[..depth]].get(name));
+            match behind {
+                Some(behind) if *behind != path => path = [behind, &path[depth + 1..]].concat(),
+                _ => return Some(self.files[&path[..depth]]),
+            }
+        }
+        panic!("{path:?} is re-exported in a circle");
     }
 }
