@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use sunfleck::film::Spread;
 use sunfleck::run::Options;
+use sunfleck::statistics::Spread;
 use sunfleck_tests::{measure, product, shared};
 
 /// Standard errors that a value may be off: two-sided significance 6e-5 of Student's t.

@@ -12,9 +12,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use sunfleck::film::Sums;
 use sunfleck::products::Report;
 use sunfleck::run::Options;
+use sunfleck::statistics::Sums;
 use sunfleck_tests::{Estimate, measure, product};
 
 /// What a relative deviation may be.

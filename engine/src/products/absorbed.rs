@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::context::{labels, numbers};
 use super::{Context, Product, reflectance};
 use crate::extract::{Inventory, Stage};
-use crate::film::Spread;
+use crate::statistics::Spread;
 use crate::transport::{AbsorbedCounter, Counter as _};
 
 /// Power that triangles and discs absorb.

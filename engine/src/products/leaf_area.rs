@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::film::Replicates;
+use crate::statistics::Replicates;
 
 /// Zenith angles of the rings of a LAI-2000, degrees.
 pub const LAI_2000_RINGS: [f64; 5] = [7.0, 23.0, 38.0, 53.0, 68.0];

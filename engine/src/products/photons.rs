@@ -3,7 +3,7 @@ use super::directions::axes;
 use super::{Context, Image, Product, reflectance};
 use crate::components::View;
 use crate::extract::Stage;
-use crate::film::Spread;
+use crate::statistics::Spread;
 use crate::transport::{
     AlbedoCounter, ConeCounter, EnergyCounter, FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere,
     LayerCounter, ViewCounter,

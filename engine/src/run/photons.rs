@@ -4,9 +4,9 @@ use super::convergence::{Measurement, PacedFilm};
 use super::sensors::MeasureContext;
 use crate::components::{Cone, PhotonMeasure, PhotonProduct, PhotonSensor, System, View};
 use crate::extract::{Inventory, Stage};
-use crate::film::Spread;
 use crate::products::{self, BandSources, Context, Product, ProductSize};
 use crate::sampling::Key;
+use crate::statistics::Spread;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
     FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightSource, OrderCounter,

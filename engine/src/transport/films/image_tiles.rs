@@ -10,8 +10,8 @@ use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
 use super::tile::{PixelSample, PooledVariance, REPLICATES_PER_PIXEL, Tile};
 use super::{Film, Partition, blocks};
 use crate::extract::Stage;
-use crate::film::{Replicates, Sums, ratio};
 use crate::sampling::{Key, Sampler};
+use crate::statistics::{Replicates, Sums, ratio};
 use crate::transport::paths::{PathBatch, PathTracer};
 use crate::transport::{Camera, ProgressFn, RANDOMISATIONS};
 

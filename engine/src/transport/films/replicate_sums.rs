@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
 use super::{Film, Partition, blocks};
-use crate::film::{Spread, Sums};
+use crate::statistics::{Spread, Sums};
 use crate::transport::{ProgressFn, RANDOMISATIONS};
 
 /// Traces the samples of a randomisation.

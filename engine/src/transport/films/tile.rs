@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::extract::Stage;
-use crate::film::{Sums, zeroed};
+use crate::statistics::{Sums, zeroed};
 use crate::transport::RANDOMISATIONS;
 use crate::transport::paths::{PathTracer, write_each};
 
@@ -224,7 +224,7 @@ impl Tile {
 }
 
 /// Variance of one of the samples that met the scene, `count` of `n`, from the sum of their squared deviations: the
-/// variance of a ratio whose counts are 0 or 1 (see `film::ratio`).
+/// variance of a ratio whose counts are 0 or 1 (see `statistics::ratio`).
 fn of_ratio(squares: f64, count: f64, n: f64) -> f64 {
     if n > 1.0 { squares * n / ((n - 1.0) * count) } else { f64::NAN }
 }

@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::Ray;
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::sampling::{Key, Sampler};
+use crate::statistics::Sums;
 use crate::transport::band_blocks::Block;
 
 /// Number of columns: the four components in the order of their numbers (1 sunlit ground, 2 sunlit canopy,

@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use crate::accel::{Hit, Ray, RayBatch};
 use crate::extract::Stage;
-use crate::film::Sums;
 use crate::sampling::Sampler;
 use crate::scattering::with_simd;
+use crate::statistics::Sums;
 use crate::transport::band_blocks::{BLOCK, Block, blocks};
 
 /// State machine of one path from a sensor: it queues rays and continues with their results. One value is

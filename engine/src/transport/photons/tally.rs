@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::spectrum_products::{ProductId, SpectrumProducts};
-use crate::film::Sums;
 use crate::scattering::{LANES, Lobe, SurfaceModels, with_simd};
+use crate::statistics::Sums;
 use crate::transport::band_blocks::blocks;
 
 /// Contributions of packets to cells. A packet weighs one of `SpectrumProducts` times a number; contributions

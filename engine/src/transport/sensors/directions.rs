@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use crate::components::{System, View};
 use crate::extract::Stage;
-use crate::film::{Replicates, Spread, Sums, ratio};
 use crate::sampling::{Key, Sampler};
+use crate::statistics::{Replicates, Spread, Sums, ratio};
 use crate::transport::films::{ReplicateSums, SampleTracer};
 use crate::transport::paths::{
     BackwardPath, FirstOrderPath, PathBatch, PathTracer, ThermalPath, write_each,

@@ -1,6 +1,6 @@
 use super::{Counter, Event, Tally, WeightFactor};
 use crate::extract::Stage;
-use crate::film::Sums;
+use crate::statistics::Sums;
 use crate::transport::ReferencePlane;
 
 /// Energy balance of all packets: the power that enters, leaves through the reference plane or

@@ -28,7 +28,7 @@ pub fn ratio(sums: &[f64], counts: &[f64]) -> (Vec<f64>, Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::ratio;
-    use crate::film::Spread;
+    use crate::statistics::Spread;
 
     #[test]
     fn with_equal_counts_a_ratio_is_a_mean_of_means() {
