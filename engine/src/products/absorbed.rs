@@ -29,7 +29,8 @@ pub struct Faces {
 pub fn absorbed(
     spread: &Spread,
     counter: &AbsorbedCounter,
-    (inventory, stage): (&Arc<Inventory>, &Stage),
+    inventory: &Arc<Inventory>,
+    stage: &Stage,
     context: &Context,
 ) -> Vec<Product> {
     let bands = context.bands.len();

@@ -1,4 +1,6 @@
-//! Shares of sunlit and shaded ground and canopy, and gap fractions.
+//! Fractions of sunlit and shaded ground and canopy, and gap fractions.
+
+use std::ops::Range;
 
 use super::context::labels;
 use super::directions::axes;
@@ -29,7 +31,8 @@ pub fn image_components(
     measure: ImageMeasure,
     sensor: &ImageSensor,
     outcome: &ImageOutcome,
-    (stage, context): (&Stage, &Context),
+    stage: &Stage,
+    context: &Context,
 ) -> Vec<Product> {
     let image = |names: &[&str], values: Vec<f32>, standard_error, rendering| Image {
         width: sensor.size.x as usize,
@@ -41,32 +44,34 @@ pub fn image_components(
         rendering,
         georeference: georeference(sensor, stage, context),
     };
+    // A product of some columns, and the image of their pixels.
+    let columns = |name: &str, names: &[&str], columns: Range<usize>, rendering| Product {
+        image: Some(image(
+            names,
+            pick(&outcome.pixels, columns.clone()),
+            pick(&outcome.errors, columns.clone()),
+            rendering,
+        )),
+        ..product(
+            name,
+            vec![vec![axis(names)]],
+            &outcome.mean[columns.clone()],
+            &outcome.mean_error[columns],
+        )
+    };
     match measure {
         ImageMeasure::FourComponents => {
-            let columns = 0..4;
-            let of = |values: &[f32]| pick(values, columns.clone());
-            let shares = Product {
-                image: Some(image(
-                    &COMPONENTS,
-                    of(&outcome.pixels),
-                    of(&outcome.errors),
-                    Rendering::Shares(classes()),
-                )),
-                ..product(
-                    "four_components",
-                    vec![vec![axis(&COMPONENTS)]],
-                    &outcome.mean[columns.clone()],
-                    &outcome.mean_error[columns.clone()],
-                )
-            };
+            let shares =
+                columns("four_components", &COMPONENTS, 0..4, Rendering::Shares(classes()));
             let numbers: Vec<f32> =
                 outcome.pixels.chunks_exact(COMPONENT_COLUMNS).map(|p| dominant(&p[..4])).collect();
             let errors = vec![f32::NAN; numbers.len()];
             let mean: Vec<f32> = outcome.mean[..4].iter().map(|&share| share as f32).collect();
+            let name = "dominant_component";
             let class = Product {
                 image: Some(image(&["class"], numbers, errors, Rendering::Classes(classes()))),
                 ..product(
-                    "dominant_component",
+                    name,
                     vec![vec![axis(&["class"])]],
                     &[dominant(&mean).into()],
                     &[f64::NAN],
@@ -76,21 +81,7 @@ pub fn image_components(
         }
         ImageMeasure::GapFraction => {
             let column = GAP_COLUMN..GAP_COLUMN + 1;
-            let of = |values: &[f32]| pick(values, column.clone());
-            let gaps = Product {
-                image: Some(image(
-                    &["gap"],
-                    of(&outcome.pixels),
-                    of(&outcome.errors),
-                    Rendering::Quicklook,
-                )),
-                ..product(
-                    "gap_fraction",
-                    vec![vec![axis(&["gap"])]],
-                    &outcome.mean[column.clone()],
-                    &outcome.mean_error[column.clone()],
-                )
-            };
+            let gaps = columns("gap_fraction", &["gap"], column, Rendering::Quicklook);
             let rings = GapSums { sums: &outcome.image_sums, stride: 2, gaps: 0, samples: 1 };
             let lai = lai_of_rings(&rings).into_iter().map(|index| single(&index));
             std::iter::once(gaps).chain(lai).collect()
@@ -166,7 +157,7 @@ fn dominant(shares: &[f32]) -> f32 {
 }
 
 /// Some columns of each row.
-fn pick<T: Copy>(values: &[T], columns: std::ops::Range<usize>) -> Vec<T> {
+fn pick<T: Copy>(values: &[T], columns: Range<usize>) -> Vec<T> {
     let rows = values.chunks_exact(COMPONENT_COLUMNS);
     let mut picked = Vec::with_capacity(rows.len() * columns.len());
     rows.for_each(|row| picked.extend_from_slice(&row[columns.clone()]));

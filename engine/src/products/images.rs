@@ -16,7 +16,8 @@ pub fn image_products(
     sensor: &ImageSensor,
     reflected: Option<&ImageOutcome>,
     emitted: Option<&ImageOutcome>,
-    (stage, context): (&Stage, &Context),
+    stage: &Stage,
+    context: &Context,
 ) -> Vec<Product> {
     let place = georeference(sensor, stage, context);
     let image = |name: (&str, &str), (outcome, spectrum), scale| {

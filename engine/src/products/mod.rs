@@ -22,7 +22,7 @@ pub use directions::direction_products;
 pub use images::image_products;
 pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
-pub use product_size::{ProductSize, direction_sizes, image_sizes};
+pub use product_size::{MeasuredLight, ProductSize, direction_sizes, image_sizes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
     AxisPoints, Class, Day, Forecast, Georeference, Image, Night, Product, ProductAxis, Rendering,

@@ -30,7 +30,8 @@ pub fn albedo(spread: &Spread, counter: &AlbedoCounter, context: &Context) -> Pr
 #[must_use]
 pub fn brf_cells(
     spread: &Spread,
-    (hemisphere, gain): (&Hemisphere, f64),
+    hemisphere: &Hemisphere,
+    gain: f64,
     context: &Context,
 ) -> Product {
     let cells: Vec<_> = hemisphere.cells().collect();
@@ -218,7 +219,7 @@ mod tests {
             origin: (0.0, 0.0),
             sources: Vec::new(),
         };
-        let product = brf_cells(&spread, (&hemisphere, 1.0), &context);
+        let product = brf_cells(&spread, &hemisphere, 1.0, &context);
         assert!(product.values.iter().all(|brf| (brf - 0.4).abs() < 1e-12));
         let albedo = hemisphere
             .cells()

@@ -92,12 +92,22 @@ impl ProductSize {
 /// Maximum number of leaf area indices of a fisheye.
 const LEAF_AREA_INDICES: usize = 3;
 
-/// What [`image_products`](super::image_products) and [`image_components`](super::image_components) make of
-/// what is reflected, emitted and summed by zones, as far as they are there.
+/// Light that a measurement estimates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeasuredLight {
+    /// True if it estimates reflected light.
+    pub reflected: bool,
+    /// True if it estimates emitted light.
+    pub emitted: bool,
+}
+
+/// Sizes of the results of [`image_products`](super::image_products) and
+/// [`image_components`](super::image_components).
 #[must_use]
 pub fn image_sizes(
     sensor: &ImageSensor,
-    (reflected, emitted, zones): (bool, bool, bool),
+    light: MeasuredLight,
+    has_zones: bool,
     context: &Context,
 ) -> Vec<ProductSize> {
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
@@ -106,20 +116,20 @@ pub fn image_sizes(
     let of = |measure: &ImageMeasure| match measure {
         ImageMeasure::FourComponents => vec![image(4), image(1)],
         ImageMeasure::GapFraction => {
-            [vec![image(1)], vec![index; usize::from(zones) * LEAF_AREA_INDICES]].concat()
+            [vec![image(1)], vec![index; usize::from(has_zones) * LEAF_AREA_INDICES]].concat()
         }
-        light => light_sizes(*light, (reflected, emitted), context, image),
+        measure => light_sizes(*measure, light, context, image),
     };
     sensor.measure.iter().flat_map(of).collect()
 }
 
-/// What [`direction_products`](super::direction_products) and
-/// [`direction_components`](super::direction_components) make, but for single numbers.
+/// Sizes of the results of [`direction_products`](super::direction_products) and
+/// [`direction_components`](super::direction_components), but for single numbers.
 #[must_use]
 pub fn direction_sizes(
     views: usize,
     measures: &[ImageMeasure],
-    found: (bool, bool),
+    light: MeasuredLight,
     context: &Context,
 ) -> Vec<ProductSize> {
     let table =
@@ -128,27 +138,27 @@ pub fn direction_sizes(
         ImageMeasure::FourComponents => vec![table(4)],
         // The share of gaps, and Beer's index.
         ImageMeasure::GapFraction => vec![table(1); 2],
-        light => light_sizes(*light, found, context, table),
+        measure => light_sizes(*measure, light, context, table),
     };
     measures.iter().flat_map(of).collect()
 }
 
-/// What is made of light that is reflected and emitted, of so many bands each.
+/// Sizes of the products of light; `size` is that of a product of a number of bands.
 fn light_sizes(
     measure: ImageMeasure,
-    (reflected, emitted): (bool, bool),
+    MeasuredLight { reflected, emitted }: MeasuredLight,
     context: &Context,
-    of: impl Fn(usize) -> ProductSize,
+    size: impl Fn(usize) -> ProductSize,
 ) -> Vec<ProductSize> {
     let bands = context.bands.len();
     match measure {
-        ImageMeasure::Radiance => vec![of(bands); usize::from(reflected || emitted)],
-        ImageMeasure::Brf => vec![of(bands); usize::from(reflected)],
+        ImageMeasure::Radiance => vec![size(bands); usize::from(reflected || emitted)],
+        ImageMeasure::Brf => vec![size(bands); usize::from(reflected)],
         ImageMeasure::Orders => {
-            vec![of(bands); usize::from(reflected) * ScatteringOrder::ALL.len()]
+            vec![size(bands); usize::from(reflected) * ScatteringOrder::ALL.len()]
         }
         ImageMeasure::BrightnessTemperature => {
-            vec![of(context.emitting().len()); usize::from(emitted)]
+            vec![size(context.emitting().len()); usize::from(emitted)]
         }
         ImageMeasure::FourComponents | ImageMeasure::GapFraction => Vec::new(),
     }

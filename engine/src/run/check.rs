@@ -17,13 +17,13 @@ use crate::transport::{Camera, Partition, RANDOMISATIONS};
 /// If all sensors together take more memory than is free, or one of them cannot measure its quantities.
 pub(super) fn check(
     sensors: &[SensorEntity],
-    scene: MeasureContext<'_>,
+    measured: MeasureContext<'_>,
     options: &Options,
     store: &CheckpointStore,
 ) -> Result<(), Failure> {
-    check_memory(sensors, scene, options, store)?;
+    check_memory(sensors, measured, options, store)?;
     let check =
-        |one: &SensorEntity| problems_of(&one.name, &one.sensor, scene, options.quality, store);
+        |one: &SensorEntity| problems_of(&one.name, &one.sensor, measured, options.quality, store);
     let problems: Vec<Diagnostic> = sensors.iter().flat_map(check).collect();
     if problems.is_empty() { Ok(()) } else { Err(Failure::Problems(problems)) }
 }
@@ -32,14 +32,14 @@ pub(super) fn check(
 fn problems_of(
     name: &str,
     sensor: &ResolvedSensor,
-    scene: MeasureContext<'_>,
+    measured: MeasureContext<'_>,
     quality: f64,
     store: &CheckpointStore,
 ) -> Vec<Diagnostic> {
-    let Begun { mut measurement, convergence } = begin(name, sensor, scene, quality);
+    let Begun { mut measurement, convergence } = begin(name, sensor, measured, quality);
     let path = format!("sensors.{name}.until");
     let mut problems = Vec::new();
-    problems.extend(too_many_samples(name, sensor, scene.stage, quality));
+    problems.extend(too_many_samples(name, sensor, measured.stage, quality));
     let films = measurement.films();
     let fixed = films.iter().find_map(|paced| paced.film.can_grow().err());
     if let Some(bytes) = fixed.filter(|_| !convergence.is_fixed()) {
@@ -114,12 +114,12 @@ fn too_many_samples(
 /// If all together take more memory than is free.
 fn check_memory(
     sensors: &[SensorEntity],
-    scene: MeasureContext<'_>,
+    measured: MeasureContext<'_>,
     options: &Options,
     store: &CheckpointStore,
 ) -> Result<(), Failure> {
     let cost = |name: &str, sensor: &ResolvedSensor| {
-        let Begun { mut measurement, .. } = begin(name, sensor, scene, options.quality);
+        let Begun { mut measurement, .. } = begin(name, sensor, measured, options.quality);
         CostEstimate::new(measurement.as_mut(), store)
     };
     match cost::check_memory(sensors, options.free_memory(), cost) {

@@ -17,7 +17,7 @@ use crate::transport::{
 /// Measurement by photon packets of sun and sky, and of emission.
 pub(super) struct PhotonRun<'a> {
     sensor: &'a PhotonSensor,
-    scene: MeasureContext<'a>,
+    measured: MeasureContext<'a>,
     kinds: Vec<(&'a PhotonMeasure, ProductCounter)>,
     reflected: Option<Counted<'a>>,
     emitted: Option<Counted<'a>>,
@@ -25,8 +25,8 @@ pub(super) struct PhotonRun<'a> {
 
 impl<'a> PhotonRun<'a> {
     /// Measurement before its first packet.
-    pub(super) fn new(sensor: &'a PhotonSensor, scene: MeasureContext<'a>, key: Key) -> Self {
-        let MeasureContext { stage, context } = scene;
+    pub(super) fn new(sensor: &'a PhotonSensor, measured: MeasureContext<'a>, key: Key) -> Self {
+        let MeasureContext { stage, context } = measured;
         let plane = ReferencePlane::new(sensor.plane.as_ref(), stage);
         let kinds: Vec<(&PhotonMeasure, ProductCounter)> = sensor
             .products
@@ -68,7 +68,7 @@ impl<'a> PhotonRun<'a> {
         let asked = numbered().filter(|(_, (measure, _))| emits && measure.is_absolute());
         let asked = asked.map(|(index, _)| (index, None)).collect();
         let emitted = film(LightSource::Emitted, asked, key.path("emission"));
-        Self { sensor, scene, kinds, reflected, emitted }
+        Self { sensor, measured, kinds, reflected, emitted }
     }
 }
 
@@ -96,7 +96,7 @@ impl Measurement for PhotonRun<'_> {
     }
 
     fn product_sizes(&self) -> Vec<ProductSize> {
-        let MeasureContext { stage, context } = self.scene;
+        let MeasureContext { stage, context } = self.measured;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let films: Vec<_> = [reflected, emitted].into_iter().flatten().collect();
         let bands = context.bands.len() as u64;
@@ -118,7 +118,7 @@ impl Measurement for PhotonRun<'_> {
     }
 
     fn products(&self) -> Vec<Product> {
-        let MeasureContext { stage, context } = self.scene;
+        let MeasureContext { stage, context } = self.measured;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let parts = parts(sensor);
         let mut found = Vec::new();
@@ -274,7 +274,7 @@ impl ProductCounter {
         match self {
             Self::Albedo(albedo) => vec![products::albedo(spread, albedo, context)],
             Self::Cells(cells) => {
-                vec![products::brf_cells(spread, (&cells.hemisphere, cells.plane.gain), context)]
+                vec![products::brf_cells(spread, &cells.hemisphere, cells.plane.gain, context)]
             }
             Self::Cones(cones) => vec![products::brf_cones(spread, cones, context)],
             Self::Views(counter, views) => {
@@ -282,7 +282,7 @@ impl ProductCounter {
             }
             Self::Layers(layers) => products::fapar(spread, layers, stage, context),
             Self::Absorbed(counter, inventory) => {
-                products::absorbed(spread, counter, (inventory, stage), context)
+                products::absorbed(spread, counter, inventory, stage, context)
             }
             Self::Fluxes(fluxes) => products::fluxes(spread, fluxes, context),
         }

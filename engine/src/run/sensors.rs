@@ -11,7 +11,7 @@ use crate::components::{
     StopCriterion, System,
 };
 use crate::extract::Stage;
-use crate::products::{self, Context, Product, ProductSize, SensorReport};
+use crate::products::{self, Context, MeasuredLight, Product, ProductSize, SensorReport};
 use crate::sampling::Key;
 use crate::transport::{
     Camera, DirectionsFilm, DirectionsSettings, FirstSurfaceFilm, ImageFilm, ImageTiles,
@@ -23,13 +23,6 @@ use crate::transport::{
 pub(super) struct MeasureContext<'a> {
     pub(super) stage: &'a Stage,
     pub(super) context: &'a Context,
-}
-
-impl<'a> MeasureContext<'a> {
-    /// Both as the functions of `products` take them.
-    pub(super) const fn pair(self) -> (&'a Stage, &'a Context) {
-        (self.stage, self.context)
-    }
 }
 
 /// A sensor of the world.
@@ -54,19 +47,19 @@ pub(super) fn in_order(world: &World) -> Vec<SensorEntity> {
 /// writes [`SensorReport`].
 pub(super) fn measure_sensors(
     world: &mut World,
-    scene: MeasureContext<'_>,
+    measured: MeasureContext<'_>,
     options: &Options,
     store: &mut CheckpointStore,
     progress: &dyn Progress,
 ) -> Result<Option<String>, Failure> {
     let sensors = in_order(world);
-    check(&sensors, scene, options, store)?;
+    check(&sensors, measured, options, store)?;
     for one in &sensors {
         // Whatever is absent already need not be removed.
         drop(world.remove_one::<SensorReport>(one.entity));
     }
     for one in &sensors {
-        let report = measure(one, scene, options, store, progress)?;
+        let report = measure(one, measured, options, store, progress)?;
         world.insert_one(one.entity, report).expect("sensors exist");
     }
     store.finish()
@@ -88,26 +81,26 @@ pub(super) struct Begun<'a> {
 pub(super) fn begin<'a>(
     name: &str,
     sensor: &'a ResolvedSensor,
-    scene: MeasureContext<'a>,
+    measured: MeasureContext<'a>,
     quality: f64,
 ) -> Begun<'a> {
-    let key = Key::new(scene.stage.rules.seed).path("sensors").path(name);
+    let key = Key::new(measured.stage.rules.seed).path("sensors").path(name);
     match sensor {
-        ResolvedSensor::Image(sensor) => image(sensor, scene, key, quality),
-        ResolvedSensor::Directions(sensor) => directions(sensor, scene, key, quality),
-        ResolvedSensor::Photons(sensor) => photons(sensor, scene, key, quality),
+        ResolvedSensor::Image(sensor) => image(sensor, measured, key, quality),
+        ResolvedSensor::Directions(sensor) => directions(sensor, measured, key, quality),
+        ResolvedSensor::Photons(sensor) => photons(sensor, measured, key, quality),
     }
 }
 
 /// Measures one sensor.
 pub(super) fn measure(
     SensorEntity { name, sensor, .. }: &SensorEntity,
-    scene: MeasureContext<'_>,
+    measured: MeasureContext<'_>,
     options: &Options,
     store: &mut CheckpointStore,
     progress: &dyn Progress,
 ) -> Result<SensorReport, Failure> {
-    let Begun { mut measurement, convergence } = begin(name, sensor, scene, options.quality);
+    let Begun { mut measurement, convergence } = begin(name, sensor, measured, options.quality);
     let measurement = measurement.as_mut();
     let end = measure_until(name, measurement, &convergence, store, progress, options.forecast)?;
     let films = measurement.films();
@@ -180,7 +173,7 @@ const MANY_PIXELS: u64 = 256;
 
 struct ImageRun<'a> {
     sensor: &'a ImageSensor,
-    scene: MeasureContext<'a>,
+    measured: MeasureContext<'a>,
     reflected: Option<ImageFilm<'a>>,
     emitted: Option<ImageFilm<'a>>,
     components: Option<ImageTiles<'a>>,
@@ -190,11 +183,11 @@ struct ImageRun<'a> {
 
 fn image<'a>(
     sensor: &'a ImageSensor,
-    scene: MeasureContext<'a>,
+    measured: MeasureContext<'a>,
     key: Key,
     quality: f64,
 ) -> Begun<'a> {
-    let MeasureContext { stage, context } = scene;
+    let MeasureContext { stage, context } = measured;
     let camera = Camera::new(sensor, stage);
     let until = if sensor.until.is_empty() {
         let samples = camera.samples(sensor.samples) * quality;
@@ -216,7 +209,7 @@ fn image<'a>(
     let components = (!sensor.measure.iter().all(ImageMeasure::is_light))
         .then(|| image_first_surface_film(stage, &camera, key.path("components")));
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
-    let run = |pace| ImageRun { sensor, scene, reflected, emitted, components, pace };
+    let run = |pace| ImageRun { sensor, measured, reflected, emitted, components, pace };
     if sensor.system == System::Forward {
         let each = move |samples: u64| each_of(samples.saturating_mul(pixels));
         let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each) };
@@ -247,26 +240,24 @@ impl Measurement for ImageRun<'_> {
     }
 
     fn product_sizes(&self) -> Vec<ProductSize> {
-        let zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
-        let found = (self.reflected.is_some(), self.emitted.is_some(), zones);
-        products::image_sizes(self.sensor, found, self.scene.context)
+        let has_zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
+        let light =
+            MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
+        products::image_sizes(self.sensor, light, has_zones, self.measured.context)
     }
 
     fn products(&self) -> Vec<Product> {
         let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
         let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
-        let mut products = products::image_products(
-            self.sensor,
-            reflected.as_ref(),
-            emitted.as_ref(),
-            self.scene.pair(),
-        );
+        let MeasureContext { stage, context } = self.measured;
+        let (sensor, emitted) = (self.sensor, emitted.as_ref());
+        let mut products =
+            products::image_products(sensor, reflected.as_ref(), emitted, stage, context);
         if let Some(components) = &self.components {
             let outcome = components.outcome();
             for &measure in &self.sensor.measure {
-                let of =
-                    products::image_components(measure, self.sensor, &outcome, self.scene.pair());
-                products.extend(of);
+                products
+                    .extend(products::image_components(measure, sensor, &outcome, stage, context));
             }
         }
         products
@@ -283,11 +274,11 @@ struct DirectionsRun<'a> {
 
 fn directions<'a>(
     sensor: &'a DirectionSensor,
-    scene: MeasureContext<'a>,
+    measured: MeasureContext<'a>,
     key: Key,
     quality: f64,
 ) -> Begun<'a> {
-    let MeasureContext { stage, context } = scene;
+    let MeasureContext { stage, context } = measured;
     let views = sensor.views.as_slice();
     let plane = &ReferencePlane::new(sensor.plane.as_ref(), stage);
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
@@ -320,8 +311,9 @@ impl Measurement for DirectionsRun<'_> {
 
     fn product_sizes(&self) -> Vec<ProductSize> {
         let DirectionSensor { views, measure, .. } = self.sensor;
-        let found = (self.reflected.is_some(), self.emitted.is_some());
-        products::direction_sizes(views.len(), measure, found, self.context)
+        let light =
+            MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
+        products::direction_sizes(views.len(), measure, light, self.context)
     }
 
     fn products(&self) -> Vec<Product> {
@@ -378,17 +370,17 @@ fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
 
 fn photons<'a>(
     sensor: &'a PhotonSensor,
-    scene: MeasureContext<'a>,
+    measured: MeasureContext<'a>,
     key: Key,
     quality: f64,
 ) -> Begun<'a> {
-    let MeasureContext { stage, .. } = scene;
+    let MeasureContext { stage, .. } = measured;
     let until = if sensor.until.is_empty() {
         vec![StopCriterion::Samples((sensor.per_area * stage.area() * quality).ceil() as u64)]
     } else {
         at_quality(&sensor.until, quality)
     };
-    let measurement = Box::new(PhotonRun::new(sensor, scene, key));
+    let measurement = Box::new(PhotonRun::new(sensor, measured, key));
     let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
     Begun { measurement, convergence }
 }
