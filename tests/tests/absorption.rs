@@ -7,49 +7,27 @@ use sunfleck::output;
 use sunfleck::products::{Faces, Product, Report};
 use sunfleck::run::{Options, Unwatched, run};
 use sunfleck::transport::EnergyCounter;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// Sixteen trees and a cloud of discs, of 77 000 values of triangles in two bands: more than a block
 /// of packets holds as a whole.
 fn grove(options: &Options, boundary: &str, plane: &str) -> Report {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    let discs = "radius,x,y,z,nx,ny,nz\n0.5,0,0,1,0,0,1\n0.4,0,0,2,0.6,0,0.8\n";
-    fs::write(dir.path().join("discs.csv"), discs).expect("a file");
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "red", center_nm: 660.0), (name: "near infrared", center_nm: 865.0)],
-    frame: (origin_m: (600000.0, 5000000.0, 0.0)),
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{
-        "tree": Crown(
-            shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-            leaf: Square(side_m: 0.1), leaf_material: "leaf",
-        ),
-        "discs": Discs(file: "discs.csv", material: "leaf"),
-    }},
-    terrain: Plane(size_m: (9.0, 8.0), corner_m: (-1.0, 2.0), material: "soil"),
-    instances: [
-        List(of: "tree", at_m: [
+    let discs = "0.5,0,0,1,0,0,1\n0.4,0,0,2,0.6,0,0.8\n";
+    let at = r#"List(of: "tree", at_m: [
             (0.0, 3.0, 0.0), (2.0, 3.0, 0.0), (4.0, 3.0, 0.0), (6.0, 3.0, 0.0),
             (0.0, 5.0, 0.0), (2.0, 5.0, 0.0), (4.0, 5.0, 0.0), (6.0, 5.0, 0.0),
             (0.0, 7.0, 0.0), (2.0, 7.0, 0.0), (4.0, 7.0, 0.0), (6.0, 7.0, 0.0),
             (0.0, 9.0, 0.0), (2.0, 9.0, 0.0), (4.0, 9.0, 0.0), (6.0, 9.5, 0.0),
-        ]),
-        List(of: "discs", at_m: [(5.0, 8.0, 0.5)]),
-    ],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.5, 0.9])),
-    sky: Fraction([0.3, 0.1]),
-    boundary: {boundary},
-    sensors: {{
-        "photons": Photons({plane} per_m2: 2000.0, measure: [Absorbed(per: Triangle), Fapar]),
-    }},
-)"#
-    );
-    measure(&text, dir.path(), options)
+        ]), List(of: "discs", at_m: [(5.0, 8.0, 0.5)])"#;
+    SceneText::trees_in_daylight(boundary)
+        .with("frame", "origin_m: (600000.0, 5000000.0, 0.0)")
+        .with("bands", r#"(name: "red", center_nm: 660.0), (name: "near infrared", center_nm: 865.0)"#)
+        .with_discs("discs", "leaf", discs)
+        .with("terrain", r#"Plane(size_m: (9.0, 8.0), corner_m: (-1.0, 2.0), material: "soil")"#)
+        .with("instances", at)
+        .with("sun", "zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.5, 0.9])")
+        .with("sensors", format!(r#""photons": Photons({plane} per_m2: 2000.0, measure: [Absorbed(per: Triangle), Fapar])"#))
+        .measure_with(options)
 }
 
 fn faces(report: &Report) -> &Faces {
@@ -129,16 +107,15 @@ fn absorption_does_not_depend_on_threads() {
 /// absorbs 0.63 of the irradiance, within four standard errors of less than 1 %.
 #[test]
 fn both_triangles_of_a_plain_absorb_what_they_do_not_reflect() {
-    let text = r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: { "soil": Lambertian(reflectance: Constant(0.37)) },
-    terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
-    sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(2.0)),
-    sky: Fraction([0.25]),
-    sensors: { "photons": Photons(per_m2: 500.0, measure: [Absorbed(per: Triangle)]) },
-)"#;
-    let report = measure(text, Path::new("."), &Options::default());
+    let report =
+        SceneText::bare(0.37, "size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7")
+            .with("sun", "zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(2.0)")
+            .with("sky", "Fraction([0.25])")
+            .with(
+                "sensors",
+                r#""photons": Photons(per_m2: 500.0, measure: [Absorbed(per: Triangle)])"#,
+            )
+            .measure();
     let truth = 0.63 * 2.0 * 40_f64.to_radians().cos();
     let faces = faces(&report);
     assert_eq!(faces.values.len(), 2);
@@ -277,27 +254,14 @@ fn a_ply_holds_every_face_with_its_values_and_colour() {
 #[test]
 fn more_than_memory_holds_is_refused_with_numbers() {
     let run = |per: &str| -> Result<Vec<Product>, String> {
-        let text = format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{ "leaf": Lambertian(reflectance: Constant(0.2)) }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (100.0, 110.0), material: "leaf"),
-    instances: [Scatter(of: {{ "tree": 1.0 }}, rule: Grid(spacing_m: (1.0, 1.0)))],
-    sun: (zenith_deg: 50.0, irradiance: Constant(1.0)),
-    sensors: {{ "photons": Photons(per_m2: 0.01, measure: [Absorbed(per: {per})]) }},
-)"#
-        );
-        let reading = sunfleck::document::read_text(
-            "test.ron",
-            &text,
-            &sunfleck::document::ReadOptions::default(),
-        )
-        .map_err(|error| error.to_string())?;
+        let measure = format!("measure: [Absorbed(per: {per})]");
+        let reading = SceneText::two_trees()
+            .with("materials", r#""leaf": Lambertian(reflectance: Constant(0.2))"#)
+            .with("terrain", r#"Plane(size_m: (100.0, 110.0), material: "leaf")"#)
+            .with("instances", r#"Scatter(of: { "tree": 1.0 }, rule: Grid(spacing_m: (1.0, 1.0)))"#)
+            .with("sun", "zenith_deg: 50.0, irradiance: Constant(1.0)")
+            .with("sensors", format!(r#""photons": Photons(per_m2: 0.01, {measure})"#))
+            .read();
         match run(&reading.scene, Path::new("."), &Options::default(), &Unwatched) {
             Ok(report) => Ok(report.sensors[0].products.clone()),
             Err(failure) => Err(failure.with_source(&reading.source).to_string()),
@@ -307,7 +271,7 @@ fn more_than_memory_holds_is_refused_with_numbers() {
     let what = "absorption by 26400002 triangles in 2 bands takes 3.1 GiB; at most 2 are allowed";
     assert!(error.contains(what), "{error}");
     assert!(error.contains("measure `Absorbed(per: Instance)`"), "{error}");
-    assert!(error.contains("test.ron:12"), "{error}");
+    assert!(error.contains("test.ron:9"), "{error}");
     let products = run("Instance").expect("a report");
     assert_eq!(products[0].values.len(), 2 * 11_001);
 }

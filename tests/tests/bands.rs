@@ -1,9 +1,6 @@
 //! Many bands on one path: each is what it would be alone.
 
-use std::path::Path;
-
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, SheetOptics, albedo_of_sheets, measure, product, sheets};
+use sunfleck_tests::{Estimate, SceneText, SheetOptics, albedo_of_sheets, product};
 
 const BANDS: usize = 301;
 
@@ -16,14 +13,13 @@ fn each_of_many_bands_is_what_sheets_add_up_to() {
     let t = |band: usize| f64::min([0.0, 0.05, 0.9, 0.45][(band / 4) % 4], 0.98 - r(band));
     let s = |band: usize| (80 * band / BANDS) as f64 / 100.0;
     let optics: Vec<SheetOptics> = (0..BANDS).map(|band| (r(band), t(band), s(band))).collect();
-    let sensors = r#"sensors: {
+    let sensors = r#"
         "albedo": Photons(per_m2: 4000.0, measure: [Albedo]),
         "paths": Directions(system: Backward, views: List([(20.0, 90.0)]), until: Samples(200000)),
         "packets": Directions(system: Forward, views: List([(20.0, 90.0)]), until: Samples(200000)),
         "image": Orthographic(size_px: (20, 20), cover: WholeScene, samples_per_px: 300, measure: [Brf]),
-    },"#;
-    let scene = sheets(&optics, &[1.0, 2.0], sensors);
-    let report = measure(&scene, Path::new("."), &Options::default());
+    "#;
+    let report = SceneText::sheets(&optics, &[1.0, 2.0]).with("sensors", sensors).measure();
     for (sensor, name) in
         [("albedo", "albedo"), ("paths", "brf"), ("packets", "brf"), ("image", "brf")]
     {

@@ -9,48 +9,33 @@
 //! deviation 1.034 and 0.53 % beyond 3; of 16, 1.074 and 0.90 %.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use sunfleck::products::{Product, Report};
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// A tile of 1 m² with two small crowns over soil, without end, in red, near infrared and 10.5 µm.
 fn grove(sensors: &str) -> Report {
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [
-        (name: "red", center_nm: 660.0),
-        (name: "nir", center_nm: 865.0),
-        (name: "tir", center_nm: 10500.0),
-    ],
-    materials: {{
+    SceneText::bare(0.0, "size_m: (1.0, 1.0)")
+        .with("bands", r#"(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0), (name: "tir", center_nm: 10500.0)"#)
+        .with("materials", r#"
         "soil": Lambertian(
             reflectance: Bands([0.127, 0.2, 0.06]), temperature: SunlitShaded(sunlit_k: 315.0, shaded_k: 300.0),
         ),
         "leaf": Leaf(
             reflectance: Bands([0.05, 0.5, 0.02]), transmittance: Bands([0.03, 0.45, 0.0]),
             temperature: SunlitShaded(sunlit_k: 300.0, shaded_k: 297.0),
-        ),
-    }},
-    meshes: {{ "crown": Crown(
+        )"#)
+        .with("meshes", r#""crown": Crown(
         shape: Ellipsoid(diameter_m: 0.5, height_m: 0.8), base_m: 0.1, leaf_area_m2: 0.8,
         leaf: Square(side_m: 0.06), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (1.0, 1.0), material: "soil"),
-    instances: [List(of: "crown", at_m: [(0.3, 0.3, 0.0), (0.8, 0.7, 0.0)])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 150.0, irradiance: Constant(1.0)),
-    sky: Fraction([0.2, 0.1, 0.0]),
-    thermal_sky: BlackBody(240.0),
-    boundary: Periodic,
-    sensors: {{ {sensors} }},
-)"#
-        ),
-        Path::new("."),
-        &Options::default(),
-    )
+    )"#)
+        .with("instances", r#"List(of: "crown", at_m: [(0.3, 0.3, 0.0), (0.8, 0.7, 0.0)])"#)
+        .with("sun", "zenith_deg: 40.0, azimuth_deg: 150.0, irradiance: Constant(1.0)")
+        .with("sky", "Fraction([0.2, 0.1, 0.0])")
+        .with("thermal_sky", "BlackBody(240.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", sensors)
+        .measure()
 }
 
 /// A sensor that measures the truth, and behind it so many of each other kind, named by numbers; their

@@ -1,11 +1,10 @@
 //! Where a known thing lands in the image of each sensor, and what lies beside it.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, SQRT_2};
-use std::path::Path;
 
 use sunfleck::products::{Image, Product, Report};
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::scene_text::{BAND, BANDS};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// Three squares of 10 cm that cut each other at right angles: seen from everywhere.
 const STAR: &str = "v -.05 -.05 0\nv .05 -.05 0\nv .05 .05 0\nv -.05 .05 0\n\
@@ -15,28 +14,16 @@ g star\nf 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\n";
 
 /// A bright star at each of `stars` over black ground of 40 m by 40 m at `height`, in the sun.
 fn stars(stars: &str, height: f64, boundary: &str, sensors: &str) -> Report {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(dir.path().join("star.obj"), STAR).expect("a file");
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "black": Lambertian(reflectance: Constant(0.0)),
-        "bright": Leaf(reflectance: Constant(0.5), transmittance: Constant(0.5)),
-    }},
-    meshes: {{ "star": Obj(file: "star.obj", up: Z, unit_m: 1.0, material: Some("bright")) }},
-    terrain: Plane(size_m: (40.0, 40.0), height_m: {height:?}, material: "black"),
-    instances: [List(of: "star", at_m: [{stars}])],
-    sun: (zenith_deg: 35.0, azimuth_deg: 115.0, irradiance: Constant(1.0)),
-    boundary: {boundary},
-    sensors: {{ {sensors} }},
-)"#
-        ),
-        dir.path(),
-        &Options::default(),
-    )
+    SceneText::default()
+        .with("bands", BAND)
+        .with("materials", r#""black": Lambertian(reflectance: Constant(0.0)), "bright": Leaf(reflectance: Constant(0.5), transmittance: Constant(0.5))"#)
+        .with_obj("star", "bright", STAR)
+        .with("terrain", format!(r#"Plane(size_m: (40.0, 40.0), height_m: {height:?}, material: "black")"#))
+        .with("instances", format!(r#"List(of: "star", at_m: [{stars}])"#))
+        .with("sun", "zenith_deg: 35.0, azimuth_deg: 115.0, irradiance: Constant(1.0)")
+        .with("boundary", boundary)
+        .with("sensors", sensors)
+        .measure()
 }
 
 fn image<'a>(report: &'a Report, sensor: &str) -> &'a Image {
@@ -232,25 +219,15 @@ fn a_camera_stands_in_any_tile_of_a_periodic_scene() {
 
 /// Black ground under an isotropic sky, and discs between that a fisheye at (20, 20, 1) looks at.
 fn under_discs(discs: &str, sensors: &str) -> Report {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(dir.path().join("discs.csv"), format!("radius,x,y,z,nx,ny,nz\n{discs}\n"))
-        .expect("a file");
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{ "black": Lambertian(reflectance: Constant(0.0)) }},
-    meshes: {{ "discs": Discs(file: "discs.csv", material: "black") }},
-    terrain: Plane(size_m: (40.0, 40.0), material: "black"),
-    instances: [List(of: "discs", at_m: [(20.0, 20.0, 1.0)])],
-    sky: Isotropic(irradiance: Bands([2.0, 3.0])),
-    sensors: {{ {sensors} }},
-)"#
-        ),
-        dir.path(),
-        &Options::default(),
-    )
+    SceneText::default()
+        .with("bands", BANDS)
+        .with("materials", r#""black": Lambertian(reflectance: Constant(0.0))"#)
+        .with_discs("discs", "black", discs)
+        .with("terrain", r#"Plane(size_m: (40.0, 40.0), material: "black")"#)
+        .with("instances", r#"List(of: "discs", at_m: [(20.0, 20.0, 1.0)])"#)
+        .with("sky", "Isotropic(irradiance: Bands([2.0, 3.0]))")
+        .with("sensors", sensors)
+        .measure()
 }
 
 const UP: &str = "position_m: (20.0, 20.0, 1.0), samples_per_px: 32";
@@ -317,21 +294,11 @@ fn a_fisheye_image_has_the_view_factor_of_a_sphere() {
 
 /// Grey ground under the sun.
 fn plane(sensors: &str) -> Report {
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.5)) }},
-    terrain: Plane(size_m: (20.0, 20.0), corner_m: (5.0, -3.0), height_m: 2.0, material: "soil"),
-    sun: (zenith_deg: 60.0, irradiance: Constant(1.0)),
-    sky: Fraction([0.4]),
-    sensors: {{ {sensors} }},
-)"#
-        ),
-        Path::new("."),
-        &Options::default(),
-    )
+    SceneText::bare(0.5, "size_m: (20.0, 20.0), corner_m: (5.0, -3.0), height_m: 2.0")
+        .with("sun", "zenith_deg: 60.0, irradiance: Constant(1.0)")
+        .with("sky", "Fraction([0.4])")
+        .with("sensors", sensors)
+        .measure()
 }
 
 /// *Scene*: a plane that ends, seen by cameras that look over its edge. *Expected*: wherever there

@@ -1,15 +1,8 @@
 //! Scenes whose answer is known exactly.
 
-use std::path::Path;
-
-use sunfleck::products::Report;
-use sunfleck::run::Options;
 use sunfleck::transport::EnergyCounter;
-use sunfleck_tests::{Estimate, albedo_of_sheets, measure, product, sheets, two_trees};
-
-fn run(text: &str) -> Report {
-    measure(text, Path::new("."), &Options::default())
-}
+use sunfleck_tests::scene_text::BANDS;
+use sunfleck_tests::{Estimate, SceneText, albedo_of_sheets, product};
 
 /// *Scene*: a Lambertian plane, isolated or periodic, under sun and sky.
 /// *Expected*: BRF, albedo and HDRF equal the reflectance, exactly in expectation; backward paths
@@ -18,25 +11,20 @@ fn run(text: &str) -> Report {
 fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
     for boundary in ["Isolated", "Periodic"] {
         for sky in ["None", "Fraction([0.25, 0.5])"] {
-            let report = run(&format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{ "soil": Lambertian(reflectance: Bands([0.127, 0.7])) }},
-    terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
-    sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)),
-    sky: {sky},
-    boundary: {boundary},
-    sensors: {{
+            let report = SceneText::bare(0.0, "size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7")
+                .with("bands", BANDS)
+                .with("materials", r#""soil": Lambertian(reflectance: Bands([0.127, 0.7]))"#)
+                .with("sun", "zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)")
+                .with("sky", sky)
+                .with("boundary", boundary)
+                .with("sensors", r#"
         "back": Directions(system: Backward, views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048)),
         "forth": Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: Forward),
         "image": Orthographic(size_px: (8, 8), extent_m: (5.0, 5.0), samples_per_px: 16, measure: [Radiance, Brf]),
         "once": Directions(views: CrossPlane(max_deg: 80.0, step_deg: 20.0), until: Samples(2048), system: FirstOrder, measure: [Orders]),
         "photons": Photons(per_m2: 500.0, measure: [Albedo, BrfCells(30), Fapar(layer_m: 1.0), Fluxes(pixel_m: 1.0)]),
-        "analog": Photons(per_m2: 5000.0, measure: [Albedo, BrfCells(30), Fluxes(pixel_m: 1.0)], system: Analog),
-    }},
-)"#
-            ));
+        "analog": Photons(per_m2: 5000.0, measure: [Albedo, BrfCells(30), Fluxes(pixel_m: 1.0)], system: Analog)"#)
+                .measure();
             let factor = if sky == "None" { "brf" } else { "hdrf" };
             let rho = [0.127_f64, 0.7];
             let sun = 40_f64.to_radians().cos();
@@ -92,27 +80,21 @@ fn a_lambertian_plane_has_a_brf_equal_to_its_reflectance_in_every_direction() {
 }
 
 /// A periodic box of leaves with ρ + τ = 1 over soil of reflectance 1.
-fn furnace(leaf: &str, light: &str, roulette: &str, sensor: &str) -> Report {
-    run(&format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant(1.0)),
-        "leaf": Leaf({leaf}),
-    }},
-    meshes: {{ "cloud": Crown(
+fn furnace(leaf: &str, roulette: &str, sensor: &str) -> SceneText {
+    SceneText::bare(1.0, "size_m: (4.0, 4.0)")
+        .with("bands", BANDS)
+        .with_more("materials", format!(r#""leaf": Leaf({leaf})"#))
+        .with(
+            "meshes",
+            r#""cloud": Crown(
         shape: Box(size_m: (4.0, 4.0, 1.0)), base_m: 0.1, leaf_area_m2: 32.0,
         leaf: Disc(radius_m: 0.05), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    instances: [List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])],
-    {light}
-    boundary: Periodic,
-    transport: (roulette: (after_order: 5, kill: {roulette})),
-    sensors: {{ "sensor": {sensor} }},
-)"#
-    ))
+    )"#,
+        )
+        .with("instances", r#"List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])"#)
+        .with("boundary", "Periodic")
+        .with("transport", format!("roulette: (after_order: 5, kill: {roulette})"))
+        .with("sensors", format!(r#""sensor": {sensor}"#))
 }
 
 /// *Scene*: the furnace under the sun. *Expected*: albedo 1. With bands alike and no constant
@@ -120,7 +102,7 @@ fn furnace(leaf: &str, light: &str, roulette: &str, sensor: &str) -> Report {
 /// differ and the roulette of the manual bring noise, and no bias.
 #[test]
 fn a_white_furnace_has_albedo_1() {
-    let sun = "sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),";
+    let sun = "zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)";
     let alike = "reflectance: Constant(0.6), transmittance: Constant(0.4)";
     let unlike = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
     for (leaf, roulette, system, most) in [
@@ -130,7 +112,7 @@ fn a_white_furnace_has_albedo_1() {
         (unlike, "0.05", "Analog", 5e-3),
     ] {
         let photons = format!("Photons(per_m2: 10000.0, measure: [Albedo], system: {system})");
-        let report = furnace(leaf, sun, roulette, &photons);
+        let report = furnace(leaf, roulette, &photons).with("sun", sun).measure();
         for band in 0..2 {
             let albedo = Estimate::of(product(&report, "sensor", "albedo"), band);
             assert!(albedo.error < most, "{albedo:?}");
@@ -145,7 +127,8 @@ fn a_white_furnace_has_albedo_1() {
 fn a_white_furnace_under_an_isotropic_sky_looks_like_the_sky() {
     let leaf = "reflectance: Bands([0.5, 0.6]), transmittance: Bands([0.5, 0.4])";
     let views = "Directions(system: Backward, views: List([(0.0, 0.0), (30.0, 90.0), (70.0, 200.0)]), until: RelError(0.002))";
-    let report = furnace(leaf, "sky: Isotropic(irradiance: Constant(1.0)),", "0.05", views);
+    let report =
+        furnace(leaf, "0.05", views).with("sky", "Isotropic(irradiance: Constant(1.0))").measure();
     let views = product(&report, "sensor", "hdrf");
     for index in 0..views.values.len() {
         let one = Estimate::of(views, index);
@@ -158,12 +141,9 @@ fn a_white_furnace_under_an_isotropic_sky_looks_like_the_sky() {
 #[test]
 fn leaf_sheets_add_up_as_layers_do() {
     let optics = (0.45, 0.45, 0.2);
-    let sensors = r#"sensors: {
+    let report = SceneText::sheets(&[optics], &[1.0, 2.0]).with("sensors", r#"
         "photons": Photons(per_m2: 10000.0, measure: [Albedo]),
-        "views": Directions(system: Backward, views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001)),
-    },"#;
-    let scene = sheets(&[optics], &[1.0, 2.0], sensors);
-    let report = measure(&scene, Path::new("."), &Options::default());
+        "views": Directions(system: Backward, views: List([(20.0, 90.0), (60.0, 200.0)]), until: RelError(0.001))"#).measure();
     // Lambertian layers: what they send out is diffuse whatever came in.
     let both = albedo_of_sheets(optics, 2);
     let albedo = Estimate::of(product(&report, "photons", "albedo"), 0);
@@ -181,7 +161,7 @@ fn leaf_sheets_add_up_as_layers_do() {
 fn energy_closes_and_cells_sum_to_the_albedo() {
     for boundary in ["Periodic", "Isolated"] {
         let sensors = r#""photons": Photons(per_m2: 4000.0, measure: [Albedo, BrfCells(40), Fapar(layer_m: 0.7)])"#;
-        let report = run(&two_trees(boundary, sensors));
+        let report = SceneText::trees_in_daylight(boundary).with("sensors", sensors).measure();
         let energy = product(&report, "photons", "energy");
         let bands = 2;
         for band in 0..bands {

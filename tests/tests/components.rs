@@ -1,13 +1,11 @@
 //! What is seen first: sunlit and shaded ground and canopy, and gap fractions.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
-use sunfleck::document;
 use sunfleck::products::{Product, Report};
-use sunfleck::run::Options;
 use sunfleck::sampling::Key;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::scene_text::BAND;
+use sunfleck_tests::{Estimate, SceneText, product};
 
 const SHEET: &str = "g sheet\nv 0 -10 0\nv 2 -10 0\nv 2 10 0\nv 0 10 0\nf 1 2 3 4\n";
 const WALL: &str = "g wall\nv 2 -10 0\nv 2 10 0\nv 2 10 1\nv 2 -10 1\nf 1 2 3 4\n";
@@ -15,28 +13,15 @@ const WALL: &str = "g wall\nv 2 -10 0\nv 2 10 0\nv 2 10 1\nv 2 -10 1\nf 1 2 3 4\
 /// A periodic tile of 4 m with one thing that runs through it from south to north, under a sun in
 /// the east at 45°, which shines in no band.
 fn tile(object: &str, height: f64, view: &str) -> Report {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(dir.path().join("object.obj"), object).expect("a file");
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.3)) }},
-    meshes: {{ "object": Obj(file: "object.obj", up: Z, unit_m: 1.0, material: Some("soil")) }},
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    instances: [List(of: "object", at_m: [(0.0, 0.0, {height:?})])],
-    sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)),
-    boundary: Periodic,
-    sensors: {{
+    SceneText::bare(0.3, "size_m: (4.0, 4.0)")
+        .with_obj("object", "soil", object)
+        .with("instances", format!(r#"List(of: "object", at_m: [(0.0, 0.0, {height:?})])"#))
+        .with("sun", "zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", format!(r#"
         "views": Directions(system: Backward, views: List([{view}]), until: Samples(20000), measure: [FourComponents, GapFraction]),
-        "image": Orthographic(size_px: (4, 1), extent_m: (4.0, 4.0), samples_per_px: 64, measure: [FourComponents, GapFraction]),
-    }},
-)"#
-        ),
-        dir.path(),
-        &Options::default(),
-    )
+        "image": Orthographic(size_px: (4, 1), extent_m: (4.0, 4.0), samples_per_px: 64, measure: [FourComponents, GapFraction])"#))
+        .measure()
 }
 
 fn assert_shares(product: &Product, expected: &[f64]) {
@@ -85,7 +70,7 @@ fn gaps_between_random_discs_are_those_of_the_finite_formula() {
     let mut gaps = vec![Vec::new(); zeniths.len()];
     for seed in 0..16 {
         let key = Key::new(seed).path("discs");
-        let mut table = "radius,x,y,z,nx,ny,nz\n".to_owned();
+        let mut table = String::new();
         for disc in 0..discs {
             let u = |draw: u64| key.uniform(8 * disc + draw);
             let (x, y, z) = (side * u(0), side * u(1), 0.5 + 2.0 * u(2));
@@ -95,27 +80,18 @@ fn gaps_between_random_discs_are_those_of_the_finite_formula() {
             let (nx, ny) = (across * cos, across * sin);
             writeln!(table, "{radius},{x},{y},{z},{nx},{ny},{up}").expect("a string");
         }
-        let dir = tempfile::tempdir().expect("a temporary folder");
-        std::fs::write(dir.path().join("discs.csv"), table).expect("a file");
         let views: Vec<String> =
             zeniths.iter().map(|zenith| format!("({zenith:?}, 30.0)")).collect();
-        let report = measure(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{ "leaf": Lambertian(reflectance: Constant(0.3)) }},
-    meshes: {{ "discs": Discs(file: "discs.csv", material: "leaf") }},
-    terrain: Plane(size_m: ({side:?}, {side:?}), material: "leaf"),
-    instances: [List(of: "discs", at_m: [(0.0, 0.0, 0.0)])],
-    boundary: Periodic,
-    sensors: {{ "gaps": Directions(system: Backward, views: List([{}]), until: Samples(16384), measure: [GapFraction]) }},
-)"#,
-                views.join(", ")
-            ),
-            dir.path(),
-            &Options::default(),
-        );
+        let views = format!("views: List([{}])", views.join(", "));
+        let report = SceneText::default()
+            .with("bands", BAND)
+            .with("materials", r#""leaf": Lambertian(reflectance: Constant(0.3))"#)
+            .with_discs("discs", "leaf", &table)
+            .with("terrain", format!(r#"Plane(size_m: ({side:?}, {side:?}), material: "leaf")"#))
+            .with("instances", r#"List(of: "discs", at_m: [(0.0, 0.0, 0.0)])"#)
+            .with("boundary", "Periodic")
+            .with("sensors", format!(r#""gaps": Directions(system: Backward, {views}, until: Samples(16384), measure: [GapFraction])"#))
+            .measure();
         let found = product(&report, "gaps", "gap_fraction");
         for (gaps, &gap) in gaps.iter_mut().zip(&found.values) {
             gaps.push(gap);
@@ -144,20 +120,13 @@ fn gaps_between_random_discs_are_those_of_the_finite_formula() {
 /// Gaps need no light at all; the four components need a sun.
 #[test]
 fn gaps_are_measured_in_the_dark() {
-    let text = r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: { "soil": Lambertian(reflectance: Constant(0.3)) },
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sensors: { "gaps": Directions(system: Backward, views: List([(30.0, 0.0)]), measure: [MEASURES]) },
-)"#;
-    let dark = text.replace("MEASURES", "GapFraction");
-    let report = measure(&dark, Path::new("."), &Options::default());
+    let scene = |measure: &str| {
+        SceneText::bare(0.3, "size_m: (4.0, 4.0)").with("sensors", format!(r#""gaps": Directions(system: Backward, views: List([(30.0, 0.0)]), measure: [{measure}])"#))
+    };
+    let report = scene("GapFraction").measure();
     assert!((product(&report, "gaps", "gap_fraction").values[0] - 1.0).abs() < 1e-12);
-    let parts = text.replace("MEASURES", "FourComponents");
-    let reading =
-        document::read_text("a.ron", &parts, &document::ReadOptions::default()).expect("text");
-    assert!(reading.render().contains("there is no sun"), "{}", reading.render());
+    let problems = scene("FourComponents").read().render();
+    assert!(problems.contains("there is no sun"), "{problems}");
 }
 
 /// *Scene*: a sheet over one half of all that a fisheye sees, to the horizon. *Expected*: a gap fraction
@@ -166,33 +135,27 @@ fn gaps_are_measured_in_the_dark() {
 #[test]
 fn a_fisheye_tells_the_leaf_area_index_of_its_gaps() {
     let sheet = "g sheet\nv 0 -900 0\nv 900 -900 0\nv 900 900 0\nv 0 900 0\nf 1 2 3 4\n";
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(dir.path().join("sheet.obj"), sheet).expect("a file");
     let camera = |size: u32, look: &str, projection: &str| {
         format!(
             "Fisheye(size_px: ({size}, {size}), position_m: (0.0, 0.0, 1.0), look: {look}, \
              projection: {projection}, samples_per_px: 32, measure: [GapFraction])"
         )
     };
-    let report = measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.3)) }},
-    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("soil")) }},
-    terrain: Plane(size_m: (1800.0, 1800.0), corner_m: (-900.0, -900.0), material: "soil"),
-    instances: [List(of: "sheet", at_m: [(0.0, 0.0, 0.9), (0.0, 0.0, 1.1)])],
-    sensors: {{ "up": {}, "wide": {}, "down": {}, "tilted": {} }},
-)"#,
-            camera(64, "Up", "Equisolid"),
-            camera(48, "Up", "Orthographic"),
-            camera(64, "Down", "Equidistant"),
-            camera(8, "Towards(zenith_deg: 60.0, azimuth_deg: 0.0)", "Equidistant"),
-        ),
-        dir.path(),
-        &Options::default(),
-    );
+    let cameras = [
+        camera(64, "Up", "Equisolid"),
+        camera(48, "Up", "Orthographic"),
+        camera(64, "Down", "Equidistant"),
+        camera(8, "Towards(zenith_deg: 60.0, azimuth_deg: 0.0)", "Equidistant"),
+    ];
+    let [up, wide, down, tilted] = cameras;
+    let report = SceneText::bare(0.3, "size_m: (1800.0, 1800.0), corner_m: (-900.0, -900.0)")
+        .with_obj("sheet", "soil", sheet)
+        .with("instances", r#"List(of: "sheet", at_m: [(0.0, 0.0, 0.9), (0.0, 0.0, 1.1)])"#)
+        .with(
+            "sensors",
+            format!(r#""up": {up}, "wide": {wide}, "down": {down}, "tilted": {tilted}"#),
+        )
+        .measure();
     let half = 2_f64.ln();
     let rings = [7.0, 23.0, 38.0, 53.0, 68.0_f64].map(|ring| ring.to_radians().cos());
     let weights = [0.034, 0.104, 0.160, 0.218, 0.484];

@@ -1,10 +1,7 @@
 //! Results depend on the scene and its seed and on nothing else.
 
-use std::path::Path;
-
 use sunfleck::products::{Report, SensorReport};
-use sunfleck::run::Options;
-use sunfleck_tests::{measure, two_trees};
+use sunfleck_tests::SceneText;
 
 /// Every kind of sensor.
 const SENSORS: &str = r#"
@@ -16,8 +13,8 @@ const SENSORS: &str = r#"
         "once": Orthographic(size_px: (40, 33), extent_m: (5.0, 5.0), samples_per_px: 17, measure: [Orders], system: FirstOrder),
     "#;
 
-fn scene() -> String {
-    two_trees("Periodic", SENSORS)
+fn scene() -> SceneText {
+    SceneText::trees_in_daylight("Periodic").with("sensors", SENSORS)
 }
 
 /// All numbers of a report, as bits.
@@ -29,7 +26,7 @@ fn bits(report: &Report) -> Vec<u64> {
 fn any_number_of_threads_gives_the_same_bits() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        bits(&pool.install(|| measure(&scene(), Path::new("."), &Options::default())))
+        bits(&pool.install(|| scene().measure()))
     };
     let one = with(1);
     assert!(one.len() > 1000);
@@ -39,28 +36,25 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn another_seed_is_another_estimate() {
-    let other = scene().replace("sensors: {", "transport: (seed: 2), sensors: {");
-    let one = bits(&measure(&scene(), Path::new("."), &Options::default()));
-    assert!(one != bits(&measure(&other, Path::new("."), &Options::default())));
+    let other = scene().with("transport", "seed: 2");
+    assert!(bits(&scene().measure()) != bits(&other.measure()));
 }
 
 /// *Scene*: the same with the anchor at a UTM position. *Expected*: the same bits.
 #[test]
 fn the_anchor_changes_no_result() {
-    let anchored =
-        scene().replace("bands: [", "frame: (origin_m: (500000.0, 5500000.0, 300.0)), bands: [");
-    let one = bits(&measure(&scene(), Path::new("."), &Options::default()));
-    assert!(one == bits(&measure(&anchored, Path::new("."), &Options::default())));
+    let anchored = scene().with("frame", "origin_m: (500000.0, 5500000.0, 300.0)");
+    assert!(bits(&scene().measure()) == bits(&anchored.measure()));
 }
 
 /// *Scene*: the same with one more sensor and one more definition before all others.
 /// *Expected*: the other sensors give the same bits, because streams are keyed by name.
 #[test]
 fn another_sensor_changes_no_result() {
-    let more = scene()
-        .replace("sensors: {", "sensors: { \"first\": Photons(per_m2: 10.0, measure: [Albedo]),");
-    let one = bits(&measure(&scene(), Path::new("."), &Options::default()));
-    let report = measure(&more, Path::new("."), &Options::default());
+    let first = r#""first": Photons(per_m2: 10.0, measure: [Albedo])"#;
+    let more = scene().with("sensors", first).with_more("sensors", SENSORS);
+    let one = bits(&scene().measure());
+    let report = more.measure();
     let others = Report { sensors: report.sensors[1..].to_vec(), ..report };
     assert!(one == bits(&others));
 }

@@ -4,14 +4,13 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use sunfleck::products::Report;
-use sunfleck::run::Options;
 use sunfleck::spectral::planck;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// Wavelengths of the bands, nm.
 const BANDS: [f64; 3] = [10_000.0, 10_500.0, 11_000.0];
 
-/// A scene of three bands on a black, cold terrain, above it the meshes written as OBJ or disc text.
+/// A scene of three bands on a black, cold terrain, above it the meshes written as OBJ text or as lines of discs.
 fn run(
     terrain: &str,
     materials: &str,
@@ -19,38 +18,21 @@ fn run(
     instances: &str,
     sensors: &str,
 ) -> Report {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    let mut definitions = String::new();
-    for (name, material, text) in meshes {
-        let (extension, kind) = if text.starts_with("radius") {
-            ("csv", format!("Discs(file: \"{name}.csv\", material: \"{material}\")"))
-        } else {
-            let wears = format!("material: Some(\"{material}\")");
-            ("obj", format!("Obj(file: \"{name}.obj\", up: Z, unit_m: 1.0, {wears})"))
-        };
-        std::fs::write(dir.path().join(format!("{name}.{extension}")), text).expect("a file");
-        writeln!(definitions, "\"{name}\": {kind},").expect("a string");
-    }
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: {:?}), (name: "b", center_nm: {:?}), (name: "c", center_nm: {:?})],
-    materials: {{
+    let [a, b, c] = BANDS;
+    let mut scene = SceneText::default()
+        .with("bands", format!(r#"(name: "a", center_nm: {a:?}), (name: "b", center_nm: {b:?}), (name: "c", center_nm: {c:?})"#))
+        .with("materials", format!(r#"
         "cold": Lambertian(reflectance: Constant(0.0), temperature: Uniform(0.0)),
         "hot": Lambertian(reflectance: Constant(0.0), temperature: Uniform(300.0)),
-        {materials}
-    }},
-    meshes: {{ {definitions} }},
-    terrain: Plane({terrain}, material: "cold"),
-    instances: [{instances}],
-    sensors: {{ {sensors} }},
-)"#,
-            BANDS[0], BANDS[1], BANDS[2],
-        ),
-        dir.path(),
-        &Options::default(),
-    )
+        {materials}"#))
+        .with("terrain", format!(r#"Plane({terrain}, material: "cold")"#))
+        .with("instances", instances)
+        .with("sensors", sensors);
+    for (name, material, text) in meshes {
+        let add = if text.starts_with('g') { SceneText::with_obj } else { SceneText::with_discs };
+        scene = add(scene, name, material, text);
+    }
+    scene.measure()
 }
 
 const UNIT: &str = "g a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
@@ -64,8 +46,8 @@ const HALF: &str = "g a\nv 0 0 0\nv 1 0 0\nv 1 0.5 0\nv 0 0.5 0\nf 1 2 3 4\n";
 /// Source of the factors: J. R. Howell, "A catalog of radiation configuration factors", C-11, C-14, C-41.
 #[test]
 fn plates_and_discs_exchange_by_their_view_factors() {
-    let small = "radius,x,y,z,nx,ny,nz\n0.2,0.5,0.5,0,0,0,1\n";
-    let large = "radius,x,y,z,nx,ny,nz\n0.5,0.5,0.5,0,0,0,1\n";
+    let small = "0.2,0.5,0.5,0,0,0,1\n";
+    let large = "0.5,0.5,0.5,0,0,0,1\n";
     let square = "size_m: (1.0, 1.0)";
     for (name, terrain, one, two, height, share, factor) in [
         ("parallel squares", square, UNIT, UNIT, 1.0, 1.0, 0.199_824_9),

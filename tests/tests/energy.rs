@@ -1,10 +1,8 @@
 //! Every run of photon packets accounts for all of its energy, and says so.
 
-use std::path::Path;
-
-use sunfleck::run::Options;
 use sunfleck::transport::EnergyCounter;
-use sunfleck_tests::{measure, product};
+use sunfleck_tests::scene_text::LEAF;
+use sunfleck_tests::{SceneText, product};
 
 /// *Scene*: trees under sun, sky and both, periodic and isolated, with the roulette of the manual, a
 /// cruel one and a limit of orders; photons with and without a virtual plane, directions and images
@@ -13,12 +11,22 @@ use sunfleck_tests::{measure, product};
 /// are traced.
 #[test]
 fn incident_energy_is_reflected_lost_absorbed_or_taken_by_roulette() {
-    let sun =
-        "sun: (zenith_deg: 60.0, azimuth_deg: 30.0, disc_deg: 0.5, irradiance: Constant(1.0)),";
+    let trees = SceneText::two_trees()
+        .with("materials", format!(r#""soil": Lambertian(reflectance: Bands([0.1, 0.9])), {LEAF}"#))
+        .with("terrain", r#"Plane(size_m: (5.0, 4.0), material: "soil")"#)
+        .with("instances", r#"List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 3.9, 0.0)])"#)
+        .with("sensors", r#"
+        "all": Photons(per_m2: 300.0),
+        "plane": Photons(per_m2: 300.0, virtual_plane: (center_m: (2.0, 2.0), size_m: (1.0, 2.0), height_m: 2.0)),
+        "whole": Photons(per_m2: 300.0, system: Analog),
+        "forth": Directions(views: List([(20.0, 0.0)]), until: Samples(3000), system: Forward),
+        "film": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 500, system: Forward),
+        "back": Directions(system: Backward, views: List([(20.0, 0.0)]), until: Samples(64))"#);
+    let sun = "zenith_deg: 60.0, azimuth_deg: 30.0, disc_deg: 0.5, irradiance: Constant(1.0)";
     let lights = [
-        sun.to_owned(),
-        format!("{sun} sky: Fraction([0.5, 0.2]),"),
-        "sky: Isotropic(irradiance: Bands([1.0, 0.3])),".to_owned(),
+        trees.clone().with("sun", sun),
+        trees.clone().with("sun", sun).with("sky", "Fraction([0.5, 0.2])"),
+        trees.with("sky", "Isotropic(irradiance: Bands([1.0, 0.3]))"),
     ];
     let rules = [
         "roulette: (after_order: 5, kill: 0.05)",
@@ -26,42 +34,13 @@ fn incident_energy_is_reflected_lost_absorbed_or_taken_by_roulette() {
         "max_order: 2",
     ];
     for boundary in ["Periodic", "Isolated"] {
-        for light in &lights {
+        for (light, scene) in lights.iter().enumerate() {
             for rules in rules {
-                let report = measure(
-                    &format!(
-                        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.1, 0.9])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 4.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 3.9, 0.0)])],
-    {light}
-    boundary: {boundary},
-    transport: ({rules}),
-    sensors: {{
-        "all": Photons(per_m2: 300.0),
-        "plane": Photons(per_m2: 300.0, virtual_plane: (center_m: (2.0, 2.0), size_m: (1.0, 2.0), height_m: 2.0)),
-        "whole": Photons(per_m2: 300.0, system: Analog),
-        "forth": Directions(views: List([(20.0, 0.0)]), until: Samples(3000), system: Forward),
-        "film": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 500, system: Forward),
-        "back": Directions(system: Backward, views: List([(20.0, 0.0)]), until: Samples(64)),
-    }},
-)"#
-                    ),
-                    Path::new("."),
-                    &Options::default(),
-                );
+                let report =
+                    scene.clone().with("boundary", boundary).with("transport", rules).measure();
                 let is_expected = |warning: &String| warning.starts_with("boundary: ");
                 assert!(report.warnings.iter().all(is_expected), "{:?}", report.warnings);
-                let case = format!("{boundary}, {light}, {rules}");
+                let case = format!("{boundary}, light {light}, {rules}");
                 for sensor in &report.sensors {
                     match sensor.energy_imbalance {
                         None => assert_eq!(sensor.name, "back"),

@@ -1,35 +1,25 @@
 //! Scenes at the edges: borders, grazing light, thin gaps far from the origin.
 
-use std::path::Path;
-
 use sunfleck::products::Report;
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::scene_text::LEAF;
+use sunfleck_tests::{Estimate, SceneText, product};
 
 fn forest(x: f64, sun_zenith_deg: f64, view_zenith_deg: f64) -> Report {
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.127, 0.159])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "tree": Crown(
+    SceneText::two_trees()
+        .with("bands", r#"(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0)"#)
+        .with("materials", format!(r#""soil": Lambertian(reflectance: Bands([0.127, 0.159])), {LEAF}"#))
+        .with("meshes", r#""tree": Crown(
         shape: Ellipsoid(diameter_m: 3.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 15.0,
         leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 4.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [({x:?}, 3.9, 0.0), (3.2, 1.0, 0.0)])],
-    sun: (zenith_deg: {sun_zenith_deg:?}, azimuth_deg: 110.0, irradiance: Constant(1.0)),
-    boundary: Periodic,
-    sensors: {{
+    )"#)
+        .with("terrain", r#"Plane(size_m: (5.0, 4.0), material: "soil")"#)
+        .with("instances", format!(r#"List(of: "tree", at_m: [({x:?}, 3.9, 0.0), (3.2, 1.0, 0.0)])"#))
+        .with("sun", format!("zenith_deg: {sun_zenith_deg:?}, azimuth_deg: 110.0, irradiance: Constant(1.0)"))
+        .with("boundary", "Periodic")
+        .with("sensors", format!(r#"
         "views": Directions(system: Backward, views: List([(0.0, 0.0), ({view_zenith_deg:?}, 77.0)]), until: Samples(65536)),
-        "photons": Photons(per_m2: 3000.0, measure: [Albedo]),
-    }},
-)"#
-    );
-    measure(&text, Path::new("."), &Options::default())
+        "photons": Photons(per_m2: 3000.0, measure: [Albedo])"#))
+        .measure()
 }
 
 /// *Scene*: a crown that overhangs the border, at x and at x moved by one and by three periods.
@@ -76,36 +66,16 @@ fn light_and_views_at_89_9_degrees_end() {
 fn sheets_a_tenth_of_a_millimetre_apart_are_two_anywhere() {
     let (r, t) = (0.3, 0.4);
     let both = r + t * t * r / (1.0 - r * r);
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(
-        dir.path().join("sheet.obj"),
-        "g sheet\nv -10 -10 0\nv 10 -10 1\nv 10 10 1\nv -10 10 0\nf 1 2 3 4\n",
-    )
-    .expect("a file");
+    let sheet = "g sheet\nv -10 -10 0\nv 10 -10 1\nv 10 10 1\nv -10 10 0\nf 1 2 3 4\n";
     for (x, y) in [(0.0, 0.0), (1e3, -1e3), (1e5, 1e5), (5e5, 5.5e6)] {
-        let report = measure(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant(0.0)),
-        "leaf": Leaf(reflectance: Constant({r}), transmittance: Constant({t})),
-    }},
-    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
-    terrain: Plane(size_m: (1.0, 1.0), corner_m: ({x:?}, {y:?}), material: "soil"),
-    instances: [List(of: "sheet", at_m: [({0:?}, {1:?}, 2.0), ({0:?}, {1:?}, 2.0001)])],
-    sun: (zenith_deg: 20.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
-    sensors: {{
-        "view": Orthographic(size_px: (16, 16), extent_m: (1.0, 1.0), samples_per_px: 512),
-    }},
-)"#,
-                x + 0.5,
-                y + 0.5
-            ),
-            dir.path(),
-            &Options::default(),
-        );
+        let at = [2.0, 2.0001].map(|height| (x + 0.5, y + 0.5, height));
+        let report = SceneText::bare(0.0, &format!("size_m: (1.0, 1.0), corner_m: ({x:?}, {y:?})"))
+            .with_leaf(r, t)
+            .with_obj("sheet", "leaf", sheet)
+            .with("instances", format!(r#"List(of: "sheet", at_m: {at:?})"#))
+            .with("sun", "zenith_deg: 20.0, azimuth_deg: 10.0, irradiance: Constant(1.0)")
+            .with("sensors", r#""view": Orthographic(size_px: (16, 16), extent_m: (1.0, 1.0), samples_per_px: 512)"#)
+            .measure();
         // The sheets lean by atan(1/20) towards the west: cos i over cos θ of the sun scales what
         // they receive.
         let lean = (1.0_f64 / 20.0).atan();

@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::UVec2;
 use peak_alloc::PeakAlloc;
 use sunfleck::components::{Footprint, OrthographicOptics, System, View};
-use sunfleck::document;
 use sunfleck::products::{Forecast, Report};
 use sunfleck::run::{Failure, Options, Partition, Progress, run, stage_file};
 use sunfleck::sampling::Key;
@@ -15,36 +14,22 @@ use sunfleck::transport::{
     Camera, DirectionsFilm, DirectionsSettings, Film, ImageFilm, LightSettings, LightSource,
     OrthographicCamera, ReferencePlane,
 };
+use sunfleck_tests::SceneText;
+use sunfleck_tests::scene_text::many_bands;
 
 /// Counts what is held: so there is one test in this file.
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 /// A grove with one sensor.
-fn scene(bands: usize, sensor: &str) -> String {
-    let names: Vec<String> = (0..bands)
-        .map(|band| format!("(name: \"b{band}\", center_nm: {}.0)", 400 + band))
-        .collect();
-    format!(
-        r#"Scene(
-            format: 1,
-            bands: [{}],
-            materials: {{
-                "soil": Lambertian(reflectance: Constant(0.2)),
-                "leaf": Leaf(reflectance: Constant(0.4), transmittance: Constant(0.3)),
-            }},
-            meshes: {{ "tree": Crown(
-                shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-                leaf: Rhombus(length_m: 0.1, width_m: 0.07), leaf_material: "leaf",
-            ) }},
-            terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-            instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-            sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
-            boundary: Periodic,
-            sensors: {{ "it": {sensor} }},
-        )"#,
-        names.join(", ")
-    )
+fn scene(bands: usize, sensor: &str) -> SceneText {
+    SceneText::bare(0.2, "size_m: (5.0, 5.0)")
+        .with("bands", many_bands(bands))
+        .with_leaf(0.4, 0.3)
+        .with_two_trees("Rhombus(length_m: 0.1, width_m: 0.07)")
+        .with("sun", "zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", format!(r#""it": {sensor}"#))
 }
 
 /// Memory at the start of tracing, and the most of it afterwards.
@@ -66,9 +51,7 @@ impl Progress for Meter {
 
 /// Runs a scene; returns its report and the most memory that it took while it was traced.
 fn traced(bands: usize, sensor: &str, options: &Options) -> Result<(Report, u64), Failure> {
-    let text = scene(bands, sensor);
-    let reading = document::read_text("test.ron", &text, &document::ReadOptions::default());
-    let reading = reading.expect("a scene");
+    let reading = scene(bands, sensor).read();
     if !reading.is_sound() {
         return Err(Failure::Scene(reading.render()));
     }
@@ -144,7 +127,7 @@ fn films_hold_what_they_say() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
     let views = "Directions(views: PrincipalPlane, until: Samples(32))";
-    fs::write(&file, scene(3, views)).expect("a scene");
+    fs::write(&file, scene(3, views).to_string()).expect("a scene");
     let stage = &stage_file(&file, &Options::default()).expect("a stage").stage;
     let optics = OrthographicOptics {
         footprint: Footprint::WholeScene,

@@ -1,12 +1,9 @@
 //! Isolated scenes: one footprint for every sensor and transport system.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::path::Path;
 
 use sunfleck::products::Report;
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 const VIEWS: &str = "[(0.0, 0.0), (30.0, 90.0), (45.0, 200.0), (60.0, 150.0), (75.0, 330.0)]";
 const CONES: &str = "[(0.0, 0.0, 20.0), (30.0, 90.0, 20.0), (45.0, 200.0, 20.0), (60.0, 150.0, 20.0), (75.0, 330.0, 20.0)]";
@@ -42,29 +39,21 @@ const SITES: [Site; 3] = [
 ];
 
 /// Measures a site under a sun with directions backward and forward, and with packets and photons.
-fn measured(site: &Site, sun_deg: f64, folder: &Path) -> Report {
+fn measured(site: &Site, sun_deg: f64, slope: &str) -> Report {
     let Site { mesh, at_m, terrain, .. } = site;
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant(0.3)),
-        "leaf": Leaf(reflectance: Constant(0.4), transmittance: Constant(0.3)),
-    }},
-    meshes: {{ "m": {mesh} }},
-    terrain: {terrain},
-    instances: [List(of: "m", at_m: {at_m}, on_terrain: true)],
-    sun: (zenith_deg: {sun_deg:?}, azimuth_deg: 160.0),
-    sensors: {{
+    SceneText::bare(0.3, "")
+        .with_leaf(0.4, 0.3)
+        .with("meshes", format!(r#""m": {mesh}"#))
+        .with("terrain", *terrain)
+        .with_file("slope.asc", slope)
+        .with("instances", format!(r#"List(of: "m", at_m: {at_m}, on_terrain: true)"#))
+        .with("sun", format!("zenith_deg: {sun_deg:?}, azimuth_deg: 160.0"))
+        .with("sensors", format!(r#"
         "backward": Directions(system: Backward, views: List({VIEWS}), until: Samples(60000)),
         "forward": Directions(system: Forward, views: List({VIEWS}), until: Samples(120000)),
         "packets": Photons(per_m2: 300.0, measure: [BrfViews(List({VIEWS})), BrfCones({CONES}), Albedo]),
-        "photons": Photons(per_m2: 600.0, measure: [BrfCones({CONES}), Albedo], system: Analog),
-    }},
-)"#
-    );
-    measure(&text, folder, &Options::default())
+        "photons": Photons(per_m2: 600.0, measure: [BrfCones({CONES}), Albedo], system: Analog)"#))
+        .measure()
 }
 
 /// *Scene*: a pole, a pair of trees and a slope of 30° on 20 m x 20 m, with the sun at 30°, 75° and
@@ -72,17 +61,15 @@ fn measured(site: &Site, sun_deg: f64, folder: &Path) -> Report {
 /// errors; the level ground has its reflectance, whatever stands on it.
 #[test]
 fn all_systems_measure_one_footprint() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
     let step = 30_f64.to_radians().tan();
     let mut slope = "ncols 20\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\n".to_owned();
     for row in 0..20 {
         let height = 100.0 + step * (19.5 - f64::from(row));
         let _infallible = writeln!(slope, "{}", vec![format!("{height:.9}"); 20].join(" "));
     }
-    fs::write(folder.path().join("slope.asc"), slope).expect("a raster");
     for site in &SITES {
         for sun_deg in [30.0, 75.0, 89.9] {
-            let report = measured(site, sun_deg, folder.path());
+            let report = measured(site, sun_deg, &slope);
             let of = |sensor: &str, name: &str, index| {
                 Estimate::of(product(&report, sensor, name), index)
             };

@@ -5,10 +5,8 @@
 //! right error has a standard deviation of 1.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// Sensors of each kind in each canopy.
 const SENSORS: usize = 500;
@@ -34,29 +32,26 @@ fn deviations(leaf_area: f64, [sensor, truth]: &[String; 2], names: &[&str]) -> 
     for number in 0..SENSORS {
         writeln!(sensors, "\"{number}\": {sensor},").expect("memory");
     }
-    let report = measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "red", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant(0.15)),
-        "leaf": Leaf(reflectance: Constant(0.06), transmittance: Constant(0.03)),
-    }},
-    meshes: {{ "tree": Crown(
+    let report = SceneText::bare(0.15, "size_m: (8.0, 8.0)")
+        .with("bands", r#"(name: "red", center_nm: 660.0)"#)
+        .with_leaf(0.06, 0.03)
+        .with(
+            "meshes",
+            format!(
+                r#""tree": Crown(
         shape: Ellipsoid(diameter_m: 3.0, height_m: 4.0), base_m: 1.0, leaf_area_m2: {leaf_area},
         leaf: Disc(radius_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (8.0, 8.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(2.0, 3.0, 0.0), (5.5, 6.0, 0.0), (6.0, 2.0, 0.0)])],
-    sun: (zenith_deg: 35.0),
-    boundary: Periodic,
-    sensors: {{ {sensors} }},
-)"#
-        ),
-        Path::new("."),
-        &Options::default(),
-    );
+    )"#
+            ),
+        )
+        .with(
+            "instances",
+            r#"List(of: "tree", at_m: [(2.0, 3.0, 0.0), (5.5, 6.0, 0.0), (6.0, 2.0, 0.0)])"#,
+        )
+        .with("sun", "zenith_deg: 35.0")
+        .with("boundary", "Periodic")
+        .with("sensors", sensors)
+        .measure();
     let of_name = |name: &&str| {
         let truth = Estimate::of(product(&report, "truth", name), 0);
         let of_sensor = |number: usize| {

@@ -1,19 +1,13 @@
 //! Light split by its order of scattering, cones, and what becomes of it in the canopy.
 
 use std::f64::consts::PI;
-use std::path::Path;
 use std::sync::LazyLock;
 
 use sunfleck::products::{Product, Report};
-use sunfleck::run::Options;
 use sunfleck::transport::{EnergyCounter, Hemisphere};
-use sunfleck_tests::{Estimate, measure, product, sheets, two_trees};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 const PARTS: [&str; 3] = ["uc", "co_sgl", "mlt"];
-
-fn run(text: &str, folder: &Path) -> Report {
-    measure(text, folder, &Options::default())
-}
 
 /// Trees in a periodic tile; two tests read it.
 static PERIODIC: LazyLock<Report> = LazyLock::new(|| trees("Periodic"));
@@ -37,7 +31,7 @@ fn trees(boundary: &str) -> Report {
         "layers": Photons(per_m2: 400.0, measure: [Fapar(layer_m: [-1.0, 0.0, 1.5, 9.0])]),
     "#
     );
-    run(&two_trees(boundary, &sensors), Path::new("."))
+    SceneText::trees_in_daylight(boundary).with("sensors", sensors).measure()
 }
 
 /// Directions in each cell that is looked at.
@@ -210,15 +204,16 @@ fn a_highest_order_cuts_the_series_of_a_sheet() {
     let (r, t, s) = (0.45, 0.35, 0.2);
     let series = [r, 0.0, t * s * t, 0.0, t * s * r * s * t];
     for order in 1..=5 {
-        let keys = format!(
-            r#"transport: (max_order: {order}),
-    sensors: {{
+        let report = SceneText::sheets(&[(r, t, s)], &[1.0])
+            .with("transport", format!("max_order: {order}"))
+            .with(
+                "sensors",
+                r#"
         "photons": Photons(per_m2: 500.0, measure: [Albedo]),
         "back": Directions(system: Backward, views: List([(20.0, 90.0)]), until: Samples(16000)),
-        "forth": Directions(views: List([(20.0, 90.0)]), until: Samples(16000), system: Forward),
-    }},"#
-        );
-        let report = run(&sheets(&[(r, t, s)], &[1.0], &keys), Path::new("."));
+        "forth": Directions(views: List([(20.0, 90.0)]), until: Samples(16000), system: Forward)"#,
+            )
+            .measure();
         let expected: f64 = series[..order].iter().sum();
         for (sensor, name) in [("photons", "albedo"), ("back", "brf"), ("forth", "brf")] {
             let one = Estimate::of(product(&report, sensor, name), 0);
@@ -241,35 +236,23 @@ fn single_scattering_by_small_discs_is_that_of_a_turbid_medium() {
     let sun = (20_f64, 30_f64);
     let views = [(20_f64, 30_f64), (60.0, 210.0), (45.0, 120.0), (65.0, 30.0)];
     let list: Vec<String> = views.iter().map(|(z, a)| format!("({z:?}, {a:?})")).collect();
-    let report = run(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "nir", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant({soil})),
-        "leaf": Leaf(reflectance: Constant({rho}), transmittance: Constant({tau})),
-    }},
-    meshes: {{ "layer": Crown(
+    let list = list.join(", ");
+    let (zenith, azimuth) = sun;
+    let report = SceneText::bare(soil, "size_m: (4.0, 4.0)")
+        .with("bands", r#"(name: "nir", center_nm: 865.0)"#)
+        .with_leaf(rho, tau)
+        .with("meshes", r#""layer": Crown(
         shape: Box(size_m: (4.0, 4.0, 1.98)), base_m: 0.01, leaf_area_m2: 48.0,
         leaf_angle: Spherical, leaf: Disc(radius_m: 0.01), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    instances: [List(of: "layer", at_m: [(2.0, 2.0, 0.0)])],
-    sun: (zenith_deg: {:?}, azimuth_deg: {:?}, irradiance: Constant(1.0)),
-    boundary: Periodic,
-    transport: (first_order_only: true),
-    sensors: {{
-        "views": Directions(system: Backward, views: List([{}]), until: Samples(20000), measure: [Orders]),
-        "photons": Photons(per_m2: 4000.0, measure: [Fapar(layer_m: 1.0)]),
-    }},
-)"#,
-            sun.0,
-            sun.1,
-            list.join(", ")
-        ),
-        Path::new("."),
-    );
+    )"#)
+        .with("instances", r#"List(of: "layer", at_m: [(2.0, 2.0, 0.0)])"#)
+        .with("sun", format!("zenith_deg: {zenith:?}, azimuth_deg: {azimuth:?}, irradiance: Constant(1.0)"))
+        .with("boundary", "Periodic")
+        .with("transport", "first_order_only: true")
+        .with("sensors", format!(r#"
+        "views": Directions(system: Backward, views: List([{list}]), until: Samples(20000), measure: [Orders]),
+        "photons": Photons(per_m2: 4000.0, measure: [Fapar(layer_m: 1.0)])"#))
+        .measure();
     let direction = |(zenith, azimuth): (f64, f64)| {
         let ((sz, cz), (sa, ca)) = (zenith.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
         [sz * sa, sz * ca, cz]

@@ -2,32 +2,28 @@
 
 use std::path::Path;
 
-use sunfleck::document;
 use sunfleck::products::{Image, Report};
 use sunfleck::run::{Failure, Options, Unwatched, check_file, run};
-use sunfleck_tests::product;
+use sunfleck_tests::{SceneText, product};
 
-/// Ground of 20 m by 12 m with a box of 2 m upon it.
-fn scene(boundary: &str, sensor: &str) -> String {
-    format!(
-        r#"Scene(
-    format: 1,
-    frame: (origin_m: (500000.0, 4000000.0, 0.0)),
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 860.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.3)) }},
-    terrain: Plane(size_m: (20.0, 12.0), material: "soil"),
-    sun: (zenith_deg: 30.0, irradiance: Constant(1.0)),
-    boundary: {boundary},
-    sensors: {{ "map": Orthographic({sensor}, samples_per_px: 2, measure: [Brf, Radiance]) }},
-)
-"#
-    )
+/// Ground of 20 m by 12 m under the sun.
+fn scene(boundary: &str, sensor: &str) -> SceneText {
+    let bands = r#"(name: "a", center_nm: 660.0), (name: "b", center_nm: 860.0)"#;
+    SceneText::bare(0.3, "size_m: (20.0, 12.0)")
+        .with("frame", "origin_m: (500000.0, 4000000.0, 0.0)")
+        .with("bands", bands)
+        .with("sun", "zenith_deg: 30.0, irradiance: Constant(1.0)")
+        .with("boundary", boundary)
+        .with(
+            "sensors",
+            format!(
+                r#""map": Orthographic({sensor}, samples_per_px: 2, measure: [Brf, Radiance])"#
+            ),
+        )
 }
 
 fn traced(boundary: &str, sensor: &str, options: &Options) -> Result<Report, String> {
-    let text = scene(boundary, sensor);
-    let reading = document::read_text("scene.ron", &text, &document::ReadOptions::default());
-    let reading = reading.map_err(|error| error.to_string())?;
+    let reading = scene(boundary, sensor).read();
     if !reading.is_sound() {
         return Err(reading.render());
     }
@@ -104,8 +100,8 @@ fn what_grew_over_the_edge_of_an_isolated_ground_has_no_data_there() {
 fn check_notes_what_has_grown_too() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.ron");
-    std::fs::write(&file, scene("Isolated", "pixel_m: 0.7, extent_m: (20.0, 12.0)"))
-        .expect("a file");
+    let scene = scene("Isolated", "pixel_m: 0.7, extent_m: (20.0, 12.0)");
+    std::fs::write(&file, scene.to_string()).expect("a file");
     let found = check_file(&file, &Options::default()).expect("a scene").join("\n");
     let note = "note: sensors.map: 20 x 12 m are not whole pixels of 0.7 m; the image shows 20.3 x 12.6 m \
                 around the same middle, 29 x 18 pixels";
@@ -119,7 +115,7 @@ fn exactly_one_of_number_and_side_is_given() {
         ("extent_m: (4.0, 4.0)", ["neither `size_px` nor `pixel_m`", "`pixel_m: 0.5`"]),
         (
             "size_px: (8, 8), pixel_m: 0.5, extent_m: (4.0, 4.0)",
-            ["scene.ron:9:62 (sensors.map.pixel_m)", "take one of the two out"],
+            ["test.ron:9:62 (sensors.map.pixel_m)", "take one of the two out"],
         ),
         ("pixel_m: 0.0, extent_m: (4.0, 4.0)", ["sensors.map.pixel_m", "above 0"]),
         ("pixel_m: -1.0, cover: WholeScene", ["sensors.map.pixel_m", "above 0"]),

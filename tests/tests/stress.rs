@@ -10,12 +10,12 @@
 //! forms with 128 times the samples.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use sunfleck::products::Report;
 use sunfleck::run::Options;
 use sunfleck::statistics::Sums;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::scene_text::LEAF;
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// What a relative deviation may be.
 const MOST: f64 = 1e-3;
@@ -29,10 +29,6 @@ const BALANCE: f64 = 1e-9;
 /// Factor on the samples: 1 for a quick look.
 fn quality() -> f64 {
     if std::env::var_os("SUNFLECK_FULL").is_some() { 128.0 } else { 1.0 }
-}
-
-fn run(text: &str, folder: &Path, quality: f64) -> Report {
-    measure(text, folder, &Options { quality, ..Options::default() })
 }
 
 /// All numbers of a run: BRF by view and band, then the albedo by band; and the energy lost.
@@ -76,41 +72,27 @@ fn assert_close(case: &str, report: &Report, expected: &[f64], is_closed_form: b
 fn forest(unit: f64, place: (f64, f64, f64), origin: (f64, f64, f64), quality: f64) -> Report {
     let m = |length: f64| length * unit;
     let at = |x: f64, y: f64| (place.0 + m(x), place.1 + m(y), place.2);
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    frame: (origin_m: {origin:?}),
-    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.127, 0.159])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "crown": Crown(
-        shape: Ellipsoid(diameter_m: {:?}, height_m: {:?}), base_m: {:?}, leaf_area_m2: {:?},
-        leaf: Square(side_m: {:?}), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: {:?}, corner_m: {:?}, height_m: {:?}, material: "soil"),
-    instances: [List(of: "crown", at_m: [{:?}, {:?}])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 110.0, irradiance: Constant(1.0)),
-    boundary: Periodic,
-    sensors: {{
+    let [width, base, side] = [3.0, 0.5, 0.125].map(m);
+    let area = 15.0 * unit * unit;
+    let (size, corner, height) = ((m(5.0), m(4.0)), (place.0, place.1), place.2);
+    let trees = [at(4.5, 3.875), at(2.25, 1.0)];
+    let per_m2 = 200.0 / (unit * unit);
+    SceneText::default()
+        .with("frame", format!("origin_m: {origin:?}"))
+        .with("bands", r#"(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0)"#)
+        .with("materials", format!(r#""soil": Lambertian(reflectance: Bands([0.127, 0.159])), {LEAF}"#))
+        .with("meshes", format!(r#""crown": Crown(
+        shape: Ellipsoid(diameter_m: {width:?}, height_m: {width:?}), base_m: {base:?}, leaf_area_m2: {area:?},
+        leaf: Square(side_m: {side:?}), leaf_material: "leaf",
+    )"#))
+        .with("terrain", format!(r#"Plane(size_m: {size:?}, corner_m: {corner:?}, height_m: {height:?}, material: "soil")"#))
+        .with("instances", format!(r#"List(of: "crown", at_m: {trees:?})"#))
+        .with("sun", "zenith_deg: 40.0, azimuth_deg: 110.0, irradiance: Constant(1.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", format!(r#"
         "views": Directions(system: Backward, views: List([(0.0, 0.0), (50.0, 77.0), (40.0, 110.0)]), until: Samples(4096)),
-        "photons": Photons(per_m2: {:?}, measure: [Albedo]),
-    }},
-)"#,
-        m(3.0),
-        m(3.0),
-        m(0.5),
-        15.0 * unit * unit,
-        m(0.125),
-        (m(5.0), m(4.0)),
-        (place.0, place.1),
-        place.2,
-        at(4.5, 3.875),
-        at(2.25, 1.0),
-        200.0 / (unit * unit),
-    );
-    run(&text, Path::new("."), quality)
+        "photons": Photons(per_m2: {per_m2:?}, measure: [Albedo])"#))
+        .measure_with(&Options { quality, ..Options::default() })
 }
 
 /// *Scene*: two crowns on a periodic tile, 1024 times smaller to 16 384 times larger (leaves of 0.1 mm to
@@ -191,7 +173,6 @@ impl Sheets {
 
     /// Square sheets of this side, m.
     fn run_of(&self, side: f64, quality: f64) -> Report {
-        let dir = tempfile::tempdir().expect("a temporary folder");
         let mut sheet = "g sheet\n".to_owned();
         let n = self.leaves;
         let at = |i: usize| side * (i as f64 / n as f64 - 0.5);
@@ -203,41 +184,23 @@ impl Sheets {
             let (here, next) = (i * (n + 1) + j + 1, (i + 1) * (n + 1) + j + 1);
             writeln!(sheet, "f {here} {next} {} {}", next + 1, here + 1).expect("memory");
         }
-        std::fs::write(dir.path().join("sheet.obj"), sheet).expect("a file");
+        let &Self { tile, sun_deg, view_deg, kill, samples, .. } = self;
         let (x, y, ground) = self.place;
         let heights = (1..=self.count).map(|sheet| (x, y, ground + sheet as f64 * self.gap));
-        let text = format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant({:?})),
-        "leaf": Leaf(reflectance: Constant({:?}), transmittance: Constant({:?})),
-    }},
-    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("leaf")) }},
-    terrain: Plane(size_m: {:?}, corner_m: {:?}, height_m: {ground:?}, material: "soil"),
-    instances: [List(of: "sheet", at_m: {:?})],
-    sun: (zenith_deg: {:?}, azimuth_deg: 10.0, irradiance: Constant(1.0)),
-    boundary: Periodic,
-    transport: (roulette: (after_order: 5, kill: {:?})),
-    sensors: {{
-        "views": Directions(system: Backward, views: List([({:?}, 77.0)]), until: Samples({})),
-        "photons": Photons(per_m2: {:?}, measure: [Albedo]),
-    }},
-)"#,
-            self.soil,
-            self.leaf.0,
-            self.leaf.1,
-            (self.tile, self.tile),
-            (x - 0.5 * self.tile, y - 0.5 * self.tile),
-            heights.collect::<Vec<_>>(),
-            self.sun_deg,
-            self.kill,
-            self.view_deg,
-            self.samples,
-            self.samples / (self.tile * self.tile),
-        );
-        run(&text, dir.path(), quality)
+        let at = heights.collect::<Vec<_>>();
+        let corner = (x - 0.5 * tile, y - 0.5 * tile);
+        let per_m2 = samples / (tile * tile);
+        SceneText::bare(self.soil, &format!("size_m: ({tile:?}, {tile:?}), corner_m: {corner:?}, height_m: {ground:?}"))
+            .with_leaf(self.leaf.0, self.leaf.1)
+            .with_obj("sheet", "leaf", &sheet)
+            .with("instances", format!(r#"List(of: "sheet", at_m: {at:?})"#))
+            .with("sun", format!("zenith_deg: {sun_deg:?}, azimuth_deg: 10.0, irradiance: Constant(1.0)"))
+            .with("boundary", "Periodic")
+            .with("transport", format!("roulette: (after_order: 5, kill: {kill:?})"))
+            .with("sensors", format!(r#"
+        "views": Directions(system: Backward, views: List([({view_deg:?}, 77.0)]), until: Samples({samples})),
+        "photons": Photons(per_m2: {per_m2:?}, measure: [Albedo])"#))
+            .measure_with(&Options { quality, ..Options::default() })
     }
 
     /// Its numbers, of as many samples as it says.

@@ -1,15 +1,9 @@
 //! The sun: its spectrum over a band, its disc, its place.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
-use sunfleck::products::Report;
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product, shared};
-
-fn run(text: &str, folder: &Path) -> Report {
-    measure(text, folder, &Options::default())
-}
+use sunfleck_tests::scene_text::{BAND, LEAF_SHAPE};
+use sunfleck_tests::{Estimate, SceneText, product, shared};
 
 /// *Scene*: a plane under the ASTM G173 direct spectrum, bands from 0 to 2000 nm wide, with edges on
 /// and between the table's points. *Expected*: the irradiance is the mean of the polyline over the
@@ -34,8 +28,6 @@ fn irradiance_is_the_exact_mean_of_the_solar_spectrum_over_the_band() {
         let ((x0, y0), (x1, y1)) = (points[next - 1], points[next]);
         y0 + (y1 - y0) * (nm - x0) / (x1 - x0)
     };
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(dir.path().join("sun.csv"), table).expect("a file");
     let bands = [
         (550.0, 0.0),
         (600.25, 0.1),
@@ -54,21 +46,13 @@ fn irradiance_is_the_exact_mean_of_the_solar_spectrum_over_the_band() {
             format!(r#"(name: "b{i}", center_nm: {center:?}, width_nm: {width:?})"#)
         })
         .collect();
-    let list = list.join(", ");
-    let report = run(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [{list}],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.2)) }},
-    terrain: Plane(size_m: (10.0, 10.0), material: "soil"),
-    sun: (zenith_deg: 60.0, irradiance: Table(file: "sun.csv", wavelength: "wavelength", value: "direct")),
-    boundary: Periodic,
-    sensors: {{ "photons": Photons(per_m2: 10.0, measure: [Fluxes(pixel_m: 10.0)]) }},
-)"#
-        ),
-        dir.path(),
-    );
+    let report = SceneText::bare(0.2, "size_m: (10.0, 10.0)")
+        .with("bands", list.join(", "))
+        .with("sun", r#"zenith_deg: 60.0, irradiance: Table(file: "sun.csv", wavelength: "wavelength", value: "direct")"#)
+        .with_file("sun.csv", table)
+        .with("boundary", "Periodic")
+        .with("sensors", r#""photons": Photons(per_m2: 10.0, measure: [Fluxes(pixel_m: 10.0)])"#)
+        .measure();
     let found = product(&report, "photons", "downwelling_top");
     for (index, (center, width)) in bands.into_iter().enumerate() {
         let n = 40_000;
@@ -90,23 +74,13 @@ fn irradiance_is_the_exact_mean_of_the_solar_spectrum_over_the_band() {
 #[test]
 fn a_disc_gives_the_horizontal_the_same_irradiance() {
     for boundary in ["Periodic", "Isolated"] {
-        let report = run(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.4)) }},
-    terrain: Plane(size_m: (10.0, 7.0), material: "soil"),
-    sun: (zenith_deg: 80.0, azimuth_deg: 130.0, disc_deg: 6.0, irradiance: Constant(1.0)),
-    boundary: {boundary},
-    sensors: {{
+        let report = SceneText::bare(0.4, "size_m: (10.0, 7.0)")
+            .with("sun", "zenith_deg: 80.0, azimuth_deg: 130.0, disc_deg: 6.0, irradiance: Constant(1.0)")
+            .with("boundary", boundary)
+            .with("sensors", r#"
         "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(256)),
-        "photons": Photons(per_m2: 100.0, measure: [Albedo, Fluxes(pixel_m: 10.0)]),
-    }},
-)"#
-            ),
-            Path::new("."),
-        );
+        "photons": Photons(per_m2: 100.0, measure: [Albedo, Fluxes(pixel_m: 10.0)])"#)
+            .measure();
         let exact = |name: &str, value: f64, expected: f64| {
             assert!((value / expected - 1.0).abs() < 1e-5, "{boundary}, {name}: {value}");
         };
@@ -124,26 +98,17 @@ fn a_disc_gives_the_horizontal_the_same_irradiance() {
 /// `1/2 + (t √(1 - t²) + asin t) / π` at `t = x / (h tan α)`, averaged over each pixel.
 #[test]
 fn a_disc_casts_the_penumbra_of_an_edge() {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(
-        dir.path().join("sheet.obj"),
-        "g sheet\nv -3 -3 4\nv 2.5 -3 4\nv 2.5 8 4\nv -3 8 4\nf 1 2 3 4\n",
-    )
-    .expect("a file");
-    let report = run(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: { "black": Lambertian(reflectance: Constant(0.0)) },
-    meshes: { "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, material: Some("black")) },
-    terrain: Plane(size_m: (5.0, 5.0), material: "black"),
-    instances: [List(of: "sheet", at_m: [(0.0, 0.0, 0.0)])],
-    sun: (zenith_deg: 0.0, disc_deg: 4.0, irradiance: Constant(1.0)),
-    boundary: Isolated,
-    sensors: { "photons": Photons(per_m2: 40000.0, measure: [Fluxes(pixel_m: 0.05)]) },
-)"#,
-        dir.path(),
-    );
+    let sheet = "g sheet\nv -3 -3 4\nv 2.5 -3 4\nv 2.5 8 4\nv -3 8 4\nf 1 2 3 4\n";
+    let report = SceneText::default()
+        .with("bands", BAND)
+        .with("materials", r#""black": Lambertian(reflectance: Constant(0.0))"#)
+        .with_obj("sheet", "black", sheet)
+        .with("terrain", r#"Plane(size_m: (5.0, 5.0), material: "black")"#)
+        .with("instances", r#"List(of: "sheet", at_m: [(0.0, 0.0, 0.0)])"#)
+        .with("sun", "zenith_deg: 0.0, disc_deg: 4.0, irradiance: Constant(1.0)")
+        .with("boundary", "Isolated")
+        .with("sensors", r#""photons": Photons(per_m2: 40000.0, measure: [Fluxes(pixel_m: 0.05)])"#)
+        .measure();
     let image = product(&report, "photons", "downwelling_terrain").image.as_ref().expect("a map");
     assert_eq!((image.width, image.height), (100, 100));
     // A point of the disc at sin θ shifts the shadow by h tan θ: to 1e-3 of the width the same.
@@ -174,33 +139,18 @@ fn a_disc_casts_the_penumbra_of_an_edge() {
 #[test]
 fn both_systems_see_the_same_disc() {
     for boundary in ["Periodic", "Isolated"] {
-        let report = run(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant(0.3)),
-        "leaf": Leaf(reflectance: Constant(0.4), transmittance: Constant(0.3)),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 60.0, azimuth_deg: 10.0, disc_deg: 8.0, irradiance: Constant(1.0)),
-    sky: Fraction([0.2]),
-    boundary: {boundary},
-    sensors: {{
+        let report = SceneText::bare(0.3, "size_m: (5.0, 5.0)")
+            .with("bands", r#"(name: "a", center_nm: 865.0)"#)
+            .with_leaf(0.4, 0.3)
+            .with_two_trees(LEAF_SHAPE)
+            .with("sun", "zenith_deg: 60.0, azimuth_deg: 10.0, disc_deg: 8.0, irradiance: Constant(1.0)")
+            .with("sky", "Fraction([0.2])")
+            .with("boundary", boundary)
+            .with("sensors", r#"
         "back": Directions(system: Backward, views: List([(0.0, 0.0), (55.0, 10.0), (60.0, 10.0), (60.0, 190.0)]), until: Samples(30000)),
         "forth": Directions(views: List([(0.0, 0.0), (55.0, 10.0), (60.0, 10.0), (60.0, 190.0)]), until: Samples(60000), system: Forward),
-        "photons": Photons(per_m2: 1000.0, measure: [Albedo]),
-    }},
-)"#
-            ),
-            Path::new("."),
-        );
+        "photons": Photons(per_m2: 1000.0, measure: [Albedo])"#)
+            .measure();
         let (back, forth) = (product(&report, "back", "hdrf"), product(&report, "forth", "hdrf"));
         for view in 0..4 {
             let z = Estimate::of(back, view).z_against(Estimate::of(forth, view));
@@ -217,22 +167,13 @@ fn both_systems_see_the_same_disc() {
 #[test]
 fn a_sun_by_place_and_time_lights_as_one_by_angles() {
     let albedo = |sun: &str| {
-        let report = run(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 865.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.3)) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    sun: ({sun}),
-    sensors: {{
+        let report = SceneText::bare(0.3, "size_m: (5.0, 5.0)")
+            .with("bands", r#"(name: "a", center_nm: 865.0)"#)
+            .with("sun", sun)
+            .with("sensors", r#"
         "photons": Photons(per_m2: 10.0, measure: [Fluxes(pixel_m: 5.0)]),
-        "plane": Directions(system: Backward, views: PrincipalPlane(max_deg: 10.0, step_deg: 10.0), until: Samples(32)),
-    }},
-)"#
-            ),
-            Path::new("."),
-        );
+        "plane": Directions(system: Backward, views: PrincipalPlane(max_deg: 10.0, step_deg: 10.0), until: Samples(32))"#)
+            .measure();
         let sunfleck::products::AxisPoints::Numbers(azimuths) =
             product(&report, "plane", "brf").dimensions[0][1].points.clone()
         else {

@@ -1,11 +1,9 @@
 //! Surface models that depend on both directions, in whole scenes: closed forms, energy, and systems that agree.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
-use sunfleck::products::Report;
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::scene_text::{LEAF_SHAPE, tree};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// Grounds, and a leaf with a coating, in two bands and one of emission.
 const MATERIALS: &str = r#"
@@ -16,24 +14,17 @@ const MATERIALS: &str = r#"
         "leaf": Leaf(reflectance: Bands([0.05, 0.45, 0.02]), transmittance: Bands([0.03, 0.45, 0.0]),
             coating: Some((refractive_index: 1.5, roughness: 0.3)), temperature: Uniform(295.0)),"#;
 
-fn scene(ground: &str, trees: &str, keys: &str, sensors: &str) -> Report {
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0), (name: "tir", center_nm: 10000.0)],
-    materials: {{ {MATERIALS} }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "{ground}"),
-    instances: [List(of: "tree", at_m: [{trees}])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.0, 1.0, 0.0])),
-    {keys}
-    sensors: {{ {sensors} }},
-)"#
-    );
-    measure(&text, Path::new("."), &Options::default())
+/// Ground of a material and trees on it, under the sun.
+fn scene(ground: &str, trees: &str, sensors: &str) -> SceneText {
+    SceneText::default()
+        .with("bands", r#"(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0), (name: "tir", center_nm: 10000.0)"#)
+        .with("materials", MATERIALS)
+        .with("meshes", tree(LEAF_SHAPE))
+        .with("terrain", format!(r#"Plane(size_m: (5.0, 5.0), material: "{ground}")"#))
+        .with("instances", format!(r#"List(of: "tree", at_m: [{trees}])"#))
+        .with("sun", "zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.0, 1.0, 0.0])")
+        .with("boundary", "Periodic")
+        .with("sensors", sensors)
 }
 
 /// RPV of the scene above in its red band, with the azimuth between sun and view.
@@ -60,7 +51,7 @@ fn bare_rpv_ground_has_the_brf_of_its_formula() {
         r#""back": Directions({list}, system: Backward), "forth": Directions({list}, system: Forward),
         "plain": Directions({list}, system: Reference), "light": Photons(per_m2: 4000.0, measure: [Albedo])"#
     );
-    let report = scene("rpv", "", "boundary: Periodic,", &sensors);
+    let report = scene("rpv", "", &sensors).measure();
     for sensor in ["back", "forth", "plain"] {
         let brf = product(&report, sensor, "brf");
         for (view, (zenith, azimuth)) in views.into_iter().enumerate() {
@@ -95,8 +86,6 @@ fn bare_rpv_ground_has_the_brf_of_its_formula() {
 #[test]
 fn systems_agree_on_models_that_depend_on_directions() {
     for (ground, boundary) in [("rpv", "Periodic"), ("soilspect", "Isolated")] {
-        let keys =
-            format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.0])), boundary: {boundary},");
         let views = "views: List([(0.0, 0.0), (45.0, 15.0), (60.0, 190.0)]), until: Samples(40000)";
         let measures = "measure: [Albedo, BrfCones([(40.0, 100.0, 20.0)]), Fapar(layer_m: 1.0)]";
         let sensors = format!(
@@ -105,7 +94,10 @@ fn systems_agree_on_models_that_depend_on_directions() {
             "packets": Photons(per_m2: 4e3, {measures}),
             "photons": Photons(per_m2: 4e4, system: Analog, {measures})"#
         );
-        let report = scene(ground, "(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)", &keys, &sensors);
+        let report = scene(ground, "(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)", &sensors)
+            .with("sky", "Isotropic(irradiance: Bands([0.3, 0.1, 0.0]))")
+            .with("boundary", boundary)
+            .measure();
         let mut compared = 0;
         let mut compare = |a: (&str, &str), b: (&str, &str)| {
             let pair = (a, b);
@@ -144,25 +136,18 @@ fn systems_agree_on_models_that_depend_on_directions() {
 #[test]
 fn light_through_a_coated_leaf_leaves_by_its_bsdf() {
     let cones = "per_m2: 2e5, measure: [BrfCones([(15.0, 270.0, 20.0), (75.0, 270.0, 20.0)])]";
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 865.0)],
-    materials: {{
+    let report = SceneText::default()
+        .with("bands", r#"(name: "a", center_nm: 865.0)"#)
+        .with("materials", r#"
         "black": Lambertian(reflectance: Constant(0.0)),
         "leaf": Leaf(reflectance: Constant(0.0), transmittance: Constant(0.9),
-            coating: Some((refractive_index: 2.0, roughness: 0.3))),
-    }},
-    meshes: {{ "wall": Faces(faces_m: [[(0.0, -2.0, 0.5), (0.0, 2.0, 0.5), (0.0, 2.0, 4.5), (0.0, -2.0, 4.5)]],
-        material: "leaf") }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "black"),
-    instances: [List(of: "wall", at_m: [(2.5, 2.5, 0.0)])],
-    sun: (zenith_deg: 60.0, azimuth_deg: 90.0, irradiance: Constant(1.0)),
-    boundary: Isolated,
-    sensors: {{ "packets": Photons({cones}), "photons": Photons(system: Analog, {cones}) }},
-)"#
-    );
-    let report = measure(&text, Path::new("."), &Options::default());
+            coating: Some((refractive_index: 2.0, roughness: 0.3)))"#)
+        .with("meshes", r#""wall": Faces(faces_m: [[(0.0, -2.0, 0.5), (0.0, 2.0, 0.5), (0.0, 2.0, 4.5), (0.0, -2.0, 4.5)]], material: "leaf")"#)
+        .with("terrain", r#"Plane(size_m: (5.0, 5.0), material: "black")"#)
+        .with("instances", r#"List(of: "wall", at_m: [(2.5, 2.5, 0.0)])"#)
+        .with("sun", "zenith_deg: 60.0, azimuth_deg: 90.0, irradiance: Constant(1.0)")
+        .with("sensors", format!(r#""packets": Photons({cones}), "photons": Photons(system: Analog, {cones})"#))
+        .measure();
     for cone in 0..2 {
         let [packets, photons] = ["packets", "photons"]
             .map(|sensor| Estimate::of(product(&report, sensor, "brf_cones"), cone));
@@ -182,7 +167,7 @@ fn emission_follows_the_absorbed_fraction_of_each_direction() {
         r#""back": Directions({views}, system: Backward), "forth": Directions({views}, system: Forward)"#
     );
     for ground in ["rpv", "soilspect"] {
-        let report = scene(ground, "", "boundary: Periodic,", &sensors);
+        let report = scene(ground, "", &sensors).measure();
         let [back, forth] = ["back", "forth"].map(|sensor| product(&report, sensor, "radiance"));
         let tir = |view: usize| 3 * view + 2;
         for view in 0..3 {

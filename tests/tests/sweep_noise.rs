@@ -1,29 +1,8 @@
 //! Points of a sweep share their random numbers: their differences have less noise than they.
 
-use std::path::Path;
-
 use sunfleck::run::Options;
-use sunfleck_tests::{measure, product};
-
-const STAND: &str = r#"Scene(
-    format: 1,
-    params: { "sza": 30.0 },
-    bands: [(name: "nir", center_nm: 865.0)],
-    materials: {
-        "soil": Lambertian(reflectance: Constant(0.2)),
-        "leaf": Leaf(reflectance: Constant(0.45), transmittance: Constant(0.45)),
-    },
-    meshes: { "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.2), leaf_material: "leaf",
-    ) },
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(1.0, 2.0, 0.0), (3.0, 4.0, 0.0)])],
-    sun: (zenith_deg: "=sza", azimuth_deg: 10.0, irradiance: Constant(1.0)),
-    boundary: Periodic,
-    sensors: { "view": Directions(system: Backward, views: List([(0.0, 0.0)]), until: Samples(4096)) },
-    transport: (seed: SEED),
-)"#;
+use sunfleck_tests::scene_text::tree;
+use sunfleck_tests::{SceneText, product};
 
 /// Seeds.
 const SEEDS: u32 = 48;
@@ -35,7 +14,17 @@ const F: f64 = 3.06;
 fn brf(seed: u32, zenith: f64) -> f64 {
     let mut options = Options::default();
     options.document.set.push(("sza".to_owned(), zenith.into()));
-    let report = measure(&STAND.replace("SEED", &seed.to_string()), Path::new("."), &options);
+    let report = SceneText::bare(0.2, "size_m: (5.0, 5.0)")
+        .with("params", r#""sza": 30.0"#)
+        .with("bands", r#"(name: "nir", center_nm: 865.0)"#)
+        .with_leaf(0.45, 0.45)
+        .with("meshes", tree("Square(side_m: 0.2)"))
+        .with("instances", r#"List(of: "tree", at_m: [(1.0, 2.0, 0.0), (3.0, 4.0, 0.0)])"#)
+        .with("sun", r#"zenith_deg: "=sza", azimuth_deg: 10.0, irradiance: Constant(1.0)"#)
+        .with("boundary", "Periodic")
+        .with("sensors", r#""view": Directions(system: Backward, views: List([(0.0, 0.0)]), until: Samples(4096))"#)
+        .with("transport", format!("seed: {seed}"))
+        .measure_with(&options);
     product(&report, "view", "brf").values[0]
 }
 

@@ -1,36 +1,19 @@
 //! Transport systems that share as little as can be find the same values.
 
-use std::path::Path;
+use sunfleck::products::Product;
+use sunfleck_tests::{Estimate, SceneText, product};
 
-use sunfleck::products::{Product, Report};
-use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
-
-/// Two trees of two bands on soil; `light` and further keys, then sensors.
-fn grove(light: &str, sensors: &str) -> Report {
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0), (name: "tir", center_nm: 10000.0)],
-    materials: {{
+/// Two trees of three bands on soil, without a sky.
+fn grove() -> SceneText {
+    SceneText::two_trees()
+        .with("bands", r#"(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.0), (name: "tir", center_nm: 10000.0)"#)
+        .with("materials", r#"
         "soil": Lambertian(reflectance: Bands([0.1, 0.3, 0.1]), temperature: Uniform(310.0)),
         "leaf": Leaf(
             reflectance: Bands([0.05, 0.5, 0.02]), transmittance: Bands([0.03, 0.4, 0.01]),
             temperature: Uniform(295.0),
-        ),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, disc_deg: 3.0, irradiance: Bands([1.0, 1.0, 0.0])),
-    {light}
-    sensors: {{ {sensors} }},
-)"#
-    );
-    measure(&text, Path::new("."), &Options::default())
+        )"#)
+        .with("sun", "zenith_deg: 50.0, azimuth_deg: 10.0, disc_deg: 3.0, irradiance: Bands([1.0, 1.0, 0.0])")
 }
 
 /// Compares all values of two products of the same shape; returns how many of them are known well in
@@ -77,16 +60,18 @@ fn photons_followed_as_a_whole_find_what_packets_find() {
             ])"
         )
     };
-    for light in [
-        "sky: Isotropic(irradiance: Bands([0.2, 0.1, 0.0])), thermal_sky: BlackBody(260.0), boundary: Periodic,",
-        "boundary: Isolated, transport: (max_order: 4),",
-    ] {
+    let endless = grove()
+        .with("sky", "Isotropic(irradiance: Bands([0.2, 0.1, 0.0]))")
+        .with("thermal_sky", "BlackBody(260.0)")
+        .with("boundary", "Periodic");
+    let isolated = grove().with("boundary", "Isolated").with("transport", "max_order: 4");
+    for (light, scene) in [("sun and sky", endless), ("sun", isolated)] {
         let sensors = format!(
             "\"packets\": {}, \"photons\": {}",
             photons(4e3, "Forward"),
             photons(4e4, "Analog")
         );
-        let report = grove(light, &sensors);
+        let report = scene.with("sensors", sensors).measure();
         let is_expected = |warning: &String| {
             warning.starts_with("boundary: ") || warning.contains("in band `tir`")
         };
@@ -110,12 +95,12 @@ fn photons_followed_as_a_whole_find_what_packets_find() {
 /// that was scattered once, by the ground or by the canopy; where no other counts, it is all there is.
 #[test]
 fn light_of_the_first_order_is_what_walks_and_packets_find_of_it() {
-    let once = "boundary: Periodic, transport: (first_order_only: true),";
-    for (light, measure, products) in [
+    let sky = grove().with("sky", "Isotropic(irradiance: Bands([0.3, 0.1, 0.2]))");
+    let once = sky.clone().with("boundary", "Periodic").with("transport", "first_order_only: true");
+    for (scene, measure, products) in [
         (once, "Brf, Orders", &["hdrf", "hdrf_uc", "hdrf_co_sgl"][..]),
-        ("boundary: Isolated,", "Orders", &["hdrf_uc", "hdrf_co_sgl"]),
+        (sky.with("boundary", "Isolated"), "Orders", &["hdrf_uc", "hdrf_co_sgl"]),
     ] {
-        let light = format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.2])), {light}");
         let views = "views: List([(0.0, 0.0), (40.0, 100.0), (60.0, 190.0)])";
         let sensors = |(system, more): (&str, u32)| {
             let keys = format!("measure: [{measure}], system: {system}");
@@ -136,7 +121,7 @@ fn light_of_the_first_order_is_what_walks_and_packets_find_of_it() {
             )
         };
         let systems = [("FirstOrder", 1), ("Backward", 2), ("Forward", 8)];
-        let report = grove(&light, &systems.map(sensors).concat());
+        let report = scene.with("sensors", systems.map(sensors).concat()).measure();
         let of = |sensor: &str, name: &str| whole(product(&report, sensor, name));
         let mut known = 0;
         for sensor in ["views", "plane", "image", "camera"] {
@@ -154,7 +139,7 @@ fn light_of_the_first_order_is_what_walks_and_packets_find_of_it() {
                 }
             }
         }
-        assert!(known >= 70, "{light}: {known} values");
+        assert!(known >= 70, "{measure}: {known} values");
     }
 }
 
@@ -163,8 +148,7 @@ fn light_of_the_first_order_is_what_walks_and_packets_find_of_it() {
 /// with packets: images, cameras and directions.
 #[test]
 fn the_reference_integrator_finds_what_the_others_find() {
-    for light in ["boundary: Periodic,", "boundary: Isolated, transport: (max_order: 3),"] {
-        let light = format!("sky: Isotropic(irradiance: Bands([0.3, 0.1, 0.2])), {light}");
+    for (boundary, transport) in [("Periodic", ""), ("Isolated", "max_order: 3")] {
         let sensors = |(system, more): (&str, u32)| {
             let keys = format!("measure: [Brf], system: {system}");
             let camera = format!(
@@ -183,7 +167,12 @@ fn the_reference_integrator_finds_what_the_others_find() {
             )
         };
         let systems = [("Reference", 1), ("Backward", 1), ("Forward", 4)];
-        let report = grove(&light, &systems.map(sensors).concat());
+        let report = grove()
+            .with("sky", "Isotropic(irradiance: Bands([0.3, 0.1, 0.2]))")
+            .with("boundary", boundary)
+            .with("transport", transport)
+            .with("sensors", systems.map(sensors).concat())
+            .measure();
         let hdrf = |sensor: &str| whole(product(&report, sensor, "hdrf"));
         let mut known = 0;
         for (sensor, system) in [
@@ -196,7 +185,7 @@ fn the_reference_integrator_finds_what_the_others_find() {
             let reference = hdrf(&format!("{sensor} Reference"));
             known += agreeing(&reference, &hdrf(&format!("{sensor} {system}")));
         }
-        assert!(known >= 40, "{light}: {known} values");
+        assert!(known >= 40, "{boundary}: {known} values");
     }
 }
 
@@ -215,9 +204,8 @@ fn whole(product: &Product) -> Product {
 #[test]
 fn a_photon_is_counted_whole_or_not_at_all() {
     let measure = "Albedo, Absorbed(per: Instance)";
-    let light = "boundary: Periodic,";
     let sensor = format!("\"few\": Photons(per_m2: 5.12, system: Analog, measure: [{measure}])");
-    let report = grove(light, &sensor);
+    let report = grove().with("boundary", "Periodic").with("sensors", sensor).measure();
     // 128 photons: each is three shares, its band one in three, of which two hold light.
     let packets = 128.0;
     for name in ["albedo", "energy"] {

@@ -3,11 +3,10 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use sunfleck::document;
 use sunfleck::products::Report;
-use sunfleck::run::Options;
+use sunfleck::run::{Options, Unwatched, run};
 use sunfleck::spectral::{BandWindow, planck, planck_mean};
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 fn window(center: f64, width: f64) -> BandWindow {
     BandWindow { center, width }
@@ -17,38 +16,29 @@ fn window(center: f64, width: f64) -> BandWindow {
 /// *Expected*: every view and pixel is a black body of 300 K, in bands with and without width.
 #[test]
 fn an_isothermal_scene_looks_black_whatever_its_emissivity() {
-    let report = measure(
-        r#"Scene(
-    format: 1,
-    bands: [
+    let report = SceneText::bare(0.0, "size_m: (4.0, 4.0)")
+        .with("bands", r#"
         (name: "red", center_nm: 660.0),
         (name: "tir", center_nm: 10500.0, width_nm: 1000.0),
-        (name: "line", center_nm: 8000.0),
-    ],
-    materials: {
+        (name: "line", center_nm: 8000.0)"#)
+        .with("materials", r#"
         "soil": Lambertian(reflectance: Bands([0.2, 0.06, 0.4]), temperature: Uniform(300.0)),
         "leaf": Leaf(
             reflectance: Bands([0.1, 0.02, 0.5]), back_reflectance: Some(Bands([0.1, 0.3, 0.1])),
             transmittance: Bands([0.1, 0.05, 0.3]), temperature: MeanDelta(mean_k: 300.0, delta_k: 0.0),
-        ),
-    },
-    meshes: { "cloud": Crown(
+        )"#)
+        .with("meshes", r#""cloud": Crown(
         shape: Box(size_m: (4.0, 4.0, 1.0)), base_m: 0.1, leaf_area_m2: 24.0,
         leaf: Disc(radius_m: 0.05), leaf_material: "leaf",
-    ) },
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    instances: [List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])],
-    sun: (zenith_deg: 40.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
-    thermal_sky: BlackBody(300.0),
-    boundary: Periodic,
-    sensors: {
+    )"#)
+        .with("instances", r#"List(of: "cloud", at_m: [(2.0, 2.0, 0.0)])"#)
+        .with("sun", "zenith_deg: 40.0, azimuth_deg: 10.0, irradiance: Constant(1.0)")
+        .with("thermal_sky", "BlackBody(300.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", r#"
         "views": Directions(system: Backward, views: List([(0.0, 0.0), (60.0, 90.0)]), until: Samples(30000), measure: [Radiance, BrightnessTemperature]),
-        "image": Orthographic(size_px: (4, 4), extent_m: (3.0, 3.0), samples_per_px: 512, measure: [BrightnessTemperature, Brf]),
-    },
-)"#,
-        Path::new("."),
-        &Options::default(),
-    );
+        "image": Orthographic(size_px: (4, 4), extent_m: (3.0, 3.0), samples_per_px: 512, measure: [BrightnessTemperature, Brf])"#)
+        .measure();
     let black = [planck_mean(window(10_500.0, 1_000.0), 300.0), planck(8_000.0, 300.0)];
     let radiance = product(&report, "views", "radiance");
     let kelvin = product(&report, "views", "brightness_temperature");
@@ -75,35 +65,22 @@ fn an_isothermal_scene_looks_black_whatever_its_emissivity() {
 }
 
 /// A periodic tile of ground that is warm in the sun, and sheets over half of it or all.
-fn plates(upper: &str, boundary: &str, more: &str, sensors: &str) -> Report {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    let sheet = "g sheet\nv 0 -1 0\nv 2 -1 0\nv 2 5 0\nv 0 5 0\nf 1 2 3 4\n";
+fn plates(upper: &str, instances: &str, sensors: &str) -> Report {
+    let half = "g sheet\nv 0 -1 0\nv 2 -1 0\nv 2 5 0\nv 0 5 0\nf 1 2 3 4\n";
     let whole = "g sheet\nv -1 -1 0\nv 5 -1 0\nv 5 5 0\nv -1 5 0\nf 1 2 3 4\n";
-    std::fs::write(dir.path().join("half.obj"), sheet).expect("a file");
-    std::fs::write(dir.path().join("whole.obj"), whole).expect("a file");
-    measure(
-        &format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "tir", center_nm: 10000.0)],
-    materials: {{
+    SceneText::default()
+        .with("bands", r#"(name: "tir", center_nm: 10000.0)"#)
+        .with("materials", format!(r#"
         "lower": Lambertian(reflectance: Constant(0.05), temperature: SunlitShaded(sunlit_k: 320.0, shaded_k: 300.0)),
-        {upper}
-    }},
-    meshes: {{
-        "half": Obj(file: "half.obj", up: Z, unit_m: 1.0, material: Some("upper")),
-        "whole": Obj(file: "whole.obj", up: Z, unit_m: 1.0, material: Some("upper")),
-    }},
-    terrain: Plane(size_m: (4.0, 4.0), material: "lower"),
-    sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(1.0)),
-    boundary: {boundary},
-    {more}
-    sensors: {{ {sensors} }},
-)"#
-        ),
-        dir.path(),
-        &Options::default(),
-    )
+        "upper": {upper}"#))
+        .with_obj("half", "upper", half)
+        .with_obj("whole", "upper", whole)
+        .with("terrain", r#"Plane(size_m: (4.0, 4.0), material: "lower")"#)
+        .with("instances", instances)
+        .with("sun", "zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(1.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", sensors)
+        .measure()
 }
 
 /// *Scene*: ground (ε = 0.95, in the shade 300 K) below an infinite plate (ε = 0.9 below, 280 K), seen
@@ -112,9 +89,8 @@ fn plates(upper: &str, boundary: &str, more: &str, sensors: &str) -> Report {
 #[test]
 fn infinite_plates_exchange_as_grey_plates_do() {
     let report = plates(
-        r#""upper": Lambertian(reflectance: Constant(0.1), temperature: Uniform(280.0)),"#,
-        "Periodic",
-        r#"instances: [List(of: "whole", at_m: [(0.0, 0.0, 2.0)])],"#,
+        "Lambertian(reflectance: Constant(0.1), temperature: Uniform(280.0))",
+        r#"List(of: "whole", at_m: [(0.0, 0.0, 2.0)])"#,
         r#"
         "down": Perspective(size_px: (2, 2), position_m: (2.0, 2.0, 1.0), target_m: (2.1, 2.0, 0.0), fov_deg: (20.0, 20.0), samples_per_px: 8192, measure: [Radiance]),
         "up": Perspective(size_px: (2, 2), position_m: (2.0, 2.0, 1.0), target_m: (2.1, 2.0, 2.0), fov_deg: (20.0, 20.0), samples_per_px: 8192, measure: [Radiance]),
@@ -138,10 +114,8 @@ fn infinite_plates_exchange_as_grey_plates_do() {
 #[test]
 fn sunlit_and_shaded_ground_have_their_own_temperatures() {
     let report = plates(
-        r#""upper": Lambertian(reflectance: Constant(0.0), temperature: SunlitShaded(sunlit_k: 310.0, shaded_k: 250.0)),"#,
-        "Periodic",
-        r#"instances: [List(of: "half", at_m: [(0.0, 0.0, 1.0)])],
-"#,
+        "Lambertian(reflectance: Constant(0.0), temperature: SunlitShaded(sunlit_k: 310.0, shaded_k: 250.0))",
+        r#"List(of: "half", at_m: [(0.0, 0.0, 1.0)])"#,
         r#"
         "image": Orthographic(size_px: (4, 1), extent_m: (4.0, 4.0), samples_per_px: 4096, measure: [Radiance, BrightnessTemperature]),
         "#,
@@ -168,30 +142,18 @@ fn sunlit_and_shaded_ground_have_their_own_temperatures() {
 /// temperature.
 #[test]
 fn half_shaded_ground_has_the_mean_radiance() {
-    let dir = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(
-        dir.path().join("wall.obj"),
-        "g wall\nv 2 -1 0\nv 2 5 0\nv 2 5 2\nv 2 -1 2\nf 1 2 3 4\n",
-    )
-    .expect("a file");
-    let report = measure(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "tir", center_nm: 10000.0), (name: "wide", center_nm: 11000.0, width_nm: 6000.0)],
-    materials: {
+    let wall = "g wall\nv 2 -1 0\nv 2 5 0\nv 2 5 2\nv 2 -1 2\nf 1 2 3 4\n";
+    let report = SceneText::bare(0.0, "size_m: (4.0, 4.0)")
+        .with("bands", r#"(name: "tir", center_nm: 10000.0), (name: "wide", center_nm: 11000.0, width_nm: 6000.0)"#)
+        .with("materials", r#"
         "soil": Lambertian(reflectance: Constant(0.0), temperature: MeanDelta(mean_k: 310.0, delta_k: 20.0)),
-        "wall": Lambertian(reflectance: Constant(0.0), temperature: SunlitShaded(sunlit_k: 305.0, shaded_k: 100.0)),
-    },
-    meshes: { "wall": Obj(file: "wall.obj", up: Z, unit_m: 1.0, material: Some("wall")) },
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    instances: [List(of: "wall", at_m: [(0.0, 0.0, 0.0)])],
-    sun: (zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)),
-    boundary: Periodic,
-    sensors: { "views": Directions(system: Backward, views: List([(0.0, 0.0), (45.0, 270.0)]), until: Samples(100000), measure: [Radiance]) },
-)"#,
-        dir.path(),
-        &Options::default(),
-    );
+        "wall": Lambertian(reflectance: Constant(0.0), temperature: SunlitShaded(sunlit_k: 305.0, shaded_k: 100.0))"#)
+        .with_obj("wall", "wall", wall)
+        .with("instances", r#"List(of: "wall", at_m: [(0.0, 0.0, 0.0)])"#)
+        .with("sun", "zenith_deg: 45.0, azimuth_deg: 90.0, irradiance: Constant(0.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", r#""views": Directions(system: Backward, views: List([(0.0, 0.0), (45.0, 270.0)]), until: Samples(100000), measure: [Radiance])"#)
+        .measure();
     let found = product(&report, "views", "radiance");
     for (band, window) in [window(10_000.0, 0.0), window(11_000.0, 6_000.0)].into_iter().enumerate()
     {
@@ -208,6 +170,16 @@ fn half_shaded_ground_has_the_mean_radiance() {
     }
 }
 
+/// A plane of emissivity 0.7 at 300 K, in a band at 4 µm of this source.
+fn infrared_plane(source: &str) -> SceneText {
+    SceneText::bare(0.0, "size_m: (4.0, 4.0)")
+        .with("bands", format!(r#"(name: "mir", center_nm: 4000.0, source: {source})"#))
+        .with(
+            "materials",
+            r#""soil": Lambertian(reflectance: Constant(0.3), temperature: Uniform(300.0))"#,
+        )
+}
+
 /// *Scene*: a plane at 4 µm by day. *Expected*: emission alone, reflection alone, or their sum, as the
 /// band asks.
 #[test]
@@ -215,25 +187,14 @@ fn bands_choose_their_sources() {
     for (source, emits, reflects) in
         [("Auto", 1.0, 0.0), ("Emission", 1.0, 0.0), ("Sunlight", 0.0, 1.0), ("Both", 1.0, 1.0)]
     {
-        let report = measure(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "mir", center_nm: 4000.0, source: {source})],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.3), temperature: Uniform(300.0)) }},
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sun: (zenith_deg: 60.0, irradiance: Constant(0.01)),
-    thermal_sky: Radiance(Constant(0.0001)),
-    boundary: Periodic,
-    sensors: {{
+        let report = infrared_plane(source)
+            .with("sun", "zenith_deg: 60.0, irradiance: Constant(0.01)")
+            .with("thermal_sky", "Radiance(Constant(0.0001))")
+            .with("boundary", "Periodic")
+            .with("sensors", r#"
         "views": Directions(system: Backward, views: List([(30.0, 0.0)]), until: Samples(2048), measure: [Radiance]),
-        "image": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 64, measure: [Radiance]),
-    }},
-)"#
-            ),
-            Path::new("."),
-            &Options::default(),
-        );
+        "image": Orthographic(size_px: (2, 2), extent_m: (3.0, 3.0), samples_per_px: 64, measure: [Radiance])"#)
+            .measure();
         let emitted = 0.7 * planck(4_000.0, 300.0) + 0.3 * 0.0001;
         let truth = emits * emitted + reflects * 0.3 * 0.01 * 0.5 / PI;
         for sensor in ["views", "image"] {
@@ -249,33 +210,20 @@ fn bands_choose_their_sources() {
 /// plane or a quarter of it, in both systems.
 #[test]
 fn emitted_and_reflected_light_are_means_over_the_same_rectangle() {
-    let dir = tempfile::tempdir().expect("a temporary folder");
     let speck = "g speck\nv 2 2 3\nv 2.001 2 3\nv 2.001 2.001 3\nf 1 2 3\n";
-    std::fs::write(dir.path().join("speck.obj"), speck).expect("a file");
     let sources = [("Emission", 1.0, 0.0), ("Sunlight", 0.0, 1.0), ("Both", 1.0, 1.0)];
     let planes = [("", 1.0), ("virtual_plane: (),", 0.25)];
     let cases = sources.into_iter().flat_map(|source| planes.map(|plane| (source, plane)));
     for ((source, emits, reflects), (plane, shown)) in cases {
-        let report = measure(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "mir", center_nm: 4000.0, source: {source})],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.3), temperature: Uniform(300.0)) }},
-    meshes: {{ "speck": Obj(file: "speck.obj", up: Z, unit_m: 1.0, material: Some("soil")) }},
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    instances: [List(of: "speck", at_m: [(0.0, 0.0, 0.0)])],
-    sun: (zenith_deg: 0.0, irradiance: Constant(0.01)),
-    sensors: {{
+        let report = infrared_plane(source)
+            .with_obj("speck", "soil", speck)
+            .with("instances", r#"List(of: "speck", at_m: [(0.0, 0.0, 0.0)])"#)
+            .with("sun", "zenith_deg: 0.0, irradiance: Constant(0.01)")
+            .with("sensors", format!(r#"
         "back": Directions({plane} system: Backward, views: List([(45.0, 90.0)]), until: Samples(32768), measure: [Radiance]),
         "forth": Directions({plane} views: List([(45.0, 90.0)]), until: Samples(65536), measure: [Radiance], system: Forward),
-        "photons": Photons({plane} per_m2: 4096.0, measure: [RadianceViews(List([(45.0, 90.0)]))]),
-    }},
-)"#
-            ),
-            dir.path(),
-            &Options::default(),
-        );
+        "photons": Photons({plane} per_m2: 4096.0, measure: [RadianceViews(List([(45.0, 90.0)]))])"#))
+            .measure();
         let truth = shown * (emits * 0.7 * planck(4_000.0, 300.0) + reflects * 0.3 * 0.01 / PI);
         for (sensor, name) in
             [("back", "radiance"), ("forth", "radiance"), ("photons", "radiance_views")]
@@ -292,23 +240,13 @@ fn emitted_and_reflected_light_are_means_over_the_same_rectangle() {
 /// What is missing for emission is said, with what to write.
 #[test]
 fn a_material_that_is_seen_to_emit_needs_a_temperature() {
-    let text = r#"Scene(
-    format: 1,
-    bands: [(name: "tir", center_nm: 10000.0)],
-    materials: { "soil": Lambertian(reflectance: Constant(0.1)) },
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sensors: { "views": Directions(system: Backward, views: List([(0.0, 0.0)]), measure: [BrightnessTemperature]) },
-)"#;
-    let reading =
-        document::read_text("a.ron", text, &document::ReadOptions::default()).expect("text");
+    let reading = SceneText::bare(0.1, "size_m: (4.0, 4.0)")
+        .with("bands", r#"(name: "tir", center_nm: 10000.0)"#)
+        .with("sensors", r#""views": Directions(system: Backward, views: List([(0.0, 0.0)]), measure: [BrightnessTemperature])"#)
+        .read();
     assert!(reading.is_sound(), "{}", reading.render());
-    let failure = sunfleck::run::run(
-        &reading.scene,
-        Path::new("."),
-        &Options::default(),
-        &sunfleck::run::Unwatched,
-    )
-    .expect_err("no temperature");
+    let failure = run(&reading.scene, Path::new("."), &Options::default(), &Unwatched)
+        .expect_err("no temperature");
     assert!(failure.to_string().contains("temperature: Uniform(300.0)"), "{failure}");
 }
 
@@ -317,24 +255,13 @@ fn a_material_that_is_seen_to_emit_needs_a_temperature() {
 /// measured with it, and its factor is the reflectance.
 #[test]
 fn orders_beside_emission_leave_the_radiance_of_pixels_as_it_is() {
-    let report = measure(
-        r#"Scene(
-    format: 1,
-    bands: [
-        (name: "mir", center_nm: 4000.0, source: Both),
-        (name: "red", center_nm: 660.0),
-    ],
-    materials: { "soil": Lambertian(reflectance: Bands([0.3, 0.1]), temperature: Uniform(300.0)) },
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sun: (zenith_deg: 60.0, irradiance: Bands([0.01, 1.0])),
-    boundary: Periodic,
-    sensors: {
-        "image": Orthographic(size_px: (3, 2), extent_m: (3.0, 2.0), samples_per_px: 64, measure: [Radiance, Orders]),
-    },
-)"#,
-        Path::new("."),
-        &Options::default(),
-    );
+    let report = SceneText::bare(0.0, "size_m: (4.0, 4.0)")
+        .with("bands", r#"(name: "mir", center_nm: 4000.0, source: Both), (name: "red", center_nm: 660.0)"#)
+        .with("materials", r#""soil": Lambertian(reflectance: Bands([0.3, 0.1]), temperature: Uniform(300.0))"#)
+        .with("sun", "zenith_deg: 60.0, irradiance: Bands([0.01, 1.0])")
+        .with("boundary", "Periodic")
+        .with("sensors", r#""image": Orthographic(size_px: (3, 2), extent_m: (3.0, 2.0), samples_per_px: 64, measure: [Radiance, Orders])"#)
+        .measure();
     let truth = [0.7 * planck(4_000.0, 300.0) + 0.3 * 0.01 * 0.5 / PI, 0.1 * 0.5 / PI];
     let image = product(&report, "image", "radiance").image.as_ref().expect("pixels");
     assert_eq!(image.values.len(), 12);

@@ -1,48 +1,33 @@
 //! Emitted light followed forwards, against the backward system and closed forms.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
-use sunfleck::document;
 use sunfleck::products::{AxisPoints, Report};
-use sunfleck::run::Options;
 use sunfleck::spectral::planck;
-use sunfleck_tests::{Estimate, measure, product};
-
-fn run(text: &str) -> Report {
-    measure(text, Path::new("."), &Options::default())
-}
+use sunfleck_tests::scene_text::tree;
+use sunfleck_tests::{Estimate, SceneText, product};
 
 /// Trees with transmitting leaves on warm soil, each with a sunlit and a shaded temperature, under
 /// sun, sky and thermal sky; a band of reflected, one of emitted and one of both kinds of light.
 fn trees(boundary: &str) -> Report {
     let views = "List([(0.0, 0.0), (40.0, 100.0), (60.0, 190.0)])";
-    run(&format!(
-        r#"Scene(
-    format: 1,
-    bands: [
+    SceneText::two_trees()
+        .with("bands", r#"
         (name: "nir", center_nm: 865.0),
         (name: "mir", center_nm: 4000.0, source: Both),
-        (name: "tir", center_nm: 10500.0),
-    ],
-    materials: {{
+        (name: "tir", center_nm: 10500.0)"#)
+        .with("materials", r#"
         "soil": Lambertian(reflectance: Bands([0.3, 0.2, 0.06]), temperature: SunlitShaded(sunlit_k: 325.0, shaded_k: 295.0)),
         "leaf": Leaf(
             reflectance: Bands([0.5, 0.1, 0.03]), back_reflectance: Some(Bands([0.4, 0.3, 0.2])),
             transmittance: Bands([0.4, 0.1, 0.25]), temperature: MeanDelta(mean_k: 300.0, delta_k: 8.0),
-        ),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Disc(radius_m: 0.08), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (5.0, 5.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(0.2, 2.0, 0.0), (3.0, 4.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.0, 0.01, 0.0002])),
-    sky: Fraction([0.3, 0.1, 0.0]),
-    thermal_sky: BlackBody(250.0),
-    boundary: {boundary},
-    sensors: {{
+        )"#)
+        .with("meshes", tree("Disc(radius_m: 0.08)"))
+        .with("sun", "zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Bands([1.0, 0.01, 0.0002])")
+        .with("sky", "Fraction([0.3, 0.1, 0.0])")
+        .with("thermal_sky", "BlackBody(250.0)")
+        .with("boundary", boundary)
+        .with("sensors", format!(r#"
         "back": Directions(system: Backward, views: {views}, until: Samples(40000), measure: [Radiance]),
         "forth": Directions(views: {views}, until: Samples(20000), measure: [Radiance], system: Forward),
         "image": Orthographic(size_px: (4, 4), extent_m: (4.0, 4.0), samples_per_px: 1024, measure: [Radiance, BrightnessTemperature]),
@@ -51,10 +36,8 @@ fn trees(boundary: &str) -> Report {
             Exitance, RadianceCells(40), RadianceViews({views}), BrightnessTemperature,
             RadianceCones([(0.0, 0.0, 8.0), (40.0, 100.0, 8.0), (60.0, 190.0, 8.0)]),
             Fluxes(pixel_m: 1.0), Albedo,
-        ]),
-    }},
-)"#
-    ))
+        ])"#))
+        .measure()
 }
 
 /// *Expected*: the radiance towards each view is the same backwards, forwards and in cones, in every
@@ -129,22 +112,24 @@ fn photons_carry_the_radiance_that_paths_find() {
     }
 }
 
+/// A rectangle of emissivity 0.9 at 300 K.
+fn plane(rectangle: &str) -> SceneText {
+    SceneText::bare(0.0, rectangle).with("bands", r#"(name: "tir", center_nm: 10000.0)"#).with(
+        "materials",
+        r#""soil": Lambertian(reflectance: Constant(0.1), temperature: Uniform(300.0))"#,
+    )
+}
+
 /// *Scene*: a plane of emissivity 0.9 at 300 K, alone, under a thermal sky. *Expected*: exitance
 /// `ε π B + ρ π B_sky`, the same radiance in every cell, and a downwelling flux of `π B_sky`.
 #[test]
 fn a_plane_emits_after_lamberts_law() {
     for boundary in ["Periodic", "Isolated"] {
-        let report = run(&format!(
-            r#"Scene(
-    format: 1,
-    bands: [(name: "tir", center_nm: 10000.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.1), temperature: Uniform(300.0)) }},
-    terrain: Plane(size_m: (5.0, 3.0), corner_m: (-1.0, 2.0), height_m: 7.0, material: "soil"),
-    thermal_sky: BlackBody(260.0),
-    boundary: {boundary},
-    sensors: {{ "photons": Photons(per_m2: 4000.0, measure: [Exitance, RadianceCells(24), Fluxes(pixel_m: 1.0)]) }},
-)"#
-        ));
+        let report = plane("size_m: (5.0, 3.0), corner_m: (-1.0, 2.0), height_m: 7.0")
+            .with("thermal_sky", "BlackBody(260.0)")
+            .with("boundary", boundary)
+            .with("sensors", r#""photons": Photons(per_m2: 4000.0, measure: [Exitance, RadianceCells(24), Fluxes(pixel_m: 1.0)])"#)
+            .measure();
         let sky = planck(10_000.0, 260.0);
         let radiance = 0.9 * planck(10_000.0, 300.0) + 0.1 * sky;
         let near = |name: &str, truth: f64| {
@@ -170,18 +155,15 @@ fn a_plane_emits_after_lamberts_law() {
 /// A brightness temperature needs a band that emits, and a radiance beside it.
 #[test]
 fn a_brightness_temperature_of_photons_needs_a_radiance() {
-    let text = r#"Scene(
-    format: 1,
-    bands: [(name: "tir", center_nm: 10000.0)],
-    materials: { "soil": Lambertian(reflectance: Constant(0.1), temperature: Uniform(300.0)) },
-    terrain: Plane(size_m: (5.0, 3.0), material: "soil"),
-    sensors: { "photons": Photons(measure: [Exitance, BrightnessTemperature]) },
-)"#;
-    let rendered = |text: &str| {
-        let reading = document::read_text("a.ron", text, &document::ReadOptions::default());
-        reading.expect("text").render()
+    let photons = |measure: &str| {
+        format!(r#""photons": Photons(measure: [{measure}, BrightnessTemperature])"#)
     };
-    assert!(rendered(text).contains("RadianceViews(List([(0.0, 0.0)]))"), "{}", rendered(text));
-    let visible = text.replace("10000.0", "660.0").replace("Exitance", "RadianceCells(20)");
-    assert!(rendered(&visible).contains("source: Emission"), "{}", rendered(&visible));
+    let emitting = plane("size_m: (5.0, 3.0)").with("sensors", photons("Exitance"));
+    let problems = emitting.read().render();
+    assert!(problems.contains("RadianceViews(List([(0.0, 0.0)]))"), "{problems}");
+    let reflecting = emitting
+        .with("bands", r#"(name: "tir", center_nm: 660.0)"#)
+        .with("sensors", photons("RadianceCells(20)"));
+    let problems = reflecting.read().render();
+    assert!(problems.contains("source: Emission"), "{problems}");
 }

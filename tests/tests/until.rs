@@ -1,10 +1,8 @@
 //! Measurements that go on until they are good enough.
 
-use std::path::Path;
-
 use sunfleck::products::Report;
 use sunfleck::run::{Options, Unwatched, check_file, run_file};
-use sunfleck_tests::{measure, two_trees};
+use sunfleck_tests::SceneText;
 
 /// Every kind of sensor, ending as `until` tells of its name.
 fn sensors(until: impl Fn(&str) -> String) -> String {
@@ -24,7 +22,7 @@ fn sensors(until: impl Fn(&str) -> String) -> String {
 }
 
 fn run(sensors: &str) -> Report {
-    measure(&two_trees("Periodic", sensors), Path::new("."), &Options::default())
+    SceneText::trees_in_daylight("Periodic").with("sensors", sensors).measure()
 }
 
 /// *Scene*: two trees in a periodic scene, seen by every kind of sensor. *Expected*: each product's
@@ -84,11 +82,15 @@ fn the_first_condition_that_holds_ends_it() {
 /// *Scene*: black soil, black leaves. *Expected*: what is 0 throughout is believed after many samples.
 #[test]
 fn a_black_scene_ends() {
-    let black = two_trees("Periodic", r#""p": Photons(until: RelError(0.01))"#)
-        .replace("0.1, 0.3", "0.0, 0.0")
-        .replace("0.05, 0.5", "0.0, 0.0")
-        .replace("0.03, 0.45", "0.0, 0.0");
-    let report = measure(&black, Path::new("."), &Options::default());
+    let report = SceneText::trees_in_daylight("Periodic")
+        .with(
+            "materials",
+            r#"
+        "soil": Lambertian(reflectance: Bands([0.0, 0.0])),
+        "leaf": Leaf(reflectance: Bands([0.0, 0.0]), transmittance: Bands([0.0, 0.0]))"#,
+        )
+        .with("sensors", r#""p": Photons(until: RelError(0.01))"#)
+        .measure();
     assert!((1 << 17..1 << 18).contains(&report.sensors[0].samples), "{:?}", report.sensors[0]);
 }
 
@@ -96,14 +98,12 @@ fn a_black_scene_ends() {
 /// same where the scene is run and where it is only checked.
 #[test]
 fn a_product_that_is_not_there_is_an_error() {
-    let wrong = two_trees(
-        "Periodic",
-        r#""p": Photons(measure: [Albedo], until: RelErrors({ "albdeo": 0.01 }))"#,
-    );
+    let sensor = r#""p": Photons(measure: [Albedo], until: RelErrors({ "albdeo": 0.01 }))"#;
+    let wrong = SceneText::trees_in_daylight("Periodic").with("sensors", sensor);
     let folder = std::env::temp_dir().join(format!("sunfleck-until-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let file = folder.join("wrong.ron");
-    std::fs::write(&file, wrong).expect("a scene");
+    std::fs::write(&file, wrong.to_string()).expect("a scene");
     let failure = run_file(&file, &Options::default(), &Unwatched).expect_err("an error");
     let checked = check_file(&file, &Options::default()).expect_err("an error");
     std::fs::remove_dir_all(&folder).expect("the folder is there");

@@ -1,11 +1,8 @@
 //! Light that leaves through a rectangle of the scene, and what lies below it.
 
-use std::fs;
-use std::path::Path;
-
 use sunfleck::products::{Product, Report};
 use sunfleck::run::Options;
-use sunfleck_tests::{Estimate, measure, product};
+use sunfleck_tests::{Estimate, SceneText, product};
 
 const VIEWS: &str = "List([(0.0, 0.0), (40.0, 100.0), (65.0, 200.0)])";
 const CONES: &str = "[(0.0, 0.0, 16.0), (40.0, 100.0, 16.0), (65.0, 200.0, 16.0)]";
@@ -13,24 +10,10 @@ const CONES: &str = "[(0.0, 0.0, 16.0), (40.0, 100.0, 16.0), (65.0, 200.0, 16.0)
 /// Trees of two bands under sun and sky, one of them over the edge of the tile; `plane` is a key of
 /// all sensors.
 fn trees(boundary: &str, plane: &str, quality: f64) -> Report {
-    let text = format!(
-        r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Bands([0.1, 0.3])),
-        "leaf": Leaf(reflectance: Bands([0.05, 0.5]), transmittance: Bands([0.03, 0.45])),
-    }},
-    meshes: {{ "tree": Crown(
-        shape: Ellipsoid(diameter_m: 2.0, height_m: 3.0), base_m: 0.5, leaf_area_m2: 12.0,
-        leaf: Square(side_m: 0.1), leaf_material: "leaf",
-    ) }},
-    terrain: Plane(size_m: (6.0, 5.0), corner_m: (-1.0, 2.0), material: "soil"),
-    instances: [List(of: "tree", at_m: [(-0.8, 4.0, 0.0), (2.0, 6.9, 0.0)])],
-    sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
-    sky: Fraction([0.3, 0.1]),
-    boundary: {boundary},
-    sensors: {{
+    SceneText::trees_in_daylight(boundary)
+        .with("terrain", r#"Plane(size_m: (6.0, 5.0), corner_m: (-1.0, 2.0), material: "soil")"#)
+        .with("instances", r#"List(of: "tree", at_m: [(-0.8, 4.0, 0.0), (2.0, 6.9, 0.0)])"#)
+        .with("sensors", format!(r#"
         "back": Directions(system: Backward, {plane} views: {VIEWS}, until: Samples(20000), measure: [Brf, GapFraction]),
         "forth": Directions({plane} views: {VIEWS}, until: Samples(60000), system: Forward),
         "image": Orthographic({plane} size_px: (6, 5), extent_m: (8.0, 4.0), center_m: (4.0, 4.1), zenith_deg: 40.0, azimuth_deg: 280.0, samples_per_px: 512),
@@ -39,11 +22,8 @@ fn trees(boundary: &str, plane: &str, quality: f64) -> Report {
             Albedo, BrfCells(40), BrfViews({VIEWS}), BrfCones({CONES}),
             Fapar(layer_m: 0.7), Fluxes(pixel_m: 0.5, heights_m: [1.5]),
         ]),
-        "cones": Photons({plane} per_m2: 10000.0, measure: [BrfCones({CONES})]),
-    }},
-)"#
-    );
-    measure(&text, Path::new("."), &Options { quality, ..Options::default() })
+        "cones": Photons({plane} per_m2: 10000.0, measure: [BrfCones({CONES})])"#))
+        .measure_with(&Options { quality, ..Options::default() })
 }
 
 fn bits(product: &Product) -> Vec<u64> {
@@ -179,28 +159,18 @@ fn all_estimators_see_the_same_light_leave_through_a_plane() {
 #[test]
 fn a_plane_over_a_lambertian_plain_has_its_reflectance() {
     for boundary in ["Isolated", "Periodic"] {
-        let report = measure(
-            &format!(
-                r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{ "soil": Lambertian(reflectance: Constant(0.37)) }},
-    terrain: Plane(size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7, material: "soil"),
-    sun: (zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)),
-    sky: Fraction([0.25]),
-    boundary: {boundary},
-    sensors: {{
-        "back": Directions(system: Backward, views: {VIEWS}, until: Samples(4096), virtual_plane: (center_m: (0.0, 4.0), size_m: (3.0, 1.7))),
+        let plane = "virtual_plane: (center_m: (0.0, 4.0), size_m: (3.0, 1.7))";
+        let report = SceneText::bare(0.37, "size_m: (10.0, 7.3), corner_m: (-3.1, 2.0), height_m: 12.7")
+            .with("sun", "zenith_deg: 40.0, azimuth_deg: 200.0, irradiance: Constant(1.0)")
+            .with("sky", "Fraction([0.25])")
+            .with("boundary", boundary)
+            .with("sensors", format!(r#"
+        "back": Directions(system: Backward, views: {VIEWS}, until: Samples(4096), {plane}),
         "photons": Photons(
-            per_m2: 2000.0, virtual_plane: (center_m: (0.0, 4.0), size_m: (3.0, 1.7)),
+            per_m2: 2000.0, {plane},
             measure: [Albedo, BrfViews({VIEWS}), BrfCells(4), Fapar(layer_m: 1.0), Fluxes(pixel_m: 0.5)],
-        ),
-    }},
-)"#
-            ),
-            Path::new("."),
-            &Options::default(),
-        );
+        )"#))
+            .measure();
         let rho = 0.37;
         let sun = 40_f64.to_radians().cos();
         let sure = |sensor: &str, name: &str, truth: f64| {
@@ -235,9 +205,7 @@ fn a_plane_over_a_lambertian_plain_has_its_reflectance() {
 /// beside it both see the soil; one at 1 m over all sees the soil in half of its area.
 #[test]
 fn a_low_plane_is_left_only_by_what_comes_from_below_it() {
-    let dir = tempfile::tempdir().expect("a temporary folder");
     let sheet = "g sheet\nv 2 0 2\nv 4 0 2\nv 4 4 2\nv 2 4 2\nf 1 2 3\nf 1 3 4\n";
-    fs::write(dir.path().join("sheet.obj"), sheet).expect("a file");
     let east = "center_m: (3.0, 2.0), size_m: (2.0, 4.0)";
     let west = "center_m: (1.0, 2.0), size_m: (2.0, 4.0)";
     let cases = [
@@ -253,29 +221,18 @@ fn a_low_plane_is_left_only_by_what_comes_from_below_it() {
     ];
     for boundary in ["Isolated", "Periodic"] {
         for (plane, truth) in &cases {
-            let report = measure(
-                &format!(
-                    r#"Scene(
-    format: 1,
-    bands: [(name: "a", center_nm: 660.0)],
-    materials: {{
-        "soil": Lambertian(reflectance: Constant(0.2)), "sheet": Lambertian(reflectance: Constant(0.5)),
-    }},
-    meshes: {{ "sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, parts: {{ "sheet": "sheet" }}) }},
-    instances: [List(of: "sheet", at_m: [(0.0, 0.0, 0.0)])],
-    terrain: Plane(size_m: (4.0, 4.0), material: "soil"),
-    sun: (zenith_deg: 0.0, irradiance: Constant(1.0)),
-    boundary: {boundary},
-    transport: (first_order_only: true),
-    sensors: {{
+            let report = SceneText::bare(0.2, "size_m: (4.0, 4.0)")
+                .with_more("materials", r#""sheet": Lambertian(reflectance: Constant(0.5))"#)
+                .with("meshes", r#""sheet": Obj(file: "sheet.obj", up: Z, unit_m: 1.0, parts: { "sheet": "sheet" })"#)
+                .with_file("sheet.obj", sheet)
+                .with("instances", r#"List(of: "sheet", at_m: [(0.0, 0.0, 0.0)])"#)
+                .with("sun", "zenith_deg: 0.0, irradiance: Constant(1.0)")
+                .with("boundary", boundary)
+                .with("transport", "first_order_only: true")
+                .with("sensors", format!(r#"
         "back": Directions(system: Backward, views: List([(0.0, 0.0)]), until: Samples(2048), virtual_plane: {plane}),
-        "forth": Directions(views: List([(0.0, 0.0)]), until: Samples(4096), virtual_plane: {plane}, system: Forward),
-    }},
-)"#
-                ),
-                dir.path(),
-                &Options::default(),
-            );
+        "forth": Directions(views: List([(0.0, 0.0)]), until: Samples(4096), virtual_plane: {plane}, system: Forward)"#))
+                .measure();
             for sensor in ["back", "forth"] {
                 let one = Estimate::of(product(&report, sensor, "brf"), 0);
                 let allowed = 4.0 * one.error + 1e-6;
