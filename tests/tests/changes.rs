@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use sunfleck::components::{
-    BlackBody, Emission, Instance, LeafArea, ResolvedSensor, SceneId, SkyLight, SunLight,
-    SurfaceOptics, TerrainPatch,
+    BlackBody, Emission, Instance, InstanceCount, InstanceRange, LeafArea, Mesh, MeshBounds,
+    PartMaterials, ResolvedSensor, SceneId, ShownMeshes, SkyLight, SunLight, SurfaceOptics,
+    TerrainPatch,
 };
 use sunfleck::document::{ReadOptions, Scene, read_text};
 use sunfleck::run::SceneWorld;
+use sunfleck::systems::MapFrame;
 
 /// Two crowns and a scatter on soil, in two bands.
 const SCENE: &str = r#"Scene(
@@ -126,8 +128,15 @@ fn contents(world: &SceneWorld) -> Vec<String> {
     list!(
         BlackBody,
         Emission,
+        InstanceCount,
+        InstanceRange,
         LeafArea,
+        MapFrame,
+        Mesh,
+        MeshBounds,
+        PartMaterials,
         ResolvedSensor,
+        ShownMeshes,
         SkyLight,
         SunLight,
         SurfaceOptics,

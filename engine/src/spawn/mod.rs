@@ -183,8 +183,7 @@ fn spawn_plantings(
 
 /// Returns whether each material is a leaf.
 fn leaves(world: &World, materials: &Map<Entity>) -> Vec<bool> {
-    let is_leaf = |entity: &Entity| {
-        world.get::<&Material>(*entity).is_ok_and(|one| matches!(*one, Material::Leaf(_)))
-    };
+    let is_leaf =
+        |entity: &Entity| world.get::<&Material>(*entity).is_ok_and(|material| material.is_leaf());
     materials.values().map(is_leaf).collect()
 }

@@ -11,7 +11,7 @@ use crate::document::Material;
 pub(super) fn measure_leaf_area(world: &mut World, resources: &mut Resources) {
     let is_leaf = |material: usize| {
         let material = world.get::<&Material>(resources.materials[material]);
-        material.is_ok_and(|material| matches!(*material, Material::Leaf(_)))
+        material.is_ok_and(|material| material.is_leaf())
     };
     let leaves: BTreeSet<usize> =
         (0..resources.materials.len()).filter(|&material| is_leaf(material)).collect();

@@ -41,8 +41,5 @@ fn asks_for_reflectance(sensor: &Sensor) -> bool {
         !one.is_absolute()
             && !matches!(one, PhotonMeasure::Orders | PhotonMeasure::BrightnessTemperature)
     };
-    match sensor {
-        Sensor::Photons(photons) => photons.measure.iter().any(of_photons),
-        other => other.image_measures().into_iter().flatten().any(of_image),
-    }
+    sensor.any_measure(of_image, of_photons)
 }

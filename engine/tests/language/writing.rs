@@ -467,7 +467,12 @@ fn sensor() -> BoxedStrategy<Sensor> {
     let photon = prop_oneof![
         any::<u32>().prop_map(PhotonMeasure::BrfCells),
         views().prop_map(PhotonMeasure::BrfViews),
+        any::<u32>().prop_map(PhotonMeasure::RadianceCells),
+        views().prop_map(PhotonMeasure::RadianceViews),
+        list((number(), number(), number())).prop_map(PhotonMeasure::RadianceCones),
         Just(PhotonMeasure::Albedo),
+        Just(PhotonMeasure::Exitance),
+        Just(PhotonMeasure::BrightnessTemperature),
         Just(PhotonMeasure::Orders),
         prop_oneof![Just(Per::Instance), Just(Per::Triangle)]
             .prop_map(|per| PhotonMeasure::Absorbed { per }),

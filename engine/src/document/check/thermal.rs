@@ -1,7 +1,7 @@
 //! Temperatures, and what is measured of them.
 
 use super::super::scene::{
-    Band, BandSource, ImageMeasure, PhotonMeasure, Scene, Sensor, Temperature, ThermalSky,
+    Band, BandSource, ImageMeasure, PhotonMeasure, Scene, Temperature, ThermalSky,
 };
 use super::Report;
 use super::range::TEMPERATURE;
@@ -107,10 +107,7 @@ pub(super) fn needs_light(scene: &Scene) -> bool {
         measure => reflects || !measure.is_absolute(),
     };
     scene.sensors.is_empty()
-        || scene.sensors.values().any(|sensor| match sensor {
-            Sensor::Photons(photons) => photons.measure.iter().any(of_photons),
-            other => other.image_measures().into_iter().flatten().any(of_band),
-        })
+        || scene.sensors.values().any(|sensor| sensor.any_measure(of_band, of_photons))
 }
 
 /// Temperature below which degrees Celsius may have been meant, K.

@@ -98,6 +98,15 @@ record! {
 }
 
 impl Material {
+    /// Returns whether it is a leaf: its area counts as leaf area.
+    #[must_use]
+    pub const fn is_leaf(&self) -> bool {
+        match self {
+            Self::Leaf(_) => true,
+            Self::Lambertian(_) | Self::Rpv(_) | Self::Soilspect(_) => false,
+        }
+    }
+
     /// Its temperature, if it was given.
     #[must_use]
     pub const fn temperature(&self) -> Option<&Temperature> {

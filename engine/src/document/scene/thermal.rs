@@ -1,6 +1,6 @@
 //! Emission of surfaces and of the sky.
 
-use super::{Band, ImageMeasure, PhotonMeasure, Scene, Sensor, Spectrum};
+use super::{Band, ImageMeasure, PhotonMeasure, Scene, Spectrum};
 
 /// Beyond this wavelength surfaces on Earth radiate more than they reflect of the sun, nm.
 const THERMAL_NM: f64 = 3000.0;
@@ -97,11 +97,8 @@ impl Scene {
     #[must_use]
     pub fn measures_emission(&self) -> bool {
         self.bands.iter().any(Band::emits)
-            && self.sensors.values().any(|sensor| match sensor {
-                Sensor::Photons(photons) => photons.measure.iter().any(PhotonMeasure::is_absolute),
-                other => {
-                    other.image_measures().into_iter().flatten().any(ImageMeasure::is_radiance)
-                }
+            && self.sensors.values().any(|sensor| {
+                sensor.any_measure(ImageMeasure::is_radiance, PhotonMeasure::is_absolute)
             })
     }
 }
@@ -110,7 +107,10 @@ impl ImageMeasure {
     /// Returns whether it needs the radiance of the band's own sources.
     #[must_use]
     pub const fn is_radiance(&self) -> bool {
-        matches!(self, Self::Radiance | Self::BrightnessTemperature)
+        match self {
+            Self::Radiance | Self::BrightnessTemperature => true,
+            Self::Brf | Self::Orders | Self::FourComponents | Self::GapFraction => false,
+        }
     }
 }
 
@@ -118,12 +118,38 @@ impl PhotonMeasure {
     /// Returns whether it is a radiance.
     #[must_use]
     pub const fn is_radiance(&self) -> bool {
-        matches!(self, Self::RadianceCells(_) | Self::RadianceViews(_) | Self::RadianceCones(_))
+        match self {
+            Self::RadianceCells(_) | Self::RadianceViews(_) | Self::RadianceCones(_) => true,
+            Self::BrfCells(_)
+            | Self::BrfViews(_)
+            | Self::BrfCones(_)
+            | Self::Albedo
+            | Self::Exitance
+            | Self::BrightnessTemperature
+            | Self::Orders
+            | Self::Fapar { .. }
+            | Self::Absorbed { .. }
+            | Self::Fluxes { .. } => false,
+        }
     }
 
     /// Returns whether it is in absolute units, from the band's own sources.
     #[must_use]
     pub const fn is_absolute(&self) -> bool {
-        self.is_radiance() || matches!(self, Self::Exitance | Self::Fluxes { .. })
+        match self {
+            Self::RadianceCells(_)
+            | Self::RadianceViews(_)
+            | Self::RadianceCones(_)
+            | Self::Exitance
+            | Self::Fluxes { .. } => true,
+            Self::BrfCells(_)
+            | Self::BrfViews(_)
+            | Self::BrfCones(_)
+            | Self::Albedo
+            | Self::BrightnessTemperature
+            | Self::Orders
+            | Self::Fapar { .. }
+            | Self::Absorbed { .. } => false,
+        }
     }
 }

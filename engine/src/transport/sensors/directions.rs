@@ -106,7 +106,9 @@ impl<'a> DirectionsFilm<'a> {
         }
         let spectra = match system {
             System::FirstOrder => FirstOrderPath::spectrum_count(separates_orders),
-            _ => spectrum_count(separates_orders),
+            System::Backward | System::Forward | System::Analog | System::Reference => {
+                spectrum_count(separates_orders)
+            }
         };
         let bands = stage.bands;
         let columns = bands * spectra;
@@ -118,10 +120,13 @@ impl<'a> DirectionsFilm<'a> {
                 view_tracer.film(move || FirstOrderPath::new(separates_orders))
             }
             (System::Reference, _) => view_tracer.film(ReferencePath::new),
-            (_, LightSource::Reflected) => {
+            // Packets have a film of their own, above.
+            (System::Backward | System::Forward | System::Analog, LightSource::Reflected) => {
                 view_tracer.film(move || BackwardPath::new(bands, separates_orders))
             }
-            (_, LightSource::Emitted) => view_tracer.film(move || ThermalPath::new(bands)),
+            (System::Backward | System::Forward | System::Analog, LightSource::Emitted) => {
+                view_tracer.film(move || ThermalPath::new(bands))
+            }
         };
         Self { film, places, has_sums_per_spectrum: false, spectra }
     }

@@ -82,7 +82,10 @@ impl ImageMeasure {
     /// Returns whether it is a function of radiance, rather than of the first surface along each ray.
     #[must_use]
     pub const fn is_light(&self) -> bool {
-        matches!(self, Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature)
+        match self {
+            Self::Radiance | Self::Brf | Self::Orders | Self::BrightnessTemperature => true,
+            Self::FourComponents | Self::GapFraction => false,
+        }
     }
 
     /// Returns whether a transport system estimates it in a scene. `FirstOrder` and `Reference` measure reflected
@@ -90,10 +93,14 @@ impl ImageMeasure {
     /// measured backwards.
     #[must_use]
     pub fn is_measured_by(&self, system: System, scene: &Scene) -> bool {
-        let has_all_orders = system != System::FirstOrder || scene.transport.most_orders() == 1;
-        let has_emission = !matches!(system, System::FirstOrder | System::Reference);
+        let is_single = scene.transport.most_orders() == 1;
+        let (has_all_orders, has_parts, has_emission) = match system {
+            System::Backward | System::Forward | System::Analog => (true, true, true),
+            System::FirstOrder => (is_single, true, false),
+            System::Reference => (true, false, false),
+        };
         match self {
-            Self::Orders => system != System::Reference,
+            Self::Orders => has_parts,
             Self::Brf => has_all_orders,
             Self::Radiance => {
                 has_all_orders && (has_emission || !scene.bands.iter().any(Band::emits))

@@ -51,7 +51,25 @@ impl Sensor {
     pub fn image_measures(&self) -> Option<&[ImageMeasure]> {
         match self {
             Self::Directions(sensor) => Some(&sensor.measure),
-            other => other.image_options().map(|image| image.measure.as_slice()),
+            Self::Orthographic(_) | Self::Perspective(_) | Self::Fisheye(_) => {
+                self.image_options().map(|image| image.measure.as_slice())
+            }
+            Self::Photons(_) => None,
+        }
+    }
+
+    /// Returns whether any quantity that it reports meets the condition for its kind.
+    pub fn any_measure(
+        &self,
+        of_image: impl Fn(&ImageMeasure) -> bool,
+        of_photons: impl Fn(&PhotonMeasure) -> bool,
+    ) -> bool {
+        match self {
+            Self::Photons(sensor) => sensor.measure.iter().any(of_photons),
+            Self::Orthographic(_)
+            | Self::Perspective(_)
+            | Self::Fisheye(_)
+            | Self::Directions(_) => self.image_measures().into_iter().flatten().any(of_image),
         }
     }
 
@@ -86,7 +104,9 @@ impl Sensor {
         match self {
             Self::Directions(sensor) => sensor.system,
             Self::Photons(sensor) => Some(sensor.system),
-            other => other.image_options().map(|image| image.system),
+            Self::Orthographic(_) | Self::Perspective(_) | Self::Fisheye(_) => {
+                self.image_options().map(|image| image.system)
+            }
         }
     }
 
@@ -128,7 +148,10 @@ impl Sensor {
     fn measures(&self) -> usize {
         match self {
             Self::Photons(sensor) => sensor.measure.len(),
-            other => other.image_measures().map_or(0, <[ImageMeasure]>::len),
+            Self::Orthographic(_)
+            | Self::Perspective(_)
+            | Self::Fisheye(_)
+            | Self::Directions(_) => self.image_measures().map_or(0, <[ImageMeasure]>::len),
         }
     }
 
@@ -154,7 +177,9 @@ impl Sensor {
         match self {
             Self::Directions(sensor) => Some(&sensor.until),
             Self::Photons(sensor) => sensor.until.as_ref(),
-            other => other.image_options().and_then(|image| image.until.as_ref()),
+            Self::Orthographic(_) | Self::Perspective(_) | Self::Fisheye(_) => {
+                self.image_options().and_then(|image| image.until.as_ref())
+            }
         }
     }
 
