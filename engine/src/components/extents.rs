@@ -1,5 +1,7 @@
 use glam::{DVec2, Vec3};
 
+use crate::document::ScenePath;
+
 /// Box around a loaded mesh, m, object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshBounds {
@@ -31,7 +33,7 @@ pub struct SceneExtents {
     /// Number of instances, and of their images in a periodic tile.
     pub records: u64,
     /// Path in the document of the mesh with most primitives.
-    pub largest_mesh: String,
+    pub largest_mesh: ScenePath,
     /// Path in the document of the instances with most records.
-    pub most_records: String,
+    pub most_records: ScenePath,
 }

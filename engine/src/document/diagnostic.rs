@@ -1,5 +1,6 @@
 //! Diagnostics of a scene: errors and warnings with their place and advice.
 
+use super::path::{ScenePath, Step};
 use super::ron_text::Span;
 
 /// Severity of a diagnostic.
@@ -29,8 +30,8 @@ pub struct Place {
 pub struct Diagnostic {
     /// Error or warning.
     pub severity: Severity,
-    /// Path in the document: `sensors.nadir.size_px`, `instances[3].of`; empty for all of it.
-    pub path: String,
+    /// Path in the document.
+    pub path: ScenePath,
     /// Description of the problem.
     pub message: String,
     /// Advice: text to write instead.
@@ -43,7 +44,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// Creates an error at a path in the document.
-    pub fn error(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn error(path: impl Into<ScenePath>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
             path: path.into(),
@@ -55,7 +56,7 @@ impl Diagnostic {
     }
 
     /// Creates a warning at a path in the document.
-    pub fn warning(path: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn warning(path: impl Into<ScenePath>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(path, message) }
     }
 
@@ -98,7 +99,7 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
 
 /// Creates the error of an unknown name: ``no material `laef`; did you mean `leaf`? this scene defines: leaf, bark``.
 pub fn unknown_name<'a>(
-    path: impl Into<String>,
+    path: impl Into<ScenePath>,
     kind: &str,
     name: &str,
     known: impl IntoIterator<Item = &'a str>,
@@ -110,7 +111,7 @@ pub fn unknown_name<'a>(
         suggestion(name, &known, "this scene defines")
     };
     let error = Diagnostic::error(path, format!("no {kind} `{name}`")).help(help);
-    let is_of_key = error.path.strip_suffix(name).is_some_and(|parent| parent.ends_with('.'));
+    let is_of_key = matches!(error.path.steps().last(), Some(Step::Name(last)) if last == name);
     Diagnostic { is_of_key, ..error }
 }
 

@@ -83,7 +83,7 @@ impl<K: MapKey, T: Encode> Encode for IndexMap<K, T> {
     fn encode(&self) -> Text {
         let entry = |(key, value): (&K, &T)| {
             let key = key.as_name();
-            Item::new(Some(key), quoted(key, true) + ": ", value.encode())
+            Item::new(Some(Step::Name(key.to_owned())), quoted(key, true) + ": ", value.encode())
         };
         Text::group("{".to_owned(), self.iter().map(entry).collect(), "}")
     }
@@ -91,7 +91,7 @@ impl<K: MapKey, T: Encode> Encode for IndexMap<K, T> {
     fn visit<'a>(&'a self, walk: &mut Walk<'_, 'a>) {
         for (key, value) in self {
             walk.key(key.as_name(), key.leaf());
-            walk.below(Step::Name(key.as_name()), value);
+            walk.below(Step::Name(key.as_name().to_owned()), value);
         }
     }
 }

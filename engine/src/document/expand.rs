@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use super::path::ScenePath;
 use super::read::Reading;
 use super::ron_text::{Node, Value};
 use super::scene::Param;
@@ -40,12 +41,12 @@ impl Reading {
         {
             return format!("variant {variant}");
         }
-        self.remark(&format!("params.{name}")).unwrap_or_default()
+        self.remark(&ScenePath::from("params").name(name)).unwrap_or_default()
     }
 
     /// File, line, and the formulas there.
-    fn remark(&self, path: &str) -> Option<String> {
-        let node = self.source.node(path)?;
+    fn remark(&self, path: &ScenePath) -> Option<String> {
+        let (node, _) = self.source.nearest(path)?;
         let place = self.source.place_of(node.span);
         let mut formulas = BTreeSet::new();
         collect(node, &mut formulas);

@@ -1,7 +1,7 @@
 //! All numbers, names of definitions and paths of files in a document, each with the keys that it stands under.
 
 use super::encode::Encode;
-use super::path::Step;
+use super::path::{ScenePath, Step};
 use super::scene::Scene;
 
 /// A value without parts that means something beyond itself.
@@ -34,38 +34,38 @@ pub(super) struct Target {
 }
 
 /// Function that receives the path to a leaf and the leaf.
-pub(super) type Visit<'v, 'a> = &'v mut dyn FnMut(&[Step<'a>], LeafValue<'a>);
+pub(super) type Visit<'v, 'a> = &'v mut dyn FnMut(&ScenePath, LeafValue<'a>);
 
 /// Traversal of all leaves of a document.
 pub(super) struct Walk<'v, 'a> {
-    steps: Vec<Step<'a>>,
+    path: ScenePath,
     visit: Visit<'v, 'a>,
 }
 
 impl<'a> Walk<'_, 'a> {
     /// Visits all leaves below a step.
-    pub(super) fn below(&mut self, step: Step<'a>, value: &'a (impl Encode + ?Sized)) {
-        self.steps.push(step);
+    pub(super) fn below(&mut self, step: Step, value: &'a (impl Encode + ?Sized)) {
+        self.path.push(step);
         value.visit(self);
-        self.steps.pop();
+        self.path.pop();
     }
 
     /// Visits the key of a map, which stands at the step to its value.
     pub(super) fn key(&mut self, name: &'a str, leaf: Option<LeafValue<'a>>) {
         if let Some(leaf) = leaf {
-            self.steps.push(Step::Name(name));
+            self.path.push(Step::Name(name.to_owned()));
             self.leaf(leaf);
-            self.steps.pop();
+            self.path.pop();
         }
     }
 
     /// Visits a leaf at the present path.
     pub(super) fn leaf(&mut self, leaf: LeafValue<'a>) {
-        (self.visit)(&self.steps, leaf);
+        (self.visit)(&self.path, leaf);
     }
 }
 
 /// Visits all leaves of a value.
 pub(super) fn visit_leaves<'a>(value: &'a impl Encode, visit: Visit<'_, 'a>) {
-    value.visit(&mut Walk { steps: Vec::new(), visit });
+    value.visit(&mut Walk { path: ScenePath::root(), visit });
 }

@@ -32,6 +32,7 @@ pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
 pub use format::{format, format_file};
 pub use keys::{keys_about, keys_page};
 pub(crate) use legible::legible;
+pub use path::{ScenePath, Step};
 pub use read::{ReadError, ReadOptions, Reading, read_file, read_text};
 pub use ron_text::Span;
 pub use scene::*;

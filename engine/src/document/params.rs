@@ -43,8 +43,8 @@ pub(super) fn settle_params<'a>(
     let mut params = Params { values: IndexMap::new(), lost, used: RefCell::default() };
     let mut later: HashSet<_> = entries(key(tree, "params")).map(|(name, _)| name).collect();
     for (name, node) in entries(key(tree, "params")) {
-        let own = reader.within(Step::Key("params"), |reader| {
-            reader.within(Step::Key(name), |reader| match &node.value {
+        let own = reader.within("params".into(), |reader| {
+            reader.within(Step::Name(name.to_owned()), |reader| match &node.value {
                 Value::Formula(formula) => compute(formula, node, &params, &later, reader),
                 _ => plain(node),
             })
@@ -203,12 +203,14 @@ fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader
             }
         }
         Value::Record(fields) => {
-            report_repeated(fields.iter().map(|f| (f.name.as_str(), f.name_span)), reader);
+            let keys = fields.iter().map(|f| (f.name.as_str(), f.name_span));
+            report_repeated(keys, |key| Step::Key(key.into()), reader);
             for Field { name, value, .. } in fields {
                 // `params` are settled, variants hold plain values, and a title is what it says.
                 let is_plain =
                     is_scene && matches!(name.as_str(), "params" | "variants" | "sweep" | "title");
-                reader.within(Step::Key(name), |reader| match &value.inner().value {
+                let step = Step::Key(name.clone().into());
+                reader.within(step, |reader| match &value.inner().value {
                     Value::Formula(_) if is_plain => {}
                     Value::Map(_) if is_plain => walk_plain(value, reader),
                     _ => walk(value, params, false, reader),
@@ -216,10 +218,11 @@ fn walk<'a>(node: &'a Node, params: &Params, is_scene: bool, reader: &mut Reader
             }
         }
         Value::Map(entries) => {
-            report_repeated(names(entries), reader);
+            report_repeated(names(entries), Step::Name, reader);
             for (key, value) in entries {
                 if let Value::Text(key) = &key.value {
-                    reader.within(Step::Key(key), |reader| walk(value, params, false, reader));
+                    let step = Step::Name(key.clone());
+                    reader.within(step, |reader| walk(value, params, false, reader));
                 }
             }
         }
@@ -237,10 +240,10 @@ fn walk_plain<'a>(node: &'a Node, reader: &mut Reader<'a>) {
             }
         }
         Value::Map(entries) => {
-            report_repeated(names(entries), reader);
+            report_repeated(names(entries), Step::Name, reader);
             for (key, value) in entries {
                 if let Value::Text(key) = &key.value {
-                    reader.within(Step::Key(key), |reader| walk_plain(value, reader));
+                    reader.within(Step::Name(key.clone()), |reader| walk_plain(value, reader));
                 }
             }
         }
@@ -266,7 +269,11 @@ fn report_bad_number(node: &Node, bad: BadNumber, reader: &mut Reader<'_>) {
     reader.error(node.span, message, Some(help.to_owned()));
 }
 
-fn report_repeated<'a>(names: impl Iterator<Item = (&'a str, Span)>, reader: &mut Reader<'a>) {
+fn report_repeated<'a>(
+    names: impl Iterator<Item = (&'a str, Span)>,
+    step: impl Fn(String) -> Step,
+    reader: &mut Reader<'a>,
+) {
     let mut seen = HashMap::new();
     for (name, span) in names {
         if seen.contains_key(name) && !reader.has_room() {
@@ -279,7 +286,9 @@ fn report_repeated<'a>(names: impl Iterator<Item = (&'a str, Span)>, reader: &mu
                 "it stands at line {}, column {} already: take one of the two out",
                 first.line, first.column
             );
-            reader.within(Step::Key(name), |reader| reader.error(span, message, Some(help)));
+            reader.within(step(name.to_owned()), |reader| {
+                reader.error(span, message, Some(help));
+            });
         } else {
             seen.insert(name, span);
         }

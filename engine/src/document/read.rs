@@ -11,6 +11,7 @@ use super::diagnostic::{Diagnostic, Place};
 use super::encode::Encode as _;
 use super::include::{Included, include};
 use super::params::{settle_params, survey};
+use super::path::ScenePath;
 use super::ron_text::{Group, Node, Text, parse};
 use super::scene::{Param, Scene};
 use super::source::Source;
@@ -126,7 +127,7 @@ pub(super) fn text_of_file(path: &Path, only_files: bool) -> Result<String, Read
 pub(super) fn parse_text(source: &Source) -> Result<Node, ReadError> {
     parse(source.text()).map_err(|error| {
         let place = source.place_of(error.span);
-        let diagnostic = Diagnostic::error("", error.message).at(place);
+        let diagnostic = Diagnostic::error(ScenePath::root(), error.message).at(place);
         let diagnostic = Diagnostic { help: error.help, ..diagnostic };
         let rendered = source.describe(&diagnostic).trim_end().to_owned();
         ReadError::Syntax { diagnostic: Box::new(diagnostic), rendered }
@@ -165,13 +166,13 @@ pub fn read_text(name: &str, text: &str, options: &ReadOptions) -> Result<Readin
     reader.advise_from(&tree, params.values.keys());
     survey(&tree, &params, &mut reader);
     let mut scene = Scene::decode(&tree, &mut reader);
-    let Findings { mut diagnostics, dropped, broken } = reader.finish();
+    let Findings { mut diagnostics, dropped, broken, lost } = reader.finish();
     let unused = params.unused();
     scene.params = params.values;
 
     let source = source.with_tree(tree);
     if dropped == 0 {
-        diagnostics.extend(check_readable(&scene, &broken));
+        diagnostics.extend(check_readable(&scene, &broken, &lost));
     }
     if !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(unused.iter().map(|name| unused_param(name)));
@@ -191,13 +192,15 @@ pub fn read_text(name: &str, text: &str, options: &ReadOptions) -> Result<Readin
         })
     });
     if dropped > 0 {
-        diagnostics.push(Diagnostic::error("", format!("and {dropped} more errors")));
+        let message = format!("and {dropped} more errors");
+        diagnostics.push(Diagnostic::error(ScenePath::root(), message));
     }
     Ok(Reading { scene, source, diagnostics, options: options.clone() })
 }
 
 fn unused_param(name: &str) -> Diagnostic {
-    Diagnostic::warning(format!("params.{name}"), format!("no formula uses the parameter `{name}`"))
+    let path = ScenePath::from("params").name(name);
+    Diagnostic::warning(path, format!("no formula uses the parameter `{name}`"))
         .help(format!("write `\"={name}\"` where its value is meant, or take it out"))
 }
 

@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 
 use super::diagnostic::{Diagnostic, Place, Severity};
 use super::legible::{NAME, legible, shortened};
+use super::path::{ScenePath, Step};
 use super::ron_text::{Node, Span, Value};
 
 /// A scene's text and that of the files that it includes, one behind the other; its tree, and where
@@ -99,55 +100,38 @@ impl Source {
         &self.text
     }
 
-    /// The node at a path of the document, or at its nearest ancestor that exists.
-    pub(super) fn node(&self, path: &str) -> Option<&Node> {
+    /// The node at a path of the document, or at its nearest ancestor that exists; true for the former.
+    pub(super) fn nearest(&self, path: &ScenePath) -> Option<(&Node, bool)> {
         let mut node = self.tree.as_ref()?;
-        let mut rest = path;
-        while let Some((child, after)) = self.step(node.inner(), rest) {
-            (node, rest) = (child, after);
+        for step in path.steps() {
+            match self.step(node, step) {
+                Some(child) => node = child,
+                None => return Some((node, false)),
+            }
         }
-        Some(node)
+        Some((node, true))
     }
 
     /// Bytes where a path of the document stands, or its nearest ancestor that exists.
     #[must_use]
-    pub fn locate(&self, path: &str) -> Option<Span> {
-        let mut node = self.tree.as_ref()?;
-        let mut rest = path;
-        while !rest.is_empty() {
-            // `Fraction([..])` is passed through on the way to `[0]`, yet all of it is `sky`.
-            match self.step(node.inner(), rest) {
-                Some((child, after)) => (node, rest) = (child, after),
-                None => return Some(node.opening()),
-            }
-        }
-        Some(node.head(&self.text))
+    pub fn locate(&self, path: &ScenePath) -> Option<Span> {
+        let (node, is_exact) = self.nearest(path)?;
+        Some(if is_exact { node.head(&self.text) } else { node.opening() })
     }
 
     /// Bytes of the key of a map at the end of a path.
-    fn locate_key(&self, path: &str) -> Option<Span> {
-        let mut node = self.tree.as_ref()?;
-        let mut rest = path;
-        loop {
-            let inner = node.inner();
-            let key = match &inner.value {
-                Value::Map(entries) => entries
-                    .iter()
-                    .find(|(key, _)| self.after_name(key, rest).is_some_and(str::is_empty))
-                    .map(|(key, _)| key.span),
-                _ => None,
-            };
-            if key.is_some() {
-                return key;
-            }
-            (node, rest) = self.step(inner, rest)?;
-        }
+    fn locate_key(&self, path: &ScenePath) -> Option<Span> {
+        let (name, parents) = path.steps().split_last()?;
+        let map =
+            parents.iter().try_fold(self.tree.as_ref()?, |node, step| self.step(node, step))?;
+        let Value::Map(entries) = &map.inner().value else { return None };
+        entries.iter().map(|(key, _)| key).find(|key| self.is_named(key, name)).map(|key| key.span)
     }
 
     /// Place that a diagnostic is about.
     pub(super) fn place_of_path(&self, diagnostic: &Diagnostic) -> Option<Place> {
         let Diagnostic { path, is_of_key, .. } = diagnostic;
-        if path.is_empty() {
+        if path.is_root() {
             return None;
         }
         let key = if *is_of_key { self.locate_key(path) } else { None };
@@ -156,7 +140,7 @@ impl Source {
 
     /// Place of a path of the document, or of its nearest ancestor that exists.
     #[must_use]
-    pub fn place(&self, path: &str) -> Option<Place> {
+    pub fn place(&self, path: &ScenePath) -> Option<Place> {
         self.locate(path).map(|span| self.place_of(span))
     }
 
@@ -192,10 +176,10 @@ impl Source {
     pub(super) fn describe(&self, diagnostic: &Diagnostic) -> String {
         let Diagnostic { message, path, help, .. } = diagnostic;
         let mut out = format!("{}\n", legible(message));
-        let at = if path.is_empty() {
+        let at = if path.is_root() {
             String::new()
         } else {
-            format!(" ({})", shortened(&legible(path), NAME))
+            format!(" ({})", shortened(&legible(&path.to_string()), NAME))
         };
         let place = diagnostic.place.clone().or_else(|| self.place_of_path(diagnostic));
         let mut gutter = "     ".to_owned();
@@ -242,34 +226,24 @@ impl Source {
         (format!("{lead}{shown}{tail}"), format!("{}{}", " ".repeat(offset), "^".repeat(width)))
     }
 
-    /// The child that a path starts with, and the rest of the path. Keys may hold dots: of the keys
-    /// that fit, the longest is meant.
-    fn step<'a, 'p>(&self, node: &'a Node, path: &'p str) -> Option<(&'a Node, &'p str)> {
-        if let Some((index, after)) = path.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
-            let (Value::List(items) | Value::Tuple(items)) = &node.value else { return None };
-            let child = items.get(index.parse::<usize>().ok()?)?;
-            return Some((child, after.strip_prefix('.').unwrap_or(after)));
-        }
-        match &node.value {
-            Value::Record(fields) => fields
-                .iter()
-                .filter_map(|field| Some((&field.value, after_key(path, &field.name)?)))
-                .min_by_key(|(_, after)| after.len()),
-            Value::Map(entries) => entries
-                .iter()
-                .filter_map(|(key, value)| Some((value, self.after_name(key, path)?)))
-                .min_by_key(|(_, after)| after.len()),
+    /// The child of a node at a step.
+    fn step<'a>(&self, node: &'a Node, step: &Step) -> Option<&'a Node> {
+        match (&node.inner().value, step) {
+            (Value::List(items) | Value::Tuple(items), Step::Index(index)) => items.get(*index),
+            (Value::Record(fields), Step::Key(name)) => {
+                fields.iter().find(|field| field.name == *name).map(|field| &field.value)
+            }
+            (Value::Map(entries), step) => {
+                entries.iter().find(|(key, _)| self.is_named(key, step)).map(|(_, value)| value)
+            }
             _ => None,
         }
     }
 
-    /// The rest of a path behind the key of a map: as it is written, or with the namespace of its file.
-    fn after_name<'p>(&self, key: &Node, path: &'p str) -> Option<&'p str> {
-        let Value::Text(name) = &key.value else { return None };
-        after_key(path, name).or_else(|| {
-            let rest = path.strip_prefix(self.namespace(key.span))?;
-            after_key(rest, name)
-        })
+    /// Returns whether the key of a map is a name as it is written, or with the namespace of its file.
+    fn is_named(&self, key: &Node, step: &Step) -> bool {
+        let (Value::Text(key_name), Step::Name(name)) = (&key.value, step) else { return false };
+        key_name == name || name.strip_prefix(self.namespace(key.span)) == Some(key_name)
     }
 }
 
@@ -277,14 +251,4 @@ fn write_line(out: &mut String, line: std::fmt::Arguments<'_>) {
     // Writing to a string cannot fail.
     let _infallible = out.write_fmt(line);
     out.push('\n');
-}
-
-/// The rest of a path behind a key that it starts with.
-fn after_key<'p>(path: &'p str, key: &str) -> Option<&'p str> {
-    let after = path.strip_prefix(key)?;
-    match after.as_bytes().first() {
-        None | Some(b'[') => Some(after),
-        Some(b'.') => Some(&after[1..]),
-        Some(_) => None,
-    }
 }

@@ -1,11 +1,14 @@
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
 
-use super::Diagnostic;
 use super::read::Reading;
 use super::scene::{Scene, Sky, Spa, Sun, SunPosition};
+use super::{Diagnostic, ScenePath};
 
-const AT: &str = "sun.position";
+/// Path to the place and time that a position is computed from.
+fn position_path() -> ScenePath {
+    ScenePath::from(["sun", "position"])
+}
 
 /// Zenith angle of the horizon, degrees.
 const HORIZON_DEG: f64 = 90.0;
@@ -84,7 +87,7 @@ impl Sun {
     /// Zenith angle and azimuth from place and time, degrees, also below the horizon.
     pub(super) fn placed(&self) -> Result<(f64, f64), Box<Diagnostic>> {
         let Some(SunPosition::Spa(position)) = &self.position else {
-            return Err(Box::new(Diagnostic::error(AT, "there is no position")));
+            return Err(Box::new(Diagnostic::error(position_path(), "there is no position")));
         };
         spa(position)
     }
@@ -109,13 +112,13 @@ impl Scene {
         };
         Some(if self.has_light_at_night() {
             let message = format!("{message}: the scene is traced without it");
-            Diagnostic::warning(AT, message).help(
+            Diagnostic::warning(position_path(), message).help(
                 "sky and emission are what is left; where neither lights a band, reflectance factors, albedo \
                  and absorbed fractions have no value",
             )
         } else {
             let help = "write a time of day, or leave the sun out and write a sky";
-            Diagnostic::error(AT, message).help(help)
+            Diagnostic::error(position_path(), message).help(help)
         })
     }
 }
@@ -128,7 +131,7 @@ impl Reading {
         let mut errors = self.diagnostics.iter().filter(|one| one.is_error());
         let (first, None) = (errors.next()?, errors.next()) else { return None };
         let night = self.scene.night().filter(Diagnostic::is_error)?;
-        (first.path == AT && first.message == night.message).then_some(night.message)
+        (first.path == position_path() && first.message == night.message).then_some(night.message)
     }
 
     /// Returns what a scene that is traced without its sun warns of.
@@ -153,47 +156,46 @@ fn spa(position: &Spa) -> Result<(f64, f64), Box<Diagnostic>> {
         temperature_c,
         delta_t_s,
     } = position;
-    let within = |key: &str, value: f64, (low, high): (f64, f64)| {
+    let at = position_path();
+    let within = |path: ScenePath, value: f64, (low, high): (f64, f64)| {
         if (low..=high).contains(&value) {
             return Ok(());
         }
         let message = format!("expected a number from {low} to {high}, found {value}");
-        Err(Box::new(Diagnostic::error(format!("{AT}.{key}"), message)))
+        Err(Box::new(Diagnostic::error(path, message)))
     };
-    within("date[0]", f64::from(year), (0.0, 6000.0))?;
-    within("date[1]", f64::from(month), (1.0, 12.0))?;
-    within("date[2]", f64::from(day), (1.0, 31.0))?;
-    within("time[0]", hour, (0.0, 24.0))?;
-    within("time[1]", minute, (0.0, 60.0))?;
-    within("time[2]", second, (0.0, 60.0))?;
-    within("utc_offset_h", utc_offset_h, (-18.0, 18.0))?;
-    within("latitude_deg", latitude_deg, (-90.0, 90.0))?;
-    within("longitude_deg", longitude_deg, (-180.0, 180.0))?;
-    within("altitude_m", altitude_m, (-500.0, 100_000.0))?;
-    within("pressure_hpa", pressure_hpa, (0.0, 1200.0))?;
-    within("temperature_c", temperature_c, (-150.0, 100.0))?;
-    within("delta_t_s", delta_t_s.unwrap_or(0.0), (-8000.0, 8000.0))?;
-    let no = |key: &'static str| {
-        move |error: solar_positioning::Error| {
-            Box::new(Diagnostic::error(format!("{AT}{key}"), error.to_string()))
-        }
+    within(at.key("date").index(0), f64::from(year), (0.0, 6000.0))?;
+    within(at.key("date").index(1), f64::from(month), (1.0, 12.0))?;
+    within(at.key("date").index(2), f64::from(day), (1.0, 31.0))?;
+    within(at.key("time").index(0), hour, (0.0, 24.0))?;
+    within(at.key("time").index(1), minute, (0.0, 60.0))?;
+    within(at.key("time").index(2), second, (0.0, 60.0))?;
+    within(at.key("utc_offset_h"), utc_offset_h, (-18.0, 18.0))?;
+    within(at.key("latitude_deg"), latitude_deg, (-90.0, 90.0))?;
+    within(at.key("longitude_deg"), longitude_deg, (-180.0, 180.0))?;
+    within(at.key("altitude_m"), altitude_m, (-500.0, 100_000.0))?;
+    within(at.key("pressure_hpa"), pressure_hpa, (0.0, 1200.0))?;
+    within(at.key("temperature_c"), temperature_c, (-150.0, 100.0))?;
+    within(at.key("delta_t_s"), delta_t_s.unwrap_or(0.0), (-8000.0, 8000.0))?;
+    let no = |path: ScenePath| {
+        move |error: solar_positioning::Error| Box::new(Diagnostic::error(path, error.to_string()))
     };
     let delta_t = delta_t_s
         .map_or_else(|| delta_t::estimate_from_date(year as i32, month), Ok)
-        .map_err(no(".date"))?;
+        .map_err(no(at.key("date")))?;
     let midnight = JulianDate::from_utc(year as i32, month, day, 0, 0, 0.0, delta_t)
-        .map_err(no(".date"))?
+        .map_err(no(at.key("date")))?
         .julian_date();
     let hours = hour + minute / 60.0 + second / 3600.0 - utc_offset_h;
-    let time = JulianDate::new(midnight + hours / 24.0, delta_t).map_err(no(""))?;
+    let time = JulianDate::new(midnight + hours / 24.0, delta_t).map_err(no(at.clone()))?;
     let refraction = (pressure_hpa > 0.0)
         .then(|| RefractionCorrection::new(pressure_hpa, temperature_c))
         .transpose()
-        .map_err(no(".pressure_hpa"))?;
+        .map_err(no(at.key("pressure_hpa")))?;
     let location = Location { latitude: latitude_deg, longitude: longitude_deg };
     let sun = SolarPositions::new()
         .at_from_julian(time, location, altitude_m, refraction)
-        .map_err(no(""))?;
+        .map_err(no(at.clone()))?;
     Ok((sun.zenith_angle(), sun.azimuth()))
 }
 
@@ -252,6 +254,6 @@ mod tests {
     fn a_day_that_no_month_has_is_an_error_at_its_place() {
         let mut wrong = denver();
         wrong.date = (2003, 2, 30);
-        assert_eq!(spa(&wrong).unwrap_err().path, "sun.position.date");
+        assert_eq!(spa(&wrong).unwrap_err().path, position_path().key("date"));
     }
 }

@@ -3,48 +3,56 @@
 use crate::components::{
     ImageSensor, Layers, Optics, OrthographicOptics, Per, PhotonMeasure, ResolvedSensor,
 };
-use crate::document::rounded_up;
+use crate::document::{ScenePath, rounded_up};
 use crate::geometry::PixelGrid;
 
 /// Sensor that takes less memory, and the change that makes it smaller.
 pub(super) struct Smaller {
     pub(super) sensor: ResolvedSensor,
-    /// Key below the sensor to change.
-    pub(super) key: String,
+    /// Path of the value to change.
+    pub(super) path: ScenePath,
     /// Text to write there.
     pub(super) text: String,
 }
 
 /// Sensor with a fraction of its pixels, its views, or the cells of one of its measures; `None` if nothing would be left,
 /// or if the measure has no such choice.
-pub(super) fn smaller(sensor: &ResolvedSensor, measure: usize, fraction: f64) -> Option<Smaller> {
+pub(super) fn smaller(
+    sensor: &ResolvedSensor,
+    path: &ScenePath,
+    measure: usize,
+    fraction: f64,
+) -> Option<Smaller> {
     let mut sensor = sensor.clone();
-    let (key, text) = match &mut sensor {
-        ResolvedSensor::Image(image) => fewer_pixels(image, fraction)?,
+    let (path, text) = match &mut sensor {
+        ResolvedSensor::Image(image) => {
+            let (key, text) = fewer_pixels(image, fraction)?;
+            (path.key(key), text)
+        }
         ResolvedSensor::Directions(directions) => {
             let views = (directions.views.len() as f64 * fraction) as usize;
             directions.views.truncate(views);
-            (views > 0).then(|| (".views".to_owned(), format!("at most {views} views")))?
+            (views > 0).then(|| (path.key("views"), format!("at most {views} views")))?
         }
         ResolvedSensor::Photons(photons) => {
             let text = coarser(&mut photons.products.get_mut(measure)?.measure, fraction)?;
-            (format!(".measure[{measure}]"), text)
+            (path.key("measure").index(measure), text)
         }
     };
-    Some(Smaller { sensor, key, text })
+    Some(Smaller { sensor, path, text })
 }
 
 /// Reduces the pixels of an image to a fraction; returns the key and the text to write there.
-fn fewer_pixels(image: &mut ImageSensor, fraction: f64) -> Option<(String, String)> {
+fn fewer_pixels(image: &mut ImageSensor, fraction: f64) -> Option<(&'static str, String)> {
     if let Optics::Orthographic(OrthographicOptics { pixel: Some(side), .. }) = &mut image.optics {
         let extent = image.size.as_dvec2() * *side;
         *side = rounded_up(*side / fraction.sqrt());
         image.size = PixelGrid::covering(extent, *side).counts.as_uvec2();
-        return Some((".pixel_m".to_owned(), format!("`pixel_m: {side:?}`")));
+        return Some(("pixel_m", format!("`pixel_m: {side:?}`")));
     }
     let size = (image.size.as_dvec2() * fraction.sqrt()).as_uvec2();
     image.size = Some(size).filter(|size| size.min_element() > 0)?;
-    Some((".size_px".to_owned(), format!("`size_px: ({}, {})`", size.x, size.y)))
+    Some(("size_px", format!("`size_px: ({}, {})`", size.x, size.y)))
 }
 
 /// Reduces the cells of a measure to a fraction; returns the text to write.

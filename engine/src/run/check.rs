@@ -6,7 +6,7 @@ use super::cost::{self, CostEstimate};
 use super::sensors::{Begun, MOST_SAMPLES, MeasureContext, SensorEntity, begin};
 use super::{Failure, Options};
 use crate::components::{ImageSamples, ResolvedSensor, StopCriterion};
-use crate::document::{Diagnostic, suggestion, unknown_name};
+use crate::document::{Diagnostic, ScenePath, suggestion, unknown_name};
 use crate::extract::Stage;
 use crate::products::Product;
 use crate::transport::{Camera, Partition, RANDOMISATIONS};
@@ -37,7 +37,7 @@ fn problems_of(
     store: &CheckpointStore,
 ) -> Vec<Diagnostic> {
     let Begun { mut measurement, convergence } = begin(name, sensor, measured, quality);
-    let path = format!("sensors.{name}.until");
+    let path = ScenePath::from("sensors").name(name).key("until");
     let mut problems = Vec::new();
     problems.extend(too_many_samples(name, sensor, measured.stage, quality));
     let films = measurement.films();
@@ -56,7 +56,7 @@ fn problems_of(
             "the sums of {RANDOMISATIONS} randomisations take {gib:.1} GiB: too many for a checkpoint"
         );
         let help = "measure fewer cells, pixels or bands, or run it without `--checkpoint`";
-        problems.push(Diagnostic::error(format!("sensors.{name}"), message).help(help));
+        problems.push(Diagnostic::error(ScenePath::from("sensors").name(name), message).help(help));
     }
     if store.share() != Partition::ALL && !convergence.is_fixed() {
         let message = "a part of a run cannot tell when the whole is good enough";
@@ -69,8 +69,7 @@ fn problems_of(
     });
     let mut known: Option<Vec<Product>> = None;
     for (index, limits) in named {
-        let at =
-            if convergence.until.len() == 1 { path.clone() } else { format!("{path}[{index}]") };
+        let at = if convergence.until.len() == 1 { path.clone() } else { path.index(index) };
         let known = known.get_or_insert_with(|| {
             // Without a single sample.
             measurement.films().into_iter().for_each(|paced| paced.film.trace(0, &|_| ()));
@@ -104,7 +103,8 @@ fn too_many_samples(
     (image.until.is_empty() && samples > MOST_SAMPLES).then(|| {
         let message = format!("{density:e} samples per m² make {samples:.2e} samples in a pixel");
         let help = format!("a pixel may have {MOST_SAMPLES}: write at most {most:.2e}");
-        Diagnostic::error(format!("sensors.{name}.samples_per_m2"), message).help(help)
+        let path = ScenePath::from("sensors").name(name).key("samples_per_m2");
+        Diagnostic::error(path, message).help(help)
     })
 }
 

@@ -9,7 +9,7 @@ use super::checkpoint::CheckpointStore;
 use super::convergence::{Measurement, Start};
 use super::sensors::SensorEntity;
 use crate::components::ResolvedSensor;
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, ScenePath};
 use crate::output;
 use crate::products::{Forecast, ProductSize, data_size};
 use crate::transport::Partition;
@@ -156,7 +156,7 @@ pub(super) fn check_memory(
         shown.join(", ")
     );
     let SensorEntity { name, sensor, .. } = &sensors[largest];
-    let path = format!("sensors.{name}");
+    let path = ScenePath::from("sensors").name(name);
     let alone = if costs.len() > 1 { ", or each sensor in a scene of its own" } else { "" };
     // Fraction of its memory that is free beside the others. Small films are stored in another way, so that memory is
     // not proportional to the number of cells.
@@ -165,12 +165,12 @@ pub(super) fn check_memory(
     let fraction = free.saturating_sub(needed.saturating_sub(memory)) as f64 / memory as f64;
     let fractions = successors(Some(0.99 * fraction), |fraction| Some(0.8 * fraction));
     let candidates =
-        fractions.map_while(|fraction| smaller(sensor, measure, fraction)).take(MOST_TRIES);
-    for Smaller { sensor, key, text } in candidates {
+        fractions.map_while(|fraction| smaller(sensor, &path, measure, fraction)).take(MOST_TRIES);
+    for Smaller { sensor, path, text } in candidates {
         costs[largest] = cost(name, &sensor);
         if peak(&costs) <= free {
             let help = format!("write {text}, or measure in fewer bands{alone}");
-            return Some(Diagnostic::error(path + &key, message).help(help));
+            return Some(Diagnostic::error(path, message).help(help));
         }
     }
     let help = format!("measure less there, or in fewer bands{alone}");

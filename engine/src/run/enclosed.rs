@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::sensors::SensorEntity;
 use crate::accel::Ray;
 use crate::components::{Optics, ResolvedSensor};
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, ScenePath};
 use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::transport::Camera;
@@ -32,7 +32,8 @@ pub(super) fn warnings(sensors: &[SensorEntity], stage: &Stage) -> Vec<Diagnosti
         );
         let help = "surfaces show their back in nearly all directions, as inside a trunk: move the \
                     camera; if it is to be inside of a room, turn the faces of that inwards";
-        Some(Diagnostic::warning(format!("sensors.{name}.position_m"), message).help(help))
+        let path = ScenePath::from("sensors").name(name).key("position_m");
+        Some(Diagnostic::warning(path, message).help(help))
     };
     sensors.iter().filter_map(warning).collect()
 }

@@ -15,7 +15,7 @@ use crate::components::{
     Instance, InstanceCount, LeafArea, MaterialId, Mesh, Name, ResolvedSensor, SceneId,
     StopCriterion, SunLight, SurfaceOptics, TerrainPatch,
 };
-use crate::document::{self, Diagnostic, PhotonMeasure, Scene};
+use crate::document::{self, Diagnostic, PhotonMeasure, Scene, ScenePath};
 use crate::extract::Stage;
 use crate::sampling::Key;
 
@@ -202,7 +202,7 @@ pub(super) fn warn_bright_ground(scene: &Scene, world: &World) -> Vec<Diagnostic
                 band.name
             );
             let help = "soil reflects 5 to 40 %: is the spectrum right, and no white reference?";
-            Diagnostic::warning(format!("materials.{}", name.0), message).help(help)
+            Diagnostic::warning(ScenePath::from("materials").name(&name.0), message).help(help)
         })
     };
     surfaces.iter().filter_map(warning).collect()

@@ -47,6 +47,6 @@ fn without_severity(text: &str) -> &str {
 pub(super) fn one_line(problem: &Diagnostic) -> String {
     let Diagnostic { path, message, help, .. } = problem;
     let help = help.as_ref().map_or_else(String::new, |help| format!(" ({help})"));
-    let text = if path.is_empty() { message.clone() } else { format!("{path}: {message}") };
+    let text = if path.is_root() { message.clone() } else { format!("{path}: {message}") };
     format!("{}{}", legible(&text), legible(&help))
 }

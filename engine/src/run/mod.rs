@@ -34,7 +34,7 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::components::{Projection, TerrainPatch};
-use crate::document::{self, Diagnostic, Param, Scene, Sun};
+use crate::document::{self, Diagnostic, Param, Scene, ScenePath, Sun};
 use crate::products::{Report, SceneSource, SensorReport};
 
 pub use crate::products::Forecast;
@@ -176,7 +176,7 @@ fn check_scene(scene: &Scene) -> Result<(), Failure> {
     if let Some(name) = scene.include.keys().next() {
         let what = "files are included by reading a scene, and this one was built";
         let help = "write it with `to_ron` and read it with `read_file`";
-        problems.push(Diagnostic::error(format!("include.{name}"), what).help(help));
+        problems.push(Diagnostic::error(ScenePath::from("include").name(name), what).help(help));
     }
     if problems.iter().any(Diagnostic::is_error) {
         return Err(Failure::Problems(problems));

@@ -3,7 +3,7 @@
 use hecs::World;
 
 use crate::components::{Name, Optics, ResolvedSensor};
-use crate::document::{Diagnostic, too_many_pixels};
+use crate::document::{Diagnostic, ScenePath, too_many_pixels};
 use crate::extract::Stage;
 use crate::geometry::PixelGrid;
 use crate::transport::wanted_footprint;
@@ -24,7 +24,7 @@ pub(super) fn count_pixels(world: &mut World, stage: &Stage) -> Result<Vec<Strin
         let Optics::Orthographic(optics) = &image.optics else { continue };
         let Some(side) = optics.pixel else { continue };
         let (_, extent) = wanted_footprint(optics, stage);
-        let path = format!("sensors.{}.pixel_m", name.0);
+        let path = ScenePath::from("sensors").name(&name.0).key("pixel_m");
         if let Some(problem) = too_many_pixels(&path, extent, side, bands) {
             problems.push(problem);
             continue;

@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use super::{Failure, Options};
-use crate::document::{self, Diagnostic, Reading, Scene};
+use crate::document::{self, Diagnostic, Reading, Scene, ScenePath};
 use crate::spawn::missing_files;
 
 /// Reads a scene file.
@@ -31,9 +31,9 @@ pub(super) fn sound(
     // Missing files are reported at once with the errors of the text.
     let mut problems = reading.diagnostics;
     // A path that could not be read is a placeholder, and its error is known.
-    let known: Vec<String> = problems.iter().map(|problem| problem.path.clone()).collect();
+    let known: Vec<ScenePath> = problems.iter().map(|problem| problem.path.clone()).collect();
     let missing = missing_files(&reading.scene, folder_of(path)).into_iter();
-    problems.extend(missing.filter(|m| !known.iter().any(|path| m.path.starts_with(path))));
+    problems.extend(missing.filter(|m| !known.iter().any(|path| m.path.is_within(path))));
     Err(Failure::Scene(reading.source.render(&problems)))
 }
 

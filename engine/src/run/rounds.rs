@@ -8,7 +8,7 @@ use super::convergence::{Convergence, ErrorCheck, Measurement, Start, relative_e
 use super::cost::{CostEstimate, PilotRun};
 use super::{Failure, Progress};
 use crate::components::StopCriterion;
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, ScenePath};
 use crate::products::{Forecast, Product};
 use crate::transport::{Partition, ProgressFn};
 
@@ -235,7 +235,7 @@ fn restore(
 /// Error of a checkpoint with the right hashes and the wrong contents.
 fn misfit(name: &str) -> Failure {
     Failure::Problems(vec![Diagnostic::error(
-        format!("sensors.{name}"),
+        ScenePath::from("sensors").name(name),
         "the checkpoint holds something else than this sensor: this is a bug of sunfleck",
     )])
 }

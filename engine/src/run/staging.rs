@@ -5,7 +5,7 @@ use super::scene_world::SceneWorld;
 use super::setting::setting;
 use crate::accel::BuildError;
 use crate::components::{InstanceCount, SceneExtents, SceneId};
-use crate::document::{Diagnostic, Scene};
+use crate::document::{Diagnostic, Scene, ScenePath};
 use crate::extract::{Stage, extract};
 use crate::products::data_size;
 use crate::systems::{Resources, place_of_instance};
@@ -45,24 +45,24 @@ fn located(error: &BuildError, world: &SceneWorld) -> Diagnostic {
                     let id = SceneId(placed as u32);
                     place_of_instance(id, &world.world, &world.resources).0
                 }
-                None => "terrain".to_owned(),
+                None => "terrain".into(),
             }
         }
-        BuildError::Domain { .. } => "terrain".to_owned(),
-        BuildError::TooManyCopies { .. } => "instances".to_owned(),
+        BuildError::Domain { .. } => "terrain".into(),
+        BuildError::TooManyCopies { .. } => "instances".into(),
     };
     Diagnostic::error(path, error.to_string())
 }
 
 /// Path of a mesh of the stage: the ground, then all placed meshes in document order.
-fn mesh_path(mesh: usize, SceneWorld { world, resources, .. }: &SceneWorld) -> String {
+fn mesh_path(mesh: usize, SceneWorld { world, resources, .. }: &SceneWorld) -> ScenePath {
     let Resources { meshes, .. } = resources;
     let is_placed =
         |entity: hecs::Entity| world.get::<&InstanceCount>(entity).is_ok_and(|count| count.0 > 0);
     let mut placed = meshes.iter().filter(|(_, entity)| is_placed(**entity));
     match mesh.checked_sub(1).and_then(|index| placed.nth(index)) {
-        Some((name, _)) => format!("meshes.{name}"),
-        None => "terrain".to_owned(),
+        Some((name, _)) => ScenePath::from("meshes").name(name),
+        None => "terrain".into(),
     }
 }
 

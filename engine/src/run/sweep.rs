@@ -9,7 +9,8 @@ use super::reading::{choose_sensors, folder_of, read, sound};
 use super::scene_world::SceneWorld;
 use super::{Failure, Options, Progress, day, params, run_in, scene_source};
 use crate::document::{
-    self, Lambertian, Map, Material, Reading, Scene, Sensor, Sky, Spectrum, Sun, ThermalSky,
+    self, Lambertian, Map, Material, Reading, Scene, ScenePath, Sensor, Sky, Spectrum, Sun,
+    ThermalSky,
 };
 use crate::products::{Day, Night, Report, SweepPoint};
 
@@ -192,13 +193,11 @@ fn read_point(file: &Path, options: &Options) -> Result<(Reading, Option<Night>)
 /// Reads a scene at a point.
 fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Glance, Failure> {
     let (reading, night) = read_point(file, options)?;
-    let swept = |path: &str| {
-        let name = path.strip_prefix("params.")?;
-        options.document.point.iter().any(|(swept, _)| swept == name).then_some(())
-    };
+    let params = ScenePath::from("params");
+    let swept: Vec<_> = options.document.point.iter().map(|(name, _)| params.name(name)).collect();
     // A point that changes nothing is no point.
     let unused: Vec<_> =
-        reading.diagnostics.iter().filter(|one| swept(&one.path).is_some()).cloned().collect();
+        reading.diagnostics.iter().filter(|one| swept.contains(&one.path)).cloned().collect();
     if !unused.is_empty() {
         return Err(Failure::Scene(reading.source.render(&unused)));
     }

@@ -3,7 +3,7 @@ use hecs::World;
 use super::Resources;
 use super::measure_bounds::placed_meshes;
 use crate::components::{InstanceCount, TerrainPatch};
-use crate::document::{Diagnostic, Per, PhotonMeasure, Sensor};
+use crate::document::{Diagnostic, Per, PhotonMeasure, ScenePath, Sensor};
 
 /// Memory of the sums of one triangle or instance in one band and of the products made of them, bytes.
 const ABSORBED_BYTES: usize = 64;
@@ -19,7 +19,7 @@ pub(super) fn check_absorption_memory(world: &mut World, resources: &mut Resourc
         let Sensor::Photons(photons) = &*sensor else { continue };
         for (index, measure) in photons.measure.iter().enumerate() {
             let PhotonMeasure::Absorbed { per } = measure else { continue };
-            let path = format!("sensors.{name}.measure[{index}]");
+            let path = ScenePath::from("sensors").name(name).key("measure").index(index);
             if let Some(problem) = problem(&path, *per, world, resources) {
                 resources.messages.report(problem);
             }
@@ -27,7 +27,7 @@ pub(super) fn check_absorption_memory(world: &mut World, resources: &mut Resourc
     }
 }
 
-fn problem(path: &str, per: Per, world: &World, resources: &Resources) -> Option<Diagnostic> {
+fn problem(path: &ScenePath, per: Per, world: &World, resources: &Resources) -> Option<Diagnostic> {
     let patch = world.get::<&TerrainPatch>(resources.terrain);
     let ground = patch.map_or(0, |patch| patch.mesh.triangles.len());
     let (mut instances, mut triangles): (usize, usize) = (1, ground);

@@ -2,7 +2,7 @@ use hecs::World;
 
 use super::Resources;
 use crate::components::TerrainPatch;
-use crate::document::{Sensor, Terrain, check_maps};
+use crate::document::{ScenePath, Sensor, Terrain, check_maps};
 
 /// Refuses maps of fluxes with too many pixels over ground whose extent a file decides. Reads `document::Terrain`,
 /// [`TerrainPatch`] and `document::Sensor`.
@@ -18,7 +18,7 @@ pub(super) fn check_flux_maps(world: &mut World, resources: &mut Resources) {
         let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
         let Sensor::Photons(photons) = &*sensor else { continue };
         for (index, measure) in photons.measure.iter().enumerate() {
-            let path = format!("sensors.{name}.measure[{index}]");
+            let path = ScenePath::from("sensors").name(name).key("measure").index(index);
             let bands = resources.bands.len();
             if let Some(problem) = check_maps(&path, measure, bands, patch.size.into()) {
                 resources.messages.report(problem);

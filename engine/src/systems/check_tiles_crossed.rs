@@ -3,14 +3,14 @@ use hecs::World;
 
 use super::Resources;
 use super::measure_extents::MOST_TILES_HIGH;
-use crate::document::{Diagnostic, PhotonMeasure, Sensor, Sun, Views};
+use crate::document::{Diagnostic, PhotonMeasure, ScenePath, Sensor, Sun, Views};
 
 /// Tiles that a ray between sun or sensor and the ground may cross: beyond, a single ray takes milliseconds.
 const MOST_TILES_CROSSED: f64 = 1e5;
 
 /// A direction that rays come from or go to, and what asks for it.
 struct Slope {
-    path: String,
+    path: ScenePath,
     what: &'static str,
     zenith_deg: f64,
 }
@@ -40,26 +40,26 @@ fn slopes(world: &World, resources: &Resources) -> Vec<Slope> {
     {
         let key = if sun.zenith_deg.is_some() { "zenith_deg" } else { "position" };
         let zenith_deg = zenith + 0.5 * sun.disc_deg;
-        slopes.push(Slope { path: format!("sun.{key}"), what: "the sun", zenith_deg });
+        slopes.push(Slope { path: ScenePath::from("sun").key(key), what: "the sun", zenith_deg });
     }
     for (name, &entity) in &resources.sensors {
         let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
-        let path = format!("sensors.{name}");
+        let path = ScenePath::from("sensors").name(name);
         match &*sensor {
             Sensor::Orthographic(sensor) => slopes.push(Slope {
-                path: format!("{path}.zenith_deg"),
+                path: path.key("zenith_deg"),
                 what: "the sensor",
                 zenith_deg: sensor.zenith_deg,
             }),
             Sensor::Directions(sensor) => {
-                slopes.extend(lowest(&sensor.views, &format!("{path}.views")));
+                slopes.extend(lowest(&sensor.views, &path.key("views")));
             }
             Sensor::Photons(sensor) => {
                 for (index, measure) in sensor.measure.iter().enumerate() {
                     if let PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) =
                         measure
                     {
-                        slopes.extend(lowest(views, &format!("{path}.measure[{index}]")));
+                        slopes.extend(lowest(views, &path.key("measure").index(index)));
                     }
                 }
             }
@@ -70,15 +70,15 @@ fn slopes(world: &World, resources: &Resources) -> Vec<Slope> {
 }
 
 /// The lowest of some views.
-fn lowest(views: &Views, path: &str) -> Option<Slope> {
+fn lowest(views: &Views, path: &ScenePath) -> Option<Slope> {
     let (path, zenith_deg) = match views {
         Views::List(list) => {
             let zeniths = list.iter().map(|&(zenith, _)| zenith).enumerate();
             let (index, zenith) = zeniths.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            (format!("{path}[{index}][0]"), zenith)
+            (path.index(index).index(0), zenith)
         }
         Views::PrincipalPlane { max_deg, .. } | Views::CrossPlane { max_deg, .. } => {
-            (format!("{path}.max_deg"), *max_deg)
+            (path.key("max_deg"), *max_deg)
         }
     };
     Some(Slope { path, what: "the view", zenith_deg })

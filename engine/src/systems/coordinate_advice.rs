@@ -9,7 +9,8 @@ use super::Resources;
 use super::georeference::{MapFrame, MapTransform};
 use crate::components::{InstanceRange, SceneId};
 use crate::document::{
-    Area, InstanceList, InstanceTable, Instances, TableCoordinates, Terrain, TerrainRaster,
+    Area, InstanceList, InstanceTable, Instances, ScenePath, TableCoordinates, Terrain,
+    TerrainRaster,
 };
 use crate::geometry::{Polygon, Rectangle, millimetres};
 use crate::terrain::Ground;
@@ -61,16 +62,16 @@ pub(crate) fn place_of_instance(
     instance: SceneId,
     world: &World,
     resources: &Resources,
-) -> (String, String) {
+) -> (ScenePath, String) {
     let Some((index, row)) = planting_of(instance, world, resources) else {
-        return ("instances".to_owned(), "an instance".to_owned());
+        return ("instances".into(), "an instance".to_owned());
     };
-    let path = format!("instances[{index}]");
+    let path = ScenePath::from("instances").index(index);
     let row = row as usize;
     match world.get::<&Instances>(resources.plantings[index]).as_deref() {
-        Ok(Instances::List(_)) => (format!("{path}.at_m[{row}]"), "this instance".to_owned()),
+        Ok(Instances::List(_)) => (path.key("at_m").index(row), "this instance".to_owned()),
         Ok(Instances::Table(InstanceTable { file, .. })) => {
-            (format!("{path}.file"), format!("row {} of `{file}`", row + 1))
+            (path.key("file"), format!("row {} of `{file}`", row + 1))
         }
         _ => (path, format!("instance {}", row + 1)),
     }

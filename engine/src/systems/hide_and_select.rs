@@ -4,7 +4,7 @@ use hecs::World;
 
 use super::{Changes, Resources};
 use crate::components::{PrototypeId, ShownMeshes};
-use crate::document::{Diagnostic, Instances, NamePattern, suggestion};
+use crate::document::{Diagnostic, Instances, NamePattern, ScenePath, suggestion};
 use crate::placement::Pattern;
 
 /// Finds the mesh prototypes of each planting that the patterns of `hide` and `select` leave. Reads
@@ -47,7 +47,7 @@ pub(super) fn check_patterns(world: &mut World, resources: &mut Resources) {
                 let known: Vec<&str> = known.iter().map(String::as_str).collect();
                 let help = suggestion(text, &known, "patterns here may be");
                 let message = format!("nothing stands there by the name `{text}`");
-                let at = format!("{key}[{index}]");
+                let at = ScenePath::from(key).index(index);
                 resources.messages.report(Diagnostic::error(at, message).help(help));
             }
         }

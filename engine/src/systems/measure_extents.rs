@@ -8,7 +8,7 @@ use super::Resources;
 use super::coordinate_advice::place_of_instance;
 use super::measure_bounds::{PlacedMesh, placed_meshes};
 use crate::components::{Instance, InstanceQuery, Placement, SceneExtents, SceneId, TerrainPatch};
-use crate::document::{Diagnostic, HEIGHT, LENGTH, Range, SCALE};
+use crate::document::{Diagnostic, HEIGHT, LENGTH, Range, SCALE, ScenePath};
 use crate::geometry::Bounds;
 
 /// Tiles that a periodic scene may be high: scattered light crosses one and a half times as many on
@@ -101,9 +101,9 @@ pub(super) fn measure_extents(world: &mut World, resources: &mut Resources) {
         records: reach.records as u64,
         largest_mesh: largest
             .filter(|largest| largest.primitives > ground)
-            .map_or_else(|| "terrain".to_owned(), |mesh| format!("meshes.{}", mesh.name)),
+            .map_or_else(|| "terrain".into(), |mesh| ScenePath::from("meshes").name(&mesh.name)),
         most_records: match reach.most.1 {
-            NO_INSTANCE => "instances".to_owned(),
+            NO_INSTANCE => "instances".into(),
             instance => place_of_instance(instance, world, resources).0,
         },
     };
@@ -124,7 +124,7 @@ fn check_meshes(
         let farthest = min.abs().max(max.abs()).max_element();
         if let Some((message, _)) = LENGTH.problem(farthest) {
             let help = "if its file is in another unit, write that in metres as `unit_m`";
-            let path = format!("meshes.{}", meshes[id].name);
+            let path = ScenePath::from("meshes").name(&meshes[id].name);
             resources.report(Diagnostic::error(path, message).help(help));
         }
     }
@@ -191,7 +191,7 @@ fn check_tiles_high(
     let (path, name) = if above.max(below) > 0.0 {
         place_of_instance(instance, world, resources)
     } else {
-        ("terrain".to_owned(), "the ground".to_owned())
+        ("terrain".into(), "the ground".to_owned())
     };
     let message = format!(
         "with {name}, the scene reaches from {:?} to {:?} m: it is {tiles:.0} times as high as its tile of \

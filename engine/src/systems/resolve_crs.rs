@@ -14,7 +14,7 @@ pub(super) fn resolve_crs(_: &mut World, resources: &mut Resources) {
                north on WGS 84) or `EPSG:25832` (on ETRS89)";
     let Some(crs) = from_name(&name) else {
         let message = format!("{name:?} names no coordinate reference system that is known");
-        resources.report(Diagnostic::error("frame.crs", message).help(utm));
+        resources.report(Diagnostic::error(["frame", "crs"], message).help(utm));
         return;
     };
     let problem = match &crs.axes {
@@ -31,7 +31,7 @@ pub(super) fn resolve_crs(_: &mut World, resources: &mut Resources) {
     };
     if let Some(problem) = problem {
         let message = format!("{} {problem}", crs.name);
-        resources.report(Diagnostic::error("frame.crs", message).help(utm));
+        resources.report(Diagnostic::error(["frame", "crs"], message).help(utm));
         return;
     }
     resources.frame_crs = Some(CoordinateSystem { crs, owner: "`frame.crs`".to_owned() });

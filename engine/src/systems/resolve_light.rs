@@ -16,7 +16,7 @@ pub(super) fn resolve_light(world: &mut World, resources: &mut Resources) {
 /// Sun and sky of the sources that the author wrote; `None` where there is none, and after an error.
 fn light(world: &World, resources: &mut Resources) -> (Option<SunLight>, Option<SkyLight>) {
     let sun = world.get::<&document::Sun>(resources.sun).ok().and_then(|sun| {
-        let path = "sun.irradiance";
+        let path = &["sun", "irradiance"].into();
         let irradiance = resolve_spectrum(&sun.irradiance, Quantity::Irradiance, path, resources)?;
         note_irradiance(&sun.irradiance, &irradiance, resources);
         // `document::check` asks for a position; below the horizon the sun gives no light.
@@ -29,7 +29,7 @@ fn light(world: &World, resources: &mut Resources) -> (Option<SunLight>, Option<
     match &*sky.expect("`spawn` gives the sky its source") {
         document::Sky::None => (sun, None),
         document::Sky::Isotropic { irradiance } => {
-            let at = "sky.irradiance";
+            let at = &["sky", "irradiance"].into();
             let irradiance = resolve_spectrum(irradiance, Quantity::Irradiance, at, resources);
             (sun, irradiance.map(|irradiance| SkyLight { irradiance }))
         }

@@ -8,7 +8,9 @@ use crate::components::{
     DirectionalOptics, EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, MaterialId,
     RpvParameters, SoilspectParameters, SurfaceOptics,
 };
-use crate::document::{Diagnostic, Lambertian, Leaf, Material, Rpv, Spectrum, SurfaceQuantity};
+use crate::document::{
+    Diagnostic, Lambertian, Leaf, Material, Rpv, ScenePath, Spectrum, SurfaceQuantity,
+};
 use crate::scattering::{BandModel, ModelFault};
 
 /// Resolves the spectra of used materials to bands, and checks the others as far as that takes no file. Reads
@@ -17,7 +19,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
     let materials: Vec<_> =
         resources.materials.iter().map(|(name, &entity)| (name.clone(), entity)).collect();
     for (index, (name, entity)) in materials.into_iter().enumerate() {
-        let path = format!("materials.{name}");
+        let path = ScenePath::from("materials").name(&name);
         let is_used = resources.used_materials.contains(&MaterialId(index as u32));
         if !is_used {
             resources.messages.skip(format!("material `{name}`: nothing wears it"));
@@ -34,7 +36,11 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
 }
 
 /// Optics of a material; `None` after an error.
-fn optics(material: &Material, path: &str, resources: &mut Resources) -> Option<SurfaceOptics> {
+fn optics(
+    material: &Material,
+    path: &ScenePath,
+    resources: &mut Resources,
+) -> Option<SurfaceOptics> {
     match material {
         Material::Lambertian(Lambertian { reflectance, back_reflectance, .. }) => {
             let opaque = Spectrum::Constant(0.0);
@@ -75,20 +81,18 @@ struct Sides<'s> {
 
 fn lambertian(
     sides: &Sides<'_>,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<LambertianOptics> {
-    let at = |key: &str| format!("{path}.{key}");
     let Sides { reflectance, back, transmittance } = sides;
-    let front = resolve_spectrum(reflectance, Quantity::Reflectance, &at("reflectance"), resources);
+    let mut resolve =
+        |spectrum, quantity, key| resolve_spectrum(spectrum, quantity, &path.key(key), resources);
+    let front = resolve(reflectance, Quantity::Reflectance, "reflectance");
     let back = match back {
-        Some(back) => {
-            resolve_spectrum(back, Quantity::Reflectance, &at("back_reflectance"), resources)
-        }
+        Some(back) => resolve(back, Quantity::Reflectance, "back_reflectance"),
         None => front.clone(),
     };
-    let through =
-        resolve_spectrum(transmittance, Quantity::Transmittance, &at("transmittance"), resources);
+    let through = resolve(transmittance, Quantity::Transmittance, "transmittance");
     let EnergyGain { band, reflectance, transmittance } =
         match LambertianOptics::new(&front?, &back?, &through?) {
             Ok(optics) => return Some(optics),
@@ -110,7 +114,7 @@ fn lambertian(
 /// Parameters of a material by their keys, each of shape `[bands]`; `None` after an error.
 fn parameters(
     material: &Material,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<BTreeMap<&'static str, Vec<f64>>> {
     let mut found = BTreeMap::new();
@@ -120,7 +124,7 @@ fn parameters(
             SurfaceQuantity::Fraction => Quantity::Reflectance,
             SurfaceQuantity::Parameter { least, most } => Quantity::Parameter { least, most },
         };
-        let values = resolve_spectrum(spectrum, quantity, &format!("{path}.{key}"), resources);
+        let values = resolve_spectrum(spectrum, quantity, &path.key(key), resources);
         found.extend(values.map(|values| (key, values)));
     }
     (found.len() == spectra.len()).then_some(found)
@@ -134,7 +138,7 @@ fn parameter(values: &BTreeMap<&'static str, Vec<f64>>, key: &str, band: usize) 
 fn rpv(
     surface: &Rpv,
     material: &Material,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<Vec<RpvParameters>> {
     let values = parameters(material, path, resources)?;
@@ -153,7 +157,7 @@ fn rpv(
 
 fn soilspect(
     material: &Material,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<Vec<SoilspectParameters>> {
     let values = parameters(material, path, resources)?;
@@ -174,7 +178,7 @@ fn soilspect(
 fn directional<B: BandModel>(
     bands: Vec<B>,
     help: &str,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<DirectionalOptics<B>> {
     let ModelFault { band, zenith, dhr } = match DirectionalOptics::new(bands) {

@@ -24,7 +24,7 @@ fn radiance(world: &World, resources: &mut Resources) -> Option<Vec<f64>> {
         }
         ThermalSky::BlackBody(kelvin) => Some(black_body_radiance(&resources.bands, *kelvin)),
         ThermalSky::Radiance(radiance) => {
-            resolve_spectrum(radiance, Quantity::Irradiance, "thermal_sky", resources)
+            resolve_spectrum(radiance, Quantity::Irradiance, &"thermal_sky".into(), resources)
         }
     }
 }

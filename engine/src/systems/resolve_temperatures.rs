@@ -2,7 +2,7 @@ use hecs::World;
 
 use super::{Resources, set_component};
 use crate::components::{BlackBody, MaterialId};
-use crate::document::{Band, Diagnostic, Material};
+use crate::document::{Band, Diagnostic, Material, ScenePath};
 use crate::spectral::{BandWindow, planck_mean};
 
 /// Resolves the temperatures of used materials to radiance if a sensor measures emission. Reads `document::Material` and
@@ -15,7 +15,7 @@ pub(super) fn resolve_temperatures(world: &mut World, resources: &mut Resources)
             let material = material.expect("`spawn` gives materials their source");
             black_body(&material, &resources.bands)
                 .map_err(|message| {
-                    let path = format!("materials.{name}");
+                    let path = ScenePath::from("materials").name(name);
                     resources.messages.report(Diagnostic::error(path, message).help(
                         "write `temperature: Uniform(300.0)`, or in the band `source: Sunlight` for what \
                          is reflected alone",

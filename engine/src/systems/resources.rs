@@ -7,7 +7,7 @@ use super::georeference::CoordinateSystem;
 use super::{Changes, Messages};
 use crate::components::{MaterialId, PrototypeId, SceneExtents};
 use crate::document::{
-    Band, Boundary, Diagnostic, Frame, Map, NamePattern, Spectrum, unknown_name,
+    Band, Boundary, Diagnostic, Frame, Map, NamePattern, ScenePath, Spectrum, unknown_name,
 };
 
 /// Data of a scene that belongs to no entity: settings, entities by name, and messages.
@@ -108,7 +108,7 @@ impl Resources {
     }
 
     /// Material of a name; reports an error at `path` if there is none.
-    pub fn material(&mut self, name: &str, path: &str) -> Option<MaterialId> {
+    pub fn material(&mut self, name: &str, path: &ScenePath) -> Option<MaterialId> {
         let index = self.materials.get_index_of(name);
         if index.is_none() {
             let known = self.materials.keys().map(String::as_str);
@@ -119,7 +119,7 @@ impl Resources {
     }
 
     /// Mesh prototype of a name; reports an error at `path` if there is none.
-    pub fn prototype(&mut self, name: &str, path: &str) -> Option<PrototypeId> {
+    pub fn prototype(&mut self, name: &str, path: &ScenePath) -> Option<PrototypeId> {
         let index = self.meshes.get_index_of(name);
         if index.is_none() {
             let known = self.meshes.keys().map(String::as_str);

@@ -23,7 +23,7 @@ pub(super) fn warn_dark_bands(world: &mut World, resources: &mut Resources) {
     if dark.is_empty() || lights.iter().all(Option::is_none) {
         return;
     }
-    let path = if sun.is_some() { "sun.irradiance" } else { "sky.irradiance" };
+    let path = [if sun.is_some() { "sun" } else { "sky" }, "irradiance"];
     let message = format!(
         "no light falls on the scene in {} {}: radiance is 0 there, and reflectance factors, albedo and \
              absorbed fractions have no value",

@@ -14,6 +14,6 @@ pub(super) fn warn_flat_raster(world: &mut World, resources: &mut Resources) {
         let message = format!("all heights in `{file}` are 0");
         let help =
             "is it a raster of elevations? flat ground is `Plane(size_m: (..), material: ..)`";
-        resources.report(Diagnostic::warning("terrain.file", message).help(help));
+        resources.report(Diagnostic::warning(["terrain", "file"], message).help(help));
     }
 }

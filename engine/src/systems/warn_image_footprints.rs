@@ -3,7 +3,7 @@ use hecs::World;
 
 use super::Resources;
 use crate::components::TerrainPatch;
-use crate::document::{Cover, Diagnostic, Orthographic, Sensor};
+use crate::document::{Cover, Diagnostic, Orthographic, ScenePath, Sensor};
 use crate::geometry::{PixelGrid, place_text};
 
 /// Warns of images whose middle lies beside the ground of an isolated scene, and of nadir images that reach beyond it.
@@ -30,7 +30,7 @@ pub(super) fn warn_image_footprints(world: &mut World, resources: &mut Resources
             continue;
         };
         let center = center_m.map_or(corner + 0.5 * size, DVec2::from);
-        let path = format!("sensors.{name}.extent_m");
+        let path = ScenePath::from("sensors").name(name).key("extent_m");
         let ground =
             format!("the ground reaches from {} to {} m", place_text(low), place_text(high));
         if center.cmplt(low).any() || center.cmpgt(high).any() {

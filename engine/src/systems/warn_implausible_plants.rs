@@ -5,7 +5,7 @@ use hecs::World;
 use super::Resources;
 use super::measure_bounds::placed_meshes;
 use crate::components::{Instance, InstanceQuery, LeafArea, TerrainPatch};
-use crate::document::{Diagnostic, Prototype};
+use crate::document::{Diagnostic, Prototype, ScenePath};
 
 /// Leaf area over the area of a plant's outline from above; crowns of trees have 2 to 15.
 const LEAF_AREA_OF_PLANT: f64 = 40.0;
@@ -57,7 +57,7 @@ pub(super) fn warn_implausible_plants(world: &mut World, resources: &mut Resourc
                     _ => "; is its unit right, and is it one plant?",
                 }
             );
-            let path = format!("meshes.{}", plant.name);
+            let path = ScenePath::from("meshes").name(&plant.name);
             let problem = if index > OVERLAID {
                 Diagnostic::error(path, format!("{message}; at most {OVERLAID} are traced"))
             } else {

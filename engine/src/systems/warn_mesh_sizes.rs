@@ -4,7 +4,7 @@ use super::Resources;
 use super::measure_bounds::placed_meshes;
 use super::warn_implausible_plants::TALLEST;
 use crate::components::MeshBounds;
-use crate::document::{Diagnostic, Prototype};
+use crate::document::{Diagnostic, Prototype, ScenePath};
 
 /// A mesh that a unit below a metre makes smaller than this, m, was most likely in metres.
 const SMALLEST: f32 = 0.3;
@@ -27,14 +27,14 @@ pub(super) fn warn_mesh_sizes(world: &mut World, resources: &mut Resources) {
         if unit < 1.0 && size < SMALLEST {
             let message = format!("`{name}` is {size:.3} m large, with a unit of {unit} m");
             let help = "if the coordinates of its file are in metres, leave `unit_m` out";
-            let path = format!("meshes.{name}");
+            let path = ScenePath::from("meshes").name(name);
             resources.report(Diagnostic::warning(path, message).help(help));
         }
         if f64::from(size) > TALLEST {
             let message = format!("`{name}` is {size:.0} m large");
             let help = "if its file is in centimetres, write `unit_m: 0.01`; in millimetres, \
                             `unit_m: 0.001`";
-            let path = format!("meshes.{name}");
+            let path = ScenePath::from("meshes").name(name);
             resources.report(Diagnostic::warning(path, message).help(help));
         }
     }

@@ -27,5 +27,5 @@ pub(super) fn warn_overhangs(world: &mut World, resources: &mut Resources) {
              overhangs that are not meant, or of closed bodies, keep the upper side alone",
         first.x, first.y, first.z
     );
-    resources.report(Diagnostic::warning("terrain.mesh", message).help(help));
+    resources.report(Diagnostic::warning(["terrain", "mesh"], message).help(help));
 }

@@ -2,7 +2,7 @@ use glam::DVec2;
 use hecs::World;
 
 use super::Resources;
-use crate::document::{Diagnostic, Terrain};
+use crate::document::{Diagnostic, ScenePath, Terrain};
 use crate::terrain::Ground;
 
 /// Steps along a seam that are lower may be meant, m.
@@ -17,8 +17,8 @@ pub(super) fn warn_seams(world: &mut World, resources: &mut Resources) {
     let terrain = world.get::<&Terrain>(resources.terrain);
     let path = match &*terrain.expect("`spawn` gives the terrain its source") {
         Terrain::Plane(_) => return,
-        Terrain::Raster(_) => "terrain.file",
-        Terrain::Mesh { .. } => "terrain.mesh",
+        Terrain::Raster(_) => ScenePath::from(["terrain", "file"]),
+        Terrain::Mesh { .. } => ScenePath::from(["terrain", "mesh"]),
     };
     if !resources.is_periodic() {
         return;

@@ -4,8 +4,8 @@ use std::io::Write as _;
 
 use sunfleck::document::{
     Boundary, Diagnostic, Lambertian, Material, Photons, Prototype, ReadError, ReadOptions,
-    Reading, Scene, Sensor, Sky, Spectrum, Sun, TabulatedSpectrum, check, nearest, read_file,
-    read_text, unknown_name,
+    Reading, Scene, ScenePath, Sensor, Sky, Spectrum, Sun, TabulatedSpectrum, check, nearest,
+    read_file, read_text, unknown_name,
 };
 
 const DESIGN: &str = include_str!("design.ron");
@@ -189,33 +189,56 @@ fn a_path_leads_to_its_place_or_to_its_nearest_ancestor() {
         .replace("\"tree\": Obj", "\"birch\": Obj")
         .replace("\"crown\": Discs", "\"birch.crown\": Discs");
     let source = read(&text).source;
-    let at = |path: &str| {
-        let place = source.place(path).unwrap_or_else(|| panic!("{path} has no place"));
+    let at = |path: ScenePath| {
+        let place = source.place(&path).unwrap_or_else(|| panic!("{path} has no place"));
         &source.text()[place.span.range()]
     };
-    let nadir = source.place("sensors.nadir").expect("a place");
-    assert_eq!((nadir.file.as_str(), nadir.line, nadir.column), ("scene.ron", 25, 18));
-    assert_eq!(at("sensors.nadir.size_px"), "(256, 256)");
-    assert_eq!(at("sensors.nadir.size_px[1]"), "256");
-    assert_eq!(at("instances[1].of"), "\"crown\"");
-    assert_eq!(at("instances[1].at_m[0][2]"), "4.0");
-    assert_eq!(at("sky"), "Fraction([0.1, 0.05])");
-    assert_eq!(at("sky[1]"), "0.05");
-    assert_eq!(at("materials.leaf.reflectance[0]"), "0.0546");
-    assert_eq!(at("sensors.flux.measure[2].layer_m"), "1.0");
-    assert_eq!(at("meshes.birch.crown.material"), "\"leaf\"", "names may hold dots");
-    assert_eq!(at("meshes.birch.origin"), "Obj", "not written: its owner");
-    assert_eq!(at("instances[7].of"), "[");
-    assert_eq!(at("nowhere.at.all"), "Scene");
-    assert_eq!(at(""), "Scene");
+    let [sensors, instances, meshes, sky] =
+        ["sensors", "instances", "meshes", "sky"].map(ScenePath::from);
+    let nadir = sensors.name("nadir");
+    let place = source.place(&nadir).expect("a place");
+    assert_eq!((place.file.as_str(), place.line, place.column), ("scene.ron", 25, 18));
+    assert_eq!(at(nadir.key("size_px")), "(256, 256)");
+    assert_eq!(at(nadir.key("size_px").index(1)), "256");
+    assert_eq!(at(instances.index(1).key("of")), "\"crown\"");
+    assert_eq!(at(instances.index(1).key("at_m").index(0).index(2)), "4.0");
+    assert_eq!(at(sky.clone()), "Fraction([0.1, 0.05])");
+    assert_eq!(at(sky.index(1)), "0.05");
+    let leaf = ScenePath::from("materials").name("leaf");
+    assert_eq!(at(leaf.key("reflectance").index(0)), "0.0546");
+    assert_eq!(at(sensors.name("flux").key("measure").index(2).key("layer_m")), "1.0");
+    assert_eq!(at(meshes.name("birch.crown").key("material")), "\"leaf\"", "names may hold dots");
+    assert_eq!(at(meshes.name("birch").key("origin")), "Obj", "not written: its owner");
+    assert_eq!(at(instances.index(7).key("of")), "[");
+    assert_eq!(at(["nowhere", "at", "all"].into()), "Scene");
+    assert_eq!(at(ScenePath::root()), "Scene");
+}
+
+/// One definition cannot be read, all others have values that are wrong.
+#[test]
+fn each_error_is_at_its_own_definition_whatever_names_hold() {
+    let names = ["a", "a.b", "a[0]", "a.reflectance", "b.a", "]"];
+    for unreadable in names {
+        let soils = names.map(|name| {
+            let value = if name == unreadable { "Constat(0.1)" } else { "Constant(7.0)" };
+            format!("\n{name:?}: Lambertian(reflectance: {value}),")
+        });
+        let materials = format!("materials: {{{}", soils.concat());
+        let found = read(&small("0.1", "").replace("materials: {", &materials)).diagnostics;
+        let line = |one: &Diagnostic| one.place.as_ref().expect("a place").line;
+        let found: Vec<_> = found.into_iter().map(|one| (line(&one), one.path)).collect();
+        let path = |name| ScenePath::from("materials").name(name).key("reflectance");
+        let expected: Vec<_> = (5..).zip(names.map(path)).collect();
+        assert_eq!(found, expected, "{unreadable}");
+    }
 }
 
 #[test]
 fn a_diagnostic_without_a_place_is_shown_where_its_path_leads() {
     let source = read(DESIGN).source;
     let found = [
-        unknown_name("terrain.material", "material", "sol", ["soil", "leaf"]),
-        Diagnostic::warning("", "this is slow").help("use fewer samples"),
+        unknown_name(["terrain", "material"], "material", "sol", ["soil", "leaf"]),
+        Diagnostic::warning(ScenePath::root(), "this is slow").help("use fewer samples"),
     ];
     insta::assert_snapshot!(source.render(&found), @r#"
     error: no material `sol`
@@ -257,7 +280,7 @@ fn what_could_not_be_read_is_not_checked_as_well() {
         .replace("bands: [", "bands: 3, title: [")
         .replace("size_m: (100.0, 100.0)", "size_m: (\"wide\", 100.0)");
     let found = read(&broken).diagnostics;
-    let paths: Vec<_> = found.iter().map(|one| one.path.as_str()).collect();
+    let paths: Vec<_> = found.iter().map(|one| one.path.to_string()).collect();
     assert_eq!(paths, ["bands", "title", "materials.leaf", "terrain.size_m[0]"]);
 }
 

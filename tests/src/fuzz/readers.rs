@@ -125,7 +125,7 @@ fn scene(path: &Path) -> Said {
 fn diagnosed(reading: &Reading) {
     for one in &reading.diagnostics {
         assert!(!one.message.is_empty(), "a diagnostic says something");
-        assert!(one.place.is_some() || one.path.is_empty(), "a place: {}", one.message);
+        assert!(one.place.is_some() || one.path.is_root(), "a place: {}", one.message);
     }
     let shown = reading.render();
     assert!(shown.len() < 1 << 20, "{} bytes are more than anybody reads", shown.len());

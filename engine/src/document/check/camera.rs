@@ -5,13 +5,13 @@ use super::super::scene::{
     Cover, Fisheye, FisheyeProjection, ImageOptions, Look, Orthographic, Perspective, Picture,
     Scene, Terrain, TerrainPlane,
 };
-use super::Report;
 use super::pixels::{check_pixels, check_size};
+use super::{Report, ScenePath};
 
 type Point = (f64, f64, f64);
 
 pub(super) fn check_orthographic(
-    path: &str,
+    path: &ScenePath,
     sensor: &Orthographic,
     scene: &Scene,
     report: &mut Report<'_>,
@@ -29,19 +29,18 @@ pub(super) fn check_orthographic(
         image: ImageOptions { picture, .. },
         virtual_plane: _,
     } = sensor;
-    let at = |key: &str| format!("{path}.{key}");
     check_pixels(path, *size_px, *pixel_m, *extent_m, scene, report);
     check_picture(path, picture, scene, report);
     if let Some((width, height)) = extent_m {
-        report.above_zero(&at("extent_m[0]"), *width);
-        report.above_zero(&at("extent_m[1]"), *height);
+        report.above_zero(path.key("extent_m").index(0), *width);
+        report.above_zero(path.key("extent_m").index(1), *height);
     }
     check_cover(path, sensor, report);
     if let Some((x, y)) = center_m {
-        report.finite(&at("center_m"), &[*x, *y]);
+        report.finite(path.key("center_m"), &[*x, *y]);
     }
-    report.zenith(&at("zenith_deg"), *zenith_deg);
-    report.azimuth(&at("azimuth_deg"), *azimuth_deg);
+    report.zenith(path.key("zenith_deg"), *zenith_deg);
+    report.azimuth(path.key("azimuth_deg"), *azimuth_deg);
     if let Some(samples) = samples_per_px {
         check_samples(path, *samples, report);
     }
@@ -51,9 +50,8 @@ pub(super) fn check_orthographic(
 }
 
 /// Checks that the image covers either a rectangle or the whole scene.
-fn check_cover(path: &str, sensor: &Orthographic, report: &mut Report<'_>) {
+fn check_cover(path: &ScenePath, sensor: &Orthographic, report: &mut Report<'_>) {
     let Orthographic { extent_m, cover, center_m, .. } = sensor;
-    let at = |key: &str| format!("{path}.{key}");
     match (extent_m, cover) {
         (None, None) => {
             let message = "the image covers nothing: it has neither `extent_m` nor `cover`";
@@ -63,25 +61,29 @@ fn check_cover(path: &str, sensor: &Orthographic, report: &mut Report<'_>) {
         }
         (Some(_), Some(Cover::WholeScene)) => {
             let message = "`cover` and `extent_m` both say how much of the scene is shown";
-            report.error(&at("cover"), message, "take one of the two out");
+            report.error(path.key("cover"), message, "take one of the two out");
         }
         (None, Some(Cover::WholeScene)) if center_m.is_some() => {
             let message = "the middle of the whole scene is known";
             let help = "take `center_m` out, or write `extent_m` in place of `cover`";
-            report.error(&at("center_m"), message, help);
+            report.error(path.key("center_m"), message, help);
         }
         _ => {}
     }
 }
 
 /// Checks the number of samples per square metre.
-fn check_sample_density(path: &str, density: f64, sensor: &Orthographic, report: &mut Report<'_>) {
+fn check_sample_density(
+    path: &ScenePath,
+    density: f64,
+    sensor: &Orthographic,
+    report: &mut Report<'_>,
+) {
     let Orthographic { size_px, pixel_m, extent_m, samples_per_px, .. } = sensor;
-    let at = |key: &str| format!("{path}.{key}");
-    report.above_zero(&at("samples_per_m2"), density);
+    report.above_zero(path.key("samples_per_m2"), density);
     if samples_per_px.is_some() {
         let message = "`samples_per_m2` and `samples_per_px` both say how many samples";
-        report.error(&at("samples_per_m2"), message, "take one of the two out");
+        report.error(path.key("samples_per_m2"), message, "take one of the two out");
     }
     let pixel = match (size_px, pixel_m, extent_m) {
         (_, Some(side), _) => Some(side * side),
@@ -95,13 +97,13 @@ fn check_sample_density(path: &str, density: f64, sensor: &Orthographic, report:
         if pixel.is_finite() && density * pixel > most {
             let message = format!("this makes more than {most} samples in a pixel of {pixel} m²");
             let help = format!("write at most {}", (most / pixel).floor());
-            report.error(&at("samples_per_m2"), message, help);
+            report.error(path.key("samples_per_m2"), message, help);
         }
     }
 }
 
 pub(super) fn check_perspective(
-    path: &str,
+    path: &ScenePath,
     sensor: &Perspective,
     scene: &Scene,
     report: &mut Report<'_>,
@@ -121,17 +123,12 @@ pub(super) fn check_perspective(
     check_picture(path, picture, scene, report);
     check_samples(path, *samples_per_px, report);
     check_position(path, *position_m, *above_ground, scene, report);
-    let target = format!("{path}.target_m");
+    let target = path.key("target_m");
     if let Some(ahead) = check_target(&target, *position_m, *target_m, report) {
         let is_written = *up != (0.0, 0.0, 1.0);
-        check_up(
-            &format!("{path}.{}", if is_written { "up" } else { "target_m" }),
-            *up,
-            ahead,
-            report,
-        );
+        check_up(&path.key(if is_written { "up" } else { "target_m" }), *up, ahead, report);
     }
-    for (key, angle) in [("fov_deg[0]", fov_deg.0), ("fov_deg[1]", fov_deg.1)] {
+    for (axis, angle) in [fov_deg.0, fov_deg.1].into_iter().enumerate() {
         if !(angle > 0.0 && angle < 180.0) {
             let message =
                 format!("expected an angle of view above 0 and below 180°, found {angle}");
@@ -140,12 +137,17 @@ pub(super) fn check_perspective(
             } else {
                 "a camera with 40° across and 30° down has `fov_deg: (40.0, 30.0)`"
             };
-            report.error(&format!("{path}.{key}"), message, help);
+            report.error(path.key("fov_deg").index(axis), message, help);
         }
     }
 }
 
-pub(super) fn check_fisheye(path: &str, sensor: &Fisheye, scene: &Scene, report: &mut Report<'_>) {
+pub(super) fn check_fisheye(
+    path: &ScenePath,
+    sensor: &Fisheye,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
     let Fisheye {
         size_px,
         position_m,
@@ -169,13 +171,13 @@ pub(super) fn check_fisheye(path: &str, sensor: &Fisheye, scene: &Scene, report:
             (check_towards(path, *zenith_deg, *azimuth_deg, report), (0.0, 0.0, 1.0))
         }
         Look::Target { at_m } => {
-            let target = format!("{path}.look.at_m");
+            let target = path.key("look").key("at_m");
             (check_target(&target, *position_m, *at_m, report), (0.0, 0.0, 1.0))
         }
     };
     if let Some(ahead) = ahead {
         let key = if up.is_some() { "up" } else { "look" };
-        check_up(&format!("{path}.{key}"), up.unwrap_or(usual_up), ahead, report);
+        check_up(&path.key(key), up.unwrap_or(usual_up), ahead, report);
     }
     let (most, what) = match projection {
         FisheyeProjection::Equisolid => (360.0, "an equisolid"),
@@ -191,7 +193,7 @@ pub(super) fn check_fisheye(path: &str, sensor: &Fisheye, scene: &Scene, report:
         } else {
             "a hemisphere is `fov_deg: 180.0`".to_owned()
         };
-        report.error(&format!("{path}.fov_deg"), message, help);
+        report.error(path.key("fov_deg"), message, help);
     }
 }
 
@@ -201,15 +203,15 @@ const MOST_SAMPLES: u32 = 1 << 24;
 /// Bands between the ends of the visible that make colours.
 const COLOUR_BANDS: usize = 10;
 
-fn check_picture(path: &str, picture: &Picture, scene: &Scene, report: &mut Report<'_>) {
-    let path = format!("{path}.picture");
+fn check_picture(path: &ScenePath, picture: &Picture, scene: &Scene, report: &mut Report<'_>) {
+    let path = path.key("picture");
     let exposure = match picture {
         Picture::Quicklook => None,
         Picture::Bands { red, green, blue, exposure_stops } => {
             for (key, name) in [("red", red), ("green", green), ("blue", blue)] {
                 let bands = || scene.bands.iter().map(|band| band.name.as_str());
                 if !bands().any(|band| band == name) && report.is_readable("bands") {
-                    report.push(unknown_name(format!("{path}.{key}"), "band", name, bands()));
+                    report.push(unknown_name(path.key(key), "band", name, bands()));
                 }
             }
             exposure_stops.as_ref()
@@ -232,29 +234,29 @@ fn check_picture(path: &str, picture: &Picture, scene: &Scene, report: &mut Repo
     {
         let message = format!("expected -30 to 30 stops, found {stops}");
         let help = "each stop doubles the brightness; leave it out for an automatic exposure";
-        report.error(&format!("{path}.exposure_stops"), message, help);
+        report.error(path.key("exposure_stops"), message, help);
     }
 }
 
-fn check_samples(path: &str, samples: u32, report: &mut Report<'_>) {
+fn check_samples(path: &ScenePath, samples: u32, report: &mut Report<'_>) {
     if !(2..=MOST_SAMPLES).contains(&samples) {
         let message = format!("expected 2 to {MOST_SAMPLES} samples, found {samples}");
         let help = match samples {
             0 | 1 => "1 sample gives no error estimate: write 2 or more",
             _ => "write fewer samples, or average runs of several seeds",
         };
-        report.error(&format!("{path}.samples_per_px"), message, help);
+        report.error(path.key("samples_per_px"), message, help);
     }
 }
 
 fn check_position(
-    path: &str,
+    path: &ScenePath,
     (x, y, z): Point,
     above_ground: bool,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let path = format!("{path}.position_m");
+    let path = path.key("position_m");
     report.finite(&path, &[x, y, z]);
     let ground = match &scene.terrain {
         _ if above_ground => 0.0,
@@ -269,13 +271,13 @@ fn check_position(
             "write a greater height: `({x:?}, {y:?}, {:?})` is 1.5 m above the ground",
             ground + 1.5
         );
-        report.error(&path, message, help);
+        report.error(path, message, help);
     }
 }
 
 /// The direction from a camera to its target, if there is one; not of unit length.
 fn check_target(
-    path: &str,
+    path: &ScenePath,
     position: Point,
     target: Point,
     report: &mut Report<'_>,
@@ -293,16 +295,16 @@ fn check_target(
 }
 
 fn check_towards(
-    path: &str,
+    path: &ScenePath,
     zenith_deg: f64,
     azimuth_deg: f64,
     report: &mut Report<'_>,
 ) -> Option<Point> {
-    report.azimuth(&format!("{path}.look.azimuth_deg"), azimuth_deg);
+    report.azimuth(path.key("look").key("azimuth_deg"), azimuth_deg);
     if !(0.0..=180.0).contains(&zenith_deg) {
         let message = format!("expected an angle from the vertical, 0 to 180°, found {zenith_deg}");
         let help = "0 looks up, 90 to the horizon, 180 down";
-        report.error(&format!("{path}.look.zenith_deg"), message, help);
+        report.error(path.key("look").key("zenith_deg"), message, help);
         return None;
     }
     let (zenith, azimuth) = (zenith_deg.to_radians(), azimuth_deg.to_radians());
@@ -312,7 +314,7 @@ fn check_towards(
 /// Sines of less than this between view and up are no angle that a person means.
 const ALONG: f64 = 1e-6;
 
-fn check_up(path: &str, up: Point, ahead: Point, report: &mut Report<'_>) {
+fn check_up(path: &ScenePath, up: Point, ahead: Point, report: &mut Report<'_>) {
     let (ux, uy, uz) = up;
     let (ax, ay, az) = ahead;
     report.finite(path, &[ux, uy, uz]);

@@ -5,9 +5,9 @@ use std::ops::RangeInclusive;
 use super::super::scene::{
     Branches, Clumps, CrownShape, GeneratedCrown, LeafAngle, LeafProfile, LeafShape, Trunk,
 };
-use super::Report;
+use super::{Report, ScenePath};
 
-pub(super) fn check_crown(path: &str, crown: &GeneratedCrown, report: &mut Report<'_>) {
+pub(super) fn check_crown(path: &ScenePath, crown: &GeneratedCrown, report: &mut Report<'_>) {
     let GeneratedCrown {
         shape,
         base_m,
@@ -24,20 +24,20 @@ pub(super) fn check_crown(path: &str, crown: &GeneratedCrown, report: &mut Repor
         min_distance_m,
         seed: _,
     } = crown;
-    check_shape(&format!("{path}.shape"), shape, report);
-    check_leaf(&format!("{path}.leaf"), leaf, report);
-    check_angle(&format!("{path}.leaf_angle"), leaf_angle, report);
-    check_profile(&format!("{path}.leaf_profile"), leaf_profile, report);
+    check_shape(&path.key("shape"), shape, report);
+    check_leaf(&path.key("leaf"), leaf, report);
+    check_angle(&path.key("leaf_angle"), leaf_angle, report);
+    check_profile(&path.key("leaf_profile"), leaf_profile, report);
     if let Some(clumps) = clumps {
         check_clumps(path, clumps, branches.as_ref(), leaf_profile, report);
     }
-    report.finite(&format!("{path}.base_m"), &[*base_m]);
-    report.at_least(&format!("{path}.min_distance_m"), *min_distance_m, 0.0);
-    report.at_least(&format!("{path}.leaf_area_m2"), *leaf_area_m2, 0.0);
+    report.finite(path.key("base_m"), &[*base_m]);
+    report.at_least(path.key("min_distance_m"), *min_distance_m, 0.0);
+    report.at_least(path.key("leaf_area_m2"), *leaf_area_m2, 0.0);
     check_wood(path, trunk.as_ref(), branches.as_ref(), wood_material.is_some(), report);
 }
 
-fn check_shape(path: &str, shape: &CrownShape, report: &mut Report<'_>) {
+fn check_shape(path: &ScenePath, shape: &CrownShape, report: &mut Report<'_>) {
     match shape {
         CrownShape::Ellipsoid { diameter_m, height_m }
         | CrownShape::Cone { diameter_m, height_m }
@@ -56,17 +56,18 @@ fn check_shape(path: &str, shape: &CrownShape, report: &mut Report<'_>) {
             if *height_m > 0.0 && !(0.0..=*height_m).contains(widest_m) {
                 let message = format!("expected a height within the crown, found {widest_m}");
                 let help = format!("write a height above the crown's base, from 0 to {height_m}");
-                report.error(&format!("{path}.widest_m"), message, help);
+                report.error(path.key("widest_m"), message, help);
             }
         }
         CrownShape::Box { size_m: (x, y, z) } => {
-            let lengths = [("size_m[0]", *x), ("size_m[1]", *y), ("size_m[2]", *z)];
-            check_lengths(path, &lengths, report);
+            for (axis, length) in [*x, *y, *z].into_iter().enumerate() {
+                report.above_zero(path.key("size_m").index(axis), length);
+            }
         }
     }
 }
 
-fn check_leaf(path: &str, leaf: &LeafShape, report: &mut Report<'_>) {
+fn check_leaf(path: &ScenePath, leaf: &LeafShape, report: &mut Report<'_>) {
     match leaf {
         LeafShape::Disc { radius_m } => check_lengths(path, &[("radius_m", *radius_m)], report),
         LeafShape::Square { side_m } => check_lengths(path, &[("side_m", *side_m)], report),
@@ -86,14 +87,14 @@ fn check_leaf(path: &str, leaf: &LeafShape, report: &mut Report<'_>) {
                 ("needle_width_m", *needle_width_m),
             ];
             check_lengths(path, &lengths, report);
-            report.at_least(&format!("{path}.needles"), f64::from(*needles), 1.0);
+            report.at_least(path.key("needles"), f64::from(*needles), 1.0);
             let help = "0 points along the twig, 90 away from it";
             check_range(path, "needle_angle_deg", *needle_angle_deg, 0.0..=90.0, help, report);
         }
     }
 }
 
-fn check_angle(path: &str, angle: &LeafAngle, report: &mut Report<'_>) {
+fn check_angle(path: &ScenePath, angle: &LeafAngle, report: &mut Report<'_>) {
     match *angle {
         LeafAngle::Ellipsoidal { x: Some(x), mean_deg: None } => {
             let help = "1 is spherical, more is flatter";
@@ -116,32 +117,32 @@ fn check_angle(path: &str, angle: &LeafAngle, report: &mut Report<'_>) {
     }
 }
 
-fn check_profile(path: &str, profile: &LeafProfile, report: &mut Report<'_>) {
+fn check_profile(path: &ScenePath, profile: &LeafProfile, report: &mut Report<'_>) {
     let (LeafProfile::Density(points) | LeafProfile::Area(points)) = profile else { return };
     if points.len() < 2 && report.is_whole(path) {
         let message = format!("a profile has two points or more, found {}", points.len());
         report.error(path, message, "write, for example, `Density([(2.0, 0.5), (8.0, 1.0)])`");
     }
     for (index, &(height, leaves)) in points.iter().enumerate() {
-        let at = format!("{path}[{index}]");
+        let at = path.index(index);
         report.finite(&at, &[height]);
         report.at_least(&at, leaves, 0.0);
         if index > 0 && height < points[index - 1].0 {
             let message = format!("{height} m is below the point before it");
-            report.error(&at, message, "write the points from the lowest height up");
+            report.error(at, message, "write the points from the lowest height up");
         }
     }
 }
 
 fn check_clumps(
-    path: &str,
+    path: &ScenePath,
     clumps: &Clumps,
     branches: Option<&Branches>,
     profile: &LeafProfile,
     report: &mut Report<'_>,
 ) {
-    let at = format!("{path}.clumps");
-    report.at_least(&format!("{at}.count"), f64::from(clumps.count), 1.0);
+    let at = path.key("clumps");
+    report.at_least(at.key("count"), f64::from(clumps.count), 1.0);
     check_lengths(&at, &[("radius_m", clumps.radius_m)], report);
     if let Some(height) = clumps.height_m {
         check_lengths(&at, &[("height_m", height)], report);
@@ -149,20 +150,20 @@ fn check_clumps(
     if !clumps.on_branches || !report.is_whole(path) {
         return;
     }
-    let at = format!("{at}.on_branches");
+    let at = at.key("on_branches");
     if branches.is_none_or(|branches| branches.count == 0) {
         let help = "write, for example, `branches: (count: 40, diameter_m: 0.04)`";
         report.error(&at, "clumps are to be on branches, and there are none", help);
     }
     if *profile != LeafProfile::Even {
         let help = "leave out `on_branches` or `leaf_profile`";
-        report.error(&at, "clumps on branches cannot follow a `leaf_profile` too", help);
+        report.error(at, "clumps on branches cannot follow a `leaf_profile` too", help);
     }
 }
 
 fn check_range(
-    path: &str,
-    key: &str,
+    path: &ScenePath,
+    key: &'static str,
     value: f64,
     lawful: RangeInclusive<f64>,
     help: &str,
@@ -171,7 +172,7 @@ fn check_range(
     if !lawful.contains(&value) {
         let (least, most) = lawful.into_inner();
         let message = format!("expected a number from {least} to {most}, found {value}");
-        report.error(&format!("{path}.{key}"), message, help);
+        report.error(path.key(key), message, help);
     }
 }
 
@@ -179,22 +180,22 @@ fn check_range(
 const THICKEST: f64 = 0.5;
 
 fn check_wood(
-    path: &str,
+    path: &ScenePath,
     trunk: Option<&Trunk>,
     branches: Option<&Branches>,
     has_material: bool,
     report: &mut Report<'_>,
 ) {
     if let Some(trunk) = trunk {
-        let at = format!("{path}.trunk");
+        let at = path.key("trunk");
         let lengths = [("height_m", trunk.height_m), ("diameter_m", trunk.diameter_m)];
         check_lengths(&at, &lengths, report);
-        report.at_least(&format!("{at}.tip_diameter_m"), trunk.tip_diameter_m, 0.0);
+        report.at_least(at.key("tip_diameter_m"), trunk.tip_diameter_m, 0.0);
         if trunk.diameter_m > THICKEST * trunk.height_m && trunk.height_m > 0.0 {
             let message =
                 format!("the trunk is {} m thick and {} m high", trunk.diameter_m, trunk.height_m);
             let help = "lengths are in metres: 20 cm is 0.2";
-            report.warning(&format!("{at}.diameter_m"), message, help);
+            report.warning(at.key("diameter_m"), message, help);
         }
         if trunk.tip_diameter_m > trunk.diameter_m && trunk.diameter_m > 0.0 {
             let message = format!(
@@ -202,20 +203,20 @@ fn check_wood(
                 trunk.tip_diameter_m, trunk.diameter_m
             );
             let help = "write a `tip_diameter_m` of at most `diameter_m`";
-            report.error(&at, message, help);
+            report.error(at, message, help);
         }
     }
     if let Some(branches) = branches {
-        let at = format!("{path}.branches");
+        let at = path.key("branches");
         check_lengths(&at, &[("diameter_m", branches.diameter_m)], report);
         if !(0.0..=180.0).contains(&branches.zenith_deg) {
             let message =
                 format!("expected an angle from 0 to 180°, found {}", branches.zenith_deg);
-            report.error(&format!("{at}.zenith_deg"), message, "0 points up, 180 down");
+            report.error(at.key("zenith_deg"), message, "0 points up, 180 down");
         }
         if trunk.is_none() && report.is_whole(path) {
             let help = "write, for example, `trunk: (height_m: 5.0, diameter_m: 0.2)`";
-            report.error(&at, "branches grow from a trunk, and there is none", help);
+            report.error(at, "branches grow from a trunk, and there is none", help);
         }
     }
     let has_wood = trunk.is_some() || branches.is_some();
@@ -225,8 +226,8 @@ fn check_wood(
     }
 }
 
-fn check_lengths(path: &str, lengths: &[(&str, f64)], report: &mut Report<'_>) {
+fn check_lengths(path: &ScenePath, lengths: &[(&'static str, f64)], report: &mut Report<'_>) {
     for (key, length) in lengths {
-        report.above_zero(&format!("{path}.{key}"), *length);
+        report.above_zero(path.key(key), *length);
     }
 }

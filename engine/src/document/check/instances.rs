@@ -7,35 +7,35 @@ use super::super::scene::{
     Area, CanopyHeights, Distribution, INSTANCE_COLUMNS, InstanceList, InstanceTable, Instances,
     Prototype, Ref, Rule, Scatter, Scene, SpeciesMeshes, Stems, meant_column,
 };
-use super::{Report, count};
+use super::{Report, ScenePath, count};
 
 pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
     for (index, instances) in scene.instances.iter().enumerate() {
-        let path = format!("instances[{index}]");
+        let path = ScenePath::from("instances").index(index);
         check_name(scene, index, instances.name(), &path, report);
         match instances {
             Instances::Table(InstanceTable { of, columns, .. }) => {
                 if matches!(of, SpeciesMeshes::BySpecies(meshes) if meshes.is_empty()) {
                     let help = "write, for example, `of: { \"birch\": \"birch.tree\" }`";
-                    report.error(&format!("{path}.of"), "no species has a mesh", help);
+                    report.error(path.key("of"), "no species has a mesh", help);
                 }
                 if let Some(columns) = columns {
-                    check_columns(&format!("{path}.columns"), columns, report);
+                    check_columns(&path.key("columns"), columns, report);
                 }
             }
             Instances::List(InstanceList { at_m, yaw_deg, scale, .. }) => {
                 for (index, (x, y, z)) in at_m.iter().enumerate() {
                     if !(x.is_finite() && y.is_finite() && z.is_finite()) {
                         let message = format!("expected finite numbers, found ({x}, {y}, {z})");
-                        report.push(Diagnostic::error(format!("{path}.at_m[{index}]"), message));
+                        report.push(Diagnostic::error(path.key("at_m").index(index), message));
                     }
                 }
                 check_count(&path, "yaw_deg", yaw_deg.len(), at_m.len(), report);
                 check_count(&path, "scale", scale.len(), at_m.len(), report);
-                report.finite(&format!("{path}.yaw_deg"), yaw_deg);
+                report.finite(path.key("yaw_deg"), yaw_deg);
                 for (index, &scale) in scale.iter().enumerate() {
                     if !(scale > 0.0 && scale.is_finite()) {
-                        report.above_zero(&format!("{path}.scale[{index}]"), scale);
+                        report.above_zero(path.key("scale").index(index), scale);
                     }
                 }
             }
@@ -49,17 +49,17 @@ pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
                 ..
             }) => {
                 if let Some(unit) = height_unit_m {
-                    report.above_zero(&format!("{path}.height_unit_m"), *unit);
+                    report.above_zero(path.key("height_unit_m"), *unit);
                 }
-                let at = format!("{path}.of");
+                let at = path.key("of");
                 if of.is_empty() && report.is_whole(&at) {
                     let help = "write, for example, `of: [\"oak\", \"fir\"]`";
-                    report.error(&at, "nothing would stand there", help);
+                    report.error(at, "nothing would stand there", help);
                 }
-                report.above_zero(&format!("{path}.min_height_m"), *min_height_m);
-                report.at_least(&format!("{path}.window[0]"), window.0, 0.0);
-                report.at_least(&format!("{path}.window[1]"), window.1, 0.0);
-                report.finite(&format!("{path}.sink_m"), &[*sink_m]);
+                report.above_zero(path.key("min_height_m"), *min_height_m);
+                report.at_least(path.key("window").index(0), window.0, 0.0);
+                report.at_least(path.key("window").index(1), window.1, 0.0);
+                report.finite(path.key("sink_m"), &[*sink_m]);
             }
         }
     }
@@ -70,20 +70,20 @@ fn check_name(
     scene: &Scene,
     index: usize,
     name: Option<&str>,
-    path: &str,
+    path: &ScenePath,
     report: &mut Report<'_>,
 ) {
     let Some(name) = name else { return };
-    let at = format!("{path}.name");
+    let at = path.key("name");
     if name.is_empty() || name.contains(['/', '*']) {
         let help = "patterns of `hide` and `select` are made of names, `/` and `*`";
-        report.error(&at, format!("`{name}` cannot be a name of instances"), help);
+        report.error(at, format!("`{name}` cannot be a name of instances"), help);
     } else if scene.instances[..index].iter().any(|other| other.name() == Some(name)) {
-        report.error(&at, format!("a second `{name}`"), "give each instances a name of their own");
+        report.error(at, format!("a second `{name}`"), "give each instances a name of their own");
     }
 }
 
-fn check_scatter(scatter: &Scatter, path: &str, report: &mut Report<'_>) {
+fn check_scatter(scatter: &Scatter, path: &ScenePath, report: &mut Report<'_>) {
     let Scatter {
         of,
         rule,
@@ -99,16 +99,16 @@ fn check_scatter(scatter: &Scatter, path: &str, report: &mut Report<'_>) {
         sink_m,
         ..
     } = scatter;
-    check_shares(of, &format!("{path}.of"), report);
+    check_shares(of, &path.key("of"), report);
     check_rule(rule, stems, path, report);
     for (key, areas) in [("inside", inside), ("outside", outside)] {
         for (index, area) in areas.iter().enumerate() {
-            check_area(area, &format!("{path}.{key}[{index}]"), report);
+            check_area(area, &path.key(key).index(index), report);
         }
     }
-    check_distribution(yaw_deg, &format!("{path}.yaw_deg"), Least::Any, report);
-    check_distribution(tilt_azimuth_deg, &format!("{path}.tilt_azimuth_deg"), Least::Any, report);
-    let tilt_path = format!("{path}.tilt_deg");
+    check_distribution(yaw_deg, &path.key("yaw_deg"), Least::Any, report);
+    check_distribution(tilt_azimuth_deg, &path.key("tilt_azimuth_deg"), Least::Any, report);
+    let tilt_path = path.key("tilt_deg");
     check_distribution(tilt_deg, &tilt_path, Least::Zero("a lean"), report);
     let most = largest(tilt_deg);
     if most >= 90.0 {
@@ -127,14 +127,14 @@ fn check_scatter(scatter: &Scatter, path: &str, report: &mut Report<'_>) {
     ];
     for (key, size) in sizes {
         if let Some(size) = size {
-            let path = format!("{path}.{key}");
+            let path = path.key(key);
             check_distribution(size, &path, Least::AboveZero("sizes"), report);
         }
     }
-    report.finite(&format!("{path}.sink_m"), &[*sink_m]);
+    report.finite(path.key("sink_m"), &[*sink_m]);
 }
 
-fn check_shares(of: &IndexMap<Ref<Prototype>, f64>, path: &str, report: &mut Report<'_>) {
+fn check_shares(of: &IndexMap<Ref<Prototype>, f64>, path: &ScenePath, report: &mut Report<'_>) {
     if of.is_empty() {
         let help = "write, for example, `of: { \"oak\": 0.7, \"birch\": 0.3 }`";
         report.error(path, "nothing would stand there", help);
@@ -142,53 +142,53 @@ fn check_shares(of: &IndexMap<Ref<Prototype>, f64>, path: &str, report: &mut Rep
         report.error(path, "all shares are 0", "give at least one mesh a share above 0");
     }
     for (name, &share) in of {
-        report.at_least(&format!("{path}.{name}"), share, 0.0);
+        report.at_least(path.name(name.as_str()), share, 0.0);
     }
 }
 
-fn check_rule(rule: &Rule, stems: &Stems, path: &str, report: &mut Report<'_>) {
+fn check_rule(rule: &Rule, stems: &Stems, path: &ScenePath, report: &mut Report<'_>) {
     match rule {
-        Rule::Uniform if *stems == Stems::Fill && report.is_readable(&format!("{path}.stems")) => {
+        Rule::Uniform if *stems == Stems::Fill && report.is_readable(path.key("stems")) => {
             let message = "`Uniform` has room for any number of stems";
             let help = "add, for example, `stems: PerHectare(400.0)`";
-            report.error(&format!("{path}.rule"), message, help);
+            report.error(path.key("rule"), message, help);
         }
         Rule::Uniform => {}
         Rule::PoissonDisc { min_distance_m } => {
-            report.above_zero(&format!("{path}.rule.min_distance_m"), *min_distance_m);
+            report.above_zero(path.key("rule").key("min_distance_m"), *min_distance_m);
         }
         Rule::Grid { spacing_m, row_azimuth_deg, jitter_m } => {
-            report.above_zero(&format!("{path}.rule.spacing_m[0]"), spacing_m.0);
-            report.above_zero(&format!("{path}.rule.spacing_m[1]"), spacing_m.1);
-            report.azimuth(&format!("{path}.rule.row_azimuth_deg"), *row_azimuth_deg);
-            report.at_least(&format!("{path}.rule.jitter_m"), *jitter_m, 0.0);
+            report.above_zero(path.key("rule").key("spacing_m").index(0), spacing_m.0);
+            report.above_zero(path.key("rule").key("spacing_m").index(1), spacing_m.1);
+            report.azimuth(path.key("rule").key("row_azimuth_deg"), *row_azimuth_deg);
+            report.at_least(path.key("rule").key("jitter_m"), *jitter_m, 0.0);
             if *stems != Stems::Fill {
                 let help = "take the key out, or choose `Uniform` or `PoissonDisc(..)` as the rule";
                 let message = "the spacing of a grid decides how many stems there are";
-                report.error(&format!("{path}.stems"), message, help);
+                report.error(path.key("stems"), message, help);
             }
         }
     }
     if let Stems::Raster { factor, .. } = stems {
-        report.at_least(&format!("{path}.stems.factor"), *factor, 0.0);
+        report.at_least(path.key("stems").key("factor"), *factor, 0.0);
     }
     if let Stems::PerHectare(density) = stems
         && !(*density >= 0.0 && density.is_finite())
     {
         let message = format!("expected stems per hectare of at least 0, found {density}");
-        report.error(&format!("{path}.stems"), message, "write, for example, `PerHectare(400.0)`");
+        report.error(path.key("stems"), message, "write, for example, `PerHectare(400.0)`");
     }
 }
 
-fn check_area(area: &Area, path: &str, report: &mut Report<'_>) {
+fn check_area(area: &Area, path: &ScenePath, report: &mut Report<'_>) {
     let Area::Polygon { outline_m, holes_m } = area else { return };
-    check_ring(outline_m, &format!("{path}.outline_m"), report);
+    check_ring(outline_m, &path.key("outline_m"), report);
     for (index, hole) in holes_m.iter().enumerate() {
-        check_ring(hole, &format!("{path}.holes_m[{index}]"), report);
+        check_ring(hole, &path.key("holes_m").index(index), report);
     }
 }
 
-fn check_ring(ring: &[(f64, f64)], path: &str, report: &mut Report<'_>) {
+fn check_ring(ring: &[(f64, f64)], path: &ScenePath, report: &mut Report<'_>) {
     if ring.len() < 3 && report.is_whole(path) {
         let message = format!("{} enclose no area", count(ring.len(), "corner"));
         report.error(path, message, "write at least three: `[(10.0, 10.0), (90.0, 10.0), ..]`");
@@ -196,7 +196,7 @@ fn check_ring(ring: &[(f64, f64)], path: &str, report: &mut Report<'_>) {
     if let Some(index) = ring.iter().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let (x, y) = ring[index];
         let message = format!("expected finite numbers, found ({x}, {y})");
-        report.push(Diagnostic::error(format!("{path}[{index}]"), message));
+        report.push(Diagnostic::error(path.index(index), message));
     }
 }
 
@@ -211,7 +211,7 @@ enum Least {
 /// Checks that values are finite, in order, and not below the minimum.
 fn check_distribution(
     distribution: &Distribution,
-    path: &str,
+    path: &ScenePath,
     least: Least,
     report: &mut Report<'_>,
 ) {
@@ -226,13 +226,13 @@ fn check_distribution(
             }
         }
         Distribution::Normal { mean, sd, min, max } => {
-            report.finite(&format!("{path}.mean"), &[*mean]);
-            report.at_least(&format!("{path}.sd"), *sd, 0.0);
+            report.finite(path.key("mean"), &[*mean]);
+            report.at_least(path.key("sd"), *sd, 0.0);
             check_limits(path, ("mean", *mean), *min, *max, report);
         }
         Distribution::LogNormal { median, sd_ln, min, max } => {
-            report.above_zero(&format!("{path}.median"), *median);
-            report.at_least(&format!("{path}.sd_ln"), *sd_ln, 0.0);
+            report.above_zero(path.key("median"), *median);
+            report.at_least(path.key("sd_ln"), *sd_ln, 0.0);
             check_limits(path, ("median", *median), *min, *max, report);
         }
     }
@@ -261,7 +261,7 @@ fn check_distribution(
 }
 
 fn check_limits(
-    path: &str,
+    path: &ScenePath,
     (name, middle): (&str, f64),
     min: Option<f64>,
     max: Option<f64>,
@@ -274,7 +274,7 @@ fn check_limits(
         if is_beyond || limit.is_nan() {
             let help = format!("the {name} must lie from `min` to `max`");
             let message = format!("`{key}` {limit} is {side} the {name} {middle}");
-            report.error(&format!("{path}.{key}"), message, help);
+            report.error(path.key(key), message, help);
         }
     }
 }
@@ -291,28 +291,34 @@ fn largest(distribution: &Distribution) -> f64 {
 }
 
 /// One value a place, or none.
-fn check_count(path: &str, key: &str, values: usize, places: usize, report: &mut Report<'_>) {
-    if values != 0 && values != places && report.is_readable(&format!("{path}.at_m")) {
+fn check_count(
+    path: &ScenePath,
+    key: &'static str,
+    values: usize,
+    places: usize,
+    report: &mut Report<'_>,
+) {
+    if values != 0 && values != places && report.is_readable(path.key("at_m")) {
         let values = count(values, "value");
         let message = format!("`{key}` has {values}, but `at_m` has {places}");
         let help = "write one for each place, or leave the key out";
-        report.error(&format!("{path}.{key}"), message, help);
+        report.error(path.key(key), message, help);
     }
 }
 
-fn check_columns(path: &str, columns: &[String], report: &mut Report<'_>) {
+fn check_columns(path: &ScenePath, columns: &[String], report: &mut Report<'_>) {
     for (index, column) in columns.iter().enumerate() {
-        let at = format!("{path}[{index}]");
+        let at = path.index(index);
         if !INSTANCE_COLUMNS.contains(&column.as_str()) {
             // Other columns are let be, unless one that means something is meant.
             let is_free = |name: &&'static str| !columns.iter().any(|column| column == name);
             let free: Vec<_> = INSTANCE_COLUMNS.into_iter().filter(is_free).collect();
             if meant_column(column, &free).is_some() {
                 let help = suggestion(column, &INSTANCE_COLUMNS, "columns may be");
-                report.error(&at, format!("no column `{column}`"), help);
+                report.error(at, format!("no column `{column}`"), help);
             }
         } else if columns[..index].contains(column) {
-            report.error(&at, format!("a second column `{column}`"), "name each column once");
+            report.error(at, format!("a second column `{column}`"), "name each column once");
         }
     }
     for needed in ["x_m", "y_m"] {

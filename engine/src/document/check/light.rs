@@ -1,20 +1,21 @@
 //! Sun and sky.
 
 use super::super::scene::{Scene, Sky, Sun};
-use super::Report;
 use super::spectrum::{Quantity, check_band_count, check_spectrum};
 use super::thermal::needs_light;
+use super::{Report, ScenePath};
 
 pub(super) fn check_sun(scene: &Scene, report: &mut Report<'_>) {
     let Some(sun) = &scene.sun else { return };
     check_position(sun, scene, report);
-    check_spectrum("sun.irradiance", &sun.irradiance, Quantity::Irradiance, scene, report);
+    let path = ["sun", "irradiance"].into();
+    check_spectrum(&path, &sun.irradiance, Quantity::Irradiance, scene, report);
 }
 
 fn check_position(sun: &Sun, scene: &Scene, report: &mut Report<'_>) {
-    report.azimuth("sun.azimuth_deg", sun.azimuth_deg);
+    report.azimuth(["sun", "azimuth_deg"], sun.azimuth_deg);
     match (&sun.zenith_deg, &sun.position) {
-        (Some(zenith), None) => report.zenith("sun.zenith_deg", *zenith),
+        (Some(zenith), None) => report.zenith(["sun", "zenith_deg"], *zenith),
         (None, Some(_)) if sun.azimuth_deg == 0.0 => {}
         (None, None) if report.is_whole("sun") => {
             let help = "write, for example, `zenith_deg: 30.0`";
@@ -23,10 +24,10 @@ fn check_position(sun: &Sun, scene: &Scene, report: &mut Report<'_>) {
         (None, None) => {}
         _ => {
             let message = "the sun's place is given both by angles and by `position`";
-            report.error("sun.position", message, "take one of the two out");
+            report.error(["sun", "position"], message, "take one of the two out");
         }
     }
-    if sun.position.is_some() && report.is_whole("sun.position") {
+    if sun.position.is_some() && report.is_whole(["sun", "position"]) {
         match sun.placed() {
             Err(problem) => report.push(*problem),
             Ok(_) => scene.night().into_iter().for_each(|night| report.push(night)),
@@ -35,14 +36,14 @@ fn check_position(sun: &Sun, scene: &Scene, report: &mut Report<'_>) {
     let disc = sun.disc_deg;
     if !(0.0..=10.0).contains(&disc) {
         let message = format!("expected an angular diameter from 0 to 10°, found {disc}");
-        report.error("sun.disc_deg", message, "the real sun has 0.533; 0 is a parallel beam");
+        report.error(["sun", "disc_deg"], message, "the real sun has 0.533; 0 is a parallel beam");
     } else if let Some((zenith, _)) = sun.angles_deg()
         && zenith < 90.0
         && zenith + 0.5 * disc >= 90.0
     {
         let message = format!("the horizon cuts the disc of a sun at zenith {zenith}°");
         let help = "raise the sun by half the disc, or write `disc_deg: 0.0`";
-        report.error("sun.disc_deg", message, help);
+        report.error(["sun", "disc_deg"], message, help);
     }
 }
 
@@ -61,13 +62,14 @@ pub(super) fn check_sky(scene: &Scene, report: &mut Report<'_>) {
                     "write `sun: (zenith_deg: 30.0)` too, or `sky: Isotropic(irradiance: ..)`";
                 report.error("sky", message, help);
             }
-            check_band_count("sky", "Fraction", shares.len(), scene, report);
+            check_band_count(&"sky".into(), "Fraction", shares.len(), scene, report);
             for (index, share) in shares.iter().enumerate() {
-                report.fraction(&format!("sky[{index}]"), *share);
+                report.fraction(ScenePath::from("sky").index(index), *share);
             }
         }
         Sky::Isotropic { irradiance } => {
-            check_spectrum("sky.irradiance", irradiance, Quantity::Irradiance, scene, report);
+            let path = ["sky", "irradiance"].into();
+            check_spectrum(&path, irradiance, Quantity::Irradiance, scene, report);
         }
     }
 }

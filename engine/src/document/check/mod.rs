@@ -17,7 +17,7 @@ mod thermal;
 
 use super::diagnostic::{Diagnostic, unknown_name};
 use super::leaves::{LeafValue, visit_leaves};
-use super::path::path_of;
+use super::path::ScenePath;
 use super::scene::{Map, Scene, Transport};
 
 pub(crate) use pixels::{rounded_up, too_many_pixels};
@@ -33,12 +33,17 @@ pub(crate) const LOWEST_DEG: f64 = 90.0 - 1e-6;
 /// Faults of a scene that can be found without reading a file.
 #[must_use]
 pub fn check(scene: &Scene) -> Vec<Diagnostic> {
-    check_readable(scene, &[])
+    check_readable(scene, &[], &[])
 }
 
-/// Faults of a scene that was read with errors at the `broken` paths, without those there.
-pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic> {
-    let mut report = Report { broken, found: Vec::new(), dropped: 0 };
+/// Faults of a scene that was read with errors at the `broken` paths, without those there;
+/// `lost` are the namespaces of included files that could not be read.
+pub(super) fn check_readable(
+    scene: &Scene,
+    broken: &[ScenePath],
+    lost: &[String],
+) -> Vec<Diagnostic> {
+    let mut report = Report { broken, lost, found: Vec::new(), dropped: 0 };
     if scene.format != 1 {
         let message = format!("format {} is unknown", scene.format);
         report.push(Diagnostic::error("format", message).help("this version reads `format: 1`"));
@@ -65,7 +70,8 @@ pub(super) fn check_readable(scene: &Scene, broken: &[String]) -> Vec<Diagnostic
 
 /// Faults found so far.
 struct Report<'a> {
-    broken: &'a [String],
+    broken: &'a [ScenePath],
+    lost: &'a [String],
     found: Vec<Diagnostic>,
     dropped: usize,
 }
@@ -82,66 +88,77 @@ impl Report<'_> {
         }
     }
 
-    fn error(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
+    fn error(
+        &mut self,
+        path: impl Into<ScenePath>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
         self.push(Diagnostic::error(path, message).help(help));
     }
 
-    fn warning(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
+    fn warning(
+        &mut self,
+        path: impl Into<ScenePath>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
         self.push(Diagnostic::warning(path, message).help(help));
     }
 
     fn finish(mut self) -> Vec<Diagnostic> {
         if self.dropped > 0 {
             let message = format!("and {} more errors", self.dropped);
-            self.found.push(Diagnostic::error("", message));
+            self.found.push(Diagnostic::error(ScenePath::root(), message));
         }
         self.found
     }
 
     /// Returns whether the value at a path could be read: no error is there or above.
-    fn is_readable(&self, path: &str) -> bool {
-        !self.broken.iter().any(|broken| is_within(path, broken))
+    fn is_readable(&self, path: impl Into<ScenePath>) -> bool {
+        let path = path.into();
+        !self.broken.iter().any(|broken| path.is_within(broken))
     }
 
     /// Returns whether no error is below a path either.
-    fn is_whole(&self, path: &str) -> bool {
-        self.is_readable(path) && !self.broken.iter().any(|broken| is_within(broken, path))
+    fn is_whole(&self, path: impl Into<ScenePath>) -> bool {
+        let path = path.into();
+        !self.broken.iter().any(|broken| path.is_within(broken) || broken.is_within(&path))
     }
 
     /// Returns whether a name belongs to an included file that could not be read.
     fn is_lost(&self, name: &str) -> bool {
-        let prefixes = self.broken.iter().filter_map(|path| path.strip_prefix("include."));
-        prefixes.into_iter().any(|lost| lost.ends_with('.') && name.starts_with(lost))
+        self.lost.iter().any(|lost| name.starts_with(lost))
     }
 
-    fn above_zero(&mut self, path: &str, value: f64) {
+    fn above_zero(&mut self, path: impl Into<ScenePath>, value: f64) {
         if !(value > 0.0 && value.is_finite()) {
             self.push(Diagnostic::error(path, format!("expected a number above 0, found {value}")));
         }
     }
 
-    fn at_least(&mut self, path: &str, value: f64, least: f64) {
+    fn at_least(&mut self, path: impl Into<ScenePath>, value: f64, least: f64) {
         if !(value >= least && value.is_finite()) {
             let message = format!("expected a number of at least {least}, found {value}");
             self.push(Diagnostic::error(path, message));
         }
     }
 
-    fn within(&mut self, path: &str, value: f64, least: f64, most: f64) {
+    fn within(&mut self, path: impl Into<ScenePath>, value: f64, least: f64, most: f64) {
         if !(least..=most).contains(&value) {
             let message = format!("expected a number from {least} to {most}, found {value}");
             self.push(Diagnostic::error(path, message));
         }
     }
 
-    fn finite(&mut self, path: &str, values: &[f64]) {
+    fn finite(&mut self, path: impl Into<ScenePath>, values: &[f64]) {
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
             let message = format!("expected a finite number, found {value}");
             self.push(Diagnostic::error(path, message));
         }
     }
 
-    fn fraction(&mut self, path: &str, value: f64) {
+    fn fraction(&mut self, path: impl Into<ScenePath>, value: f64) {
         if !(0.0..=1.0).contains(&value) {
             let message = format!("expected a fraction from 0 to 1, found {value}");
             let help = if (2.0..=100.0).contains(&value) {
@@ -157,8 +174,8 @@ impl Report<'_> {
     /// Warns of a content of leaves that none has; 0 is always lawful.
     fn warn_implausible(
         &mut self,
-        path: &str,
-        key: &str,
+        path: &ScenePath,
+        key: &'static str,
         value: f64,
         low: f64,
         high: f64,
@@ -166,12 +183,12 @@ impl Report<'_> {
     ) {
         if value > high || (value > 0.0 && value < low) {
             let message = format!("`{key}` is {value}; real leaves have {low} to {high}");
-            self.push(Diagnostic::warning(format!("{path}.{key}"), message).help(help));
+            self.push(Diagnostic::warning(path.key(key), message).help(help));
         }
     }
 
     /// Angle from the vertical, below the horizon's 90°.
-    fn zenith(&mut self, path: &str, degrees: f64) {
+    fn zenith(&mut self, path: impl Into<ScenePath>, degrees: f64) {
         if !(0.0..=LOWEST_DEG).contains(&degrees) {
             let message =
                 format!("expected an angle from the vertical, 0 up to below 90°, found {degrees}");
@@ -186,7 +203,7 @@ impl Report<'_> {
         }
     }
 
-    fn azimuth(&mut self, path: &str, degrees: f64) {
+    fn azimuth(&mut self, path: impl Into<ScenePath>, degrees: f64) {
         if !(-360.0..=360.0).contains(&degrees) {
             let message = format!("expected an azimuth from -360 to 360°, found {degrees}");
             self.error(path, message, "0 is north, 90 east, 180 south, 270 west");
@@ -194,7 +211,7 @@ impl Report<'_> {
     }
 
     /// Names that their own definitions give.
-    fn own_names<T>(&mut self, key: &str, kind: &str, defined: &Map<T>) {
+    fn own_names<T>(&mut self, key: &'static str, kind: &str, defined: &Map<T>) {
         if defined.contains_key("") {
             self.error(key, format!("{kind} has no name"), "write a name between the quotes");
         }
@@ -203,12 +220,12 @@ impl Report<'_> {
 
 /// Checks that every name is that of a definition, unless definitions could not be read.
 fn check_references(scene: &Scene, report: &mut Report<'_>) {
-    visit_leaves(scene, &mut |steps, leaf| {
+    visit_leaves(scene, &mut |path, leaf| {
         let LeafValue::Reference { target, name } = leaf else { return };
         let is_known = (target.is_defined)(scene, name);
         if !is_known && report.is_readable(target.key) && !report.is_lost(name) {
             let known = (target.names)(scene);
-            report.push(unknown_name(path_of(steps), target.kind, name, known));
+            report.push(unknown_name(path, target.kind, name, known));
         }
     });
 }
@@ -218,25 +235,20 @@ fn count(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-fn is_within(path: &str, ancestor: &str) -> bool {
-    path.strip_prefix(ancestor)
-        .is_some_and(|rest| ancestor.is_empty() || rest.is_empty() || rest.starts_with(['.', '[']))
-}
-
 fn check_transport(transport: &Transport, report: &mut Report<'_>) {
     let kill = transport.roulette.kill;
     if !(0.0..1.0).contains(&kill) {
         let message = format!("expected a probability from 0 up to below 1, found {kill}");
-        report.error("transport.roulette.kill", message, "with 1 no path would go on");
+        report.error(["transport", "roulette", "kill"], message, "with 1 no path would go on");
     }
     match transport.max_order {
         Some(0) => {
             let help = "1 is light that was scattered once; leave the key out for all orders";
-            report.error("transport.max_order", "no light would count", help);
+            report.error(["transport", "max_order"], "no light would count", help);
         }
         Some(order) if order > 1 && transport.first_order_only => {
             let message = format!("`first_order_only` contradicts `max_order: {order}`");
-            report.error("transport.max_order", message, "take one of the two out");
+            report.error(["transport", "max_order"], message, "take one of the two out");
         }
         _ => {}
     }

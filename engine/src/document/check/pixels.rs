@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::super::diagnostic::Diagnostic;
 use super::super::scene::Scene;
-use super::Report;
 use super::sensor::VALUES;
+use super::{Report, ScenePath};
 use crate::geometry::PixelGrid;
 
 /// Pixels that an image may have in a row or a column.
@@ -13,16 +13,16 @@ const MOST_PIXELS: u32 = 65536;
 
 /// Checks the number of pixels where it is written.
 pub(super) fn check_size(
-    path: &str,
+    path: &ScenePath,
     (columns, rows): (u32, u32),
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let at = |key: &str| format!("{path}.{key}");
-    for (key, pixels) in [("size_px[0]", columns), ("size_px[1]", rows)] {
+    let at = path.key("size_px");
+    for (axis, pixels) in [columns, rows].into_iter().enumerate() {
         if !(1..=MOST_PIXELS).contains(&pixels) {
             let message = format!("expected 1 to {MOST_PIXELS} pixels, found {pixels}");
-            report.error(&at(key), message, "`size_px` is (columns, rows)");
+            report.error(at.index(axis), message, "`size_px` is (columns, rows)");
         }
     }
     let values = f64::from(columns) * f64::from(rows) * scene.bands.len() as f64;
@@ -31,21 +31,21 @@ pub(super) fn check_size(
             "{columns} x {rows} pixels in {} bands are more than an image may hold",
             scene.bands.len()
         );
-        report.error(&at("size_px"), message, format!("keep the product below {VALUES}"));
+        report.error(at, message, format!("keep the product below {VALUES}"));
     }
 }
 
 /// Checks what a parallel projection says of its pixels: their number, or their side and, with it,
 /// their number if the extent is written.
 pub(super) fn check_pixels(
-    path: &str,
+    path: &ScenePath,
     size_px: Option<(u32, u32)>,
     pixel_m: Option<f64>,
     extent_m: Option<(f64, f64)>,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let at = format!("{path}.pixel_m");
+    let at = path.key("pixel_m");
     if let Some(size) = size_px {
         check_size(path, size, scene, report);
     }
@@ -78,7 +78,7 @@ pub(super) fn check_pixels(
 /// image may have.
 #[must_use]
 pub(crate) fn too_many_pixels(
-    path: &str,
+    path: &ScenePath,
     extent: DVec2,
     side: f64,
     bands: usize,
@@ -121,19 +121,20 @@ mod tests {
 
     #[test]
     fn the_side_that_an_error_advises_is_accepted() {
+        let path = ScenePath::root();
         for (extent, bands) in [
             (DVec2::new(7e4, 1.0), 1),
             (DVec2::new(5e4, 5e4), 3),
             (DVec2::new(1.0, 3e5), 1),
             (DVec2::new(65537.0, 3.0), 2100),
         ] {
-            let problem = too_many_pixels("p", extent, 1.0, bands).expect("too many");
+            let problem = too_many_pixels(&path, extent, 1.0, bands).expect("too many");
             let help = problem.help.expect("advice");
             let side = help.split("pixel_m: ").nth(1).expect("a side").trim_end_matches('`');
             let side: f64 = side.parse().expect("a number");
-            assert!(too_many_pixels("p", extent, side, bands).is_none(), "{extent}: {side}");
+            assert!(too_many_pixels(&path, extent, side, bands).is_none(), "{extent}: {side}");
         }
-        assert!(too_many_pixels("p", DVec2::splat(65536.0), 1.0, 1).is_some());
-        assert!(too_many_pixels("p", DVec2::splat(40000.0), 1.0, 1).is_none());
+        assert!(too_many_pixels(&path, DVec2::splat(65536.0), 1.0, 1).is_some());
+        assert!(too_many_pixels(&path, DVec2::splat(40000.0), 1.0, 1).is_none());
     }
 }

@@ -1,25 +1,25 @@
 //! Virtual planes.
 
 use super::super::scene::{Scene, Terrain, TerrainPlane, VirtualPlane};
-use super::Report;
+use super::{Report, ScenePath};
 
 /// Beyond the terrain by less than this share of its extent is rounding.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn check_plane(
-    sensor: &str,
+    sensor: &ScenePath,
     plane: Option<&VirtualPlane>,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
     let Some(VirtualPlane { center_m, size_m, height_m }) = plane else { return };
-    let path = format!("{sensor}.virtual_plane");
+    let path = sensor.key("virtual_plane");
     if let Some((x, y)) = center_m {
-        report.finite(&format!("{path}.center_m"), &[*x, *y]);
+        report.finite(path.key("center_m"), &[*x, *y]);
     }
     if let Some((width, depth)) = size_m {
-        report.above_zero(&format!("{path}.size_m[0]"), *width);
-        report.above_zero(&format!("{path}.size_m[1]"), *depth);
+        report.above_zero(path.key("size_m").index(0), *width);
+        report.above_zero(path.key("size_m").index(1), *depth);
     }
     if !report.is_whole("terrain") {
         return;
@@ -28,7 +28,7 @@ pub(super) fn check_plane(
         &scene.terrain
     else {
         // Where other terrain lies is known only when its file is read.
-        return report.finite(&format!("{path}.height_m"), height_m.as_slice());
+        return report.finite(path.key("height_m"), height_m.as_slice());
     };
     if let Some(height) = height_m
         && !(*height >= *ground && height.is_finite())
@@ -36,7 +36,7 @@ pub(super) fn check_plane(
         let message =
             format!("nothing leaves through a plane at {height} m: the ground lies at {ground} m");
         let help = "leave `height_m` out: the plane then lies on the highest point of the scene";
-        report.error(&format!("{path}.height_m"), message, help);
+        report.error(path.key("height_m"), message, help);
     }
     let middle = (corner_m.0 + 0.5 * terrain.0, corner_m.1 + 0.5 * terrain.1);
     let (center, size) = (center_m.unwrap_or(middle), size_m.unwrap_or(*terrain));
@@ -55,7 +55,7 @@ pub(super) fn check_plane(
         let help = format!(
             "write `virtual_plane: (center_m: ({x:?}, {y:?}), size_m: ({width:?}, {depth:?}))`"
         );
-        report.error(&path, message, help);
+        report.error(path, message, help);
     }
 }
 

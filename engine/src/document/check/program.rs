@@ -2,14 +2,14 @@
 
 use super::super::diagnostic::{Diagnostic, suggestion};
 use super::super::scene::{Param, Scene, Sweep};
-use super::{Report, count};
+use super::{Report, ScenePath, count};
 
 /// A sweep may have so many points.
 const POINTS: usize = 100_000;
 
 pub(super) fn check_params(scene: &Scene, report: &mut Report<'_>) {
     for (name, value) in &scene.params {
-        let path = format!("params.{name}");
+        let path = ScenePath::from("params").name(name);
         // Behind the names of included files.
         let lawful = name.split('.').all(|name| {
             let mut letters = name.chars();
@@ -20,12 +20,12 @@ pub(super) fn check_params(scene: &Scene, report: &mut Report<'_>) {
             let help = "start with a letter, go on with letters, digits and `_`";
             report.error(&path, format!("`{name}` cannot be a parameter's name"), help);
         }
-        report.finite(&path, value.number().as_slice());
+        report.finite(path, value.number().as_slice());
     }
     for (variant, changes) in &scene.variants {
         let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
         for (name, value) in changes {
-            let path = format!("variants.{variant}.{name}");
+            let path = ScenePath::from("variants").name(variant).name(name);
             report.finite(&path, value.number().as_slice());
             check_kind(&path, value, scene.params.get(name), report);
             if !scene.params.contains_key(name) && report.is_readable("params") {
@@ -42,7 +42,7 @@ pub(super) fn check_params(scene: &Scene, report: &mut Report<'_>) {
 }
 
 /// A parameter is a number or a text, whatever its value.
-fn check_kind(path: &str, value: &Param, own: Option<&Param>, report: &mut Report<'_>) {
+fn check_kind(path: &ScenePath, value: &Param, own: Option<&Param>, report: &mut Report<'_>) {
     let Some(own) = own else { return };
     // What could not be read counts as a number that is not finite.
     if value.number().is_some() != own.number().is_some() && own.is_lawful() {
@@ -69,9 +69,9 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
     }
     let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
     for (name, values) in axes {
-        let path = format!("sweep.{name}");
+        let path = ScenePath::from("sweep").name(name);
         for (index, value) in values.iter().enumerate() {
-            let at = format!("{path}[{index}]");
+            let at = path.index(index);
             report.finite(&at, value.number().as_slice());
             check_kind(&at, value, scene.params.get(name), report);
         }
@@ -85,7 +85,7 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
             } else {
                 suggestion(name, &known, "a sweep may vary")
             };
-            report.error(&path, format!("no parameter `{name}` to vary"), help);
+            report.error(path, format!("no parameter `{name}` to vary"), help);
         }
     }
     if let (Sweep::Zip(axes), Some((first, values))) = (sweep, axes.first()) {
@@ -97,7 +97,7 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
                 count(other.len(), "value")
             );
             let help = "`Zip` takes one value of each at every point; `Grid` combines all of them";
-            report.error(&format!("sweep.{name}"), message, help);
+            report.error(ScenePath::from("sweep").name(name), message, help);
         }
     }
     match sweep.len() {

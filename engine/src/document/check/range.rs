@@ -1,7 +1,7 @@
 //! Lawful ranges of quantities: one table for all keys.
 
 use super::super::leaves::{LeafValue, visit_leaves};
-use super::super::path::{Step, path_of};
+use super::super::path::{ScenePath, Step};
 use super::super::scene::Scene;
 use super::Report;
 
@@ -125,10 +125,10 @@ fn shown(value: f64) -> String {
 
 /// Reports numbers beyond the range of their quantity where nothing else is wrong with them.
 pub(super) fn check_ranges(scene: &Scene, report: &mut Report<'_>) {
-    let known: Vec<String> = report.found.iter().map(|one| one.path.clone()).collect();
-    visit_leaves(scene, &mut |steps, leaf| {
+    let known: Vec<ScenePath> = report.found.iter().map(|one| one.path.clone()).collect();
+    visit_leaves(scene, &mut |path, leaf| {
         let LeafValue::Number(value) = leaf else { return };
-        let problem = range_of(steps).map_or_else(
+        let problem = range_of(path).map_or_else(
             || {
                 (!value.is_finite())
                     .then(|| (format!("expected a finite number, found {value}"), ""))
@@ -136,29 +136,33 @@ pub(super) fn check_ranges(scene: &Scene, report: &mut Report<'_>) {
             |range| range.problem(value),
         );
         let Some((message, help)) = problem else { return };
-        let path = path_of(steps);
-        if known.iter().any(|known| super::is_within(&path, known)) {
+        if known.iter().any(|known| path.is_within(known)) {
             return;
         }
         if help.is_empty() {
             report.push(super::Diagnostic::error(path, message));
         } else {
-            report.error(&path, message, help);
+            report.error(path, message, help);
         }
     });
 }
 
 /// The range of the quantity that a number at this path is of.
-fn range_of(steps: &[Step<'_>]) -> Option<&'static Range> {
+fn range_of(path: &ScenePath) -> Option<&'static Range> {
+    let steps = path.steps();
     // Numbers that authors have named may be anything.
-    if let Some(Step::Key("params" | "variants" | "sweep")) = steps.first() {
+    if let Some(Step::Key(key)) = steps.first()
+        && matches!(&**key, "params" | "variants" | "sweep")
+    {
         return None;
     }
     let is_third = matches!(steps, [.., Step::Key(_), Step::Index(2)])
         || matches!(steps, [.., Step::Key(_), Step::Index(_), Step::Index(2)]);
     // Those of a distribution are of what the key above it is of.
     let key = steps.iter().rev().find_map(|step| match step {
-        Step::Key(key) if !["mean", "sd", "median", "min", "max"].contains(key) => Some(*key),
+        Step::Key(key) => {
+            Some(&**key).filter(|key| !["mean", "sd", "median", "min", "max"].contains(key))
+        }
         _ => None,
     })?;
     Some(match key {
@@ -183,30 +187,30 @@ fn range_of(steps: &[Step<'_>]) -> Option<&'static Range> {
 }
 
 /// Returns whether a number is one of a pair in a list.
-fn is_point(steps: &[Step<'_>]) -> bool {
+fn is_point(steps: &[Step]) -> bool {
     matches!(steps, [.., Step::Index(_), Step::Index(_)])
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::path::Step::{Index, Key, Name};
+    use super::super::super::path::ScenePath;
     use super::{HEIGHT, IRRADIANCE, LENGTH, SCALE, TEMPERATURE, WAVELENGTH, range_of};
 
     #[test]
     fn a_quantity_follows_from_the_keys_above_a_number() {
-        let at = [Key("instances"), Index(0), Key("at_m"), Index(7)];
-        assert_eq!(range_of(&[&at[..], &[Index(1)]].concat()), Some(&LENGTH));
-        assert_eq!(range_of(&[&at[..], &[Index(2)]].concat()), Some(&HEIGHT));
-        let camera = [Key("sensors"), Name("up"), Key("position_m"), Index(2)];
+        let [instances, sensors, materials, sun, params] =
+            ["instances", "sensors", "materials", "sun", "params"].map(ScenePath::from);
+        let at = instances.index(0).key("at_m").index(7);
+        assert_eq!(range_of(&at.index(1)), Some(&LENGTH));
+        assert_eq!(range_of(&at.index(2)), Some(&HEIGHT));
+        let camera = sensors.name("up").key("position_m").index(2);
         assert_eq!(range_of(&camera), Some(&HEIGHT));
-        let scale = [Key("instances"), Index(0), Key("scale"), Key("mean")];
-        assert_eq!(range_of(&scale), Some(&SCALE));
-        let kelvin = [Key("materials"), Name("soil"), Key("temperature")];
-        assert_eq!(range_of(&kelvin), Some(&TEMPERATURE));
-        let sun = [Key("sun"), Key("irradiance")];
-        assert_eq!(range_of(&sun), Some(&IRRADIANCE));
-        assert_eq!(range_of(&[&sun[..], &[Index(3), Index(0)]].concat()), Some(&WAVELENGTH));
-        assert_eq!(range_of(&[&sun[..], &[Index(3), Index(1)]].concat()), Some(&IRRADIANCE));
-        assert_eq!(range_of(&[Key("params"), Name("height_m")]), None);
+        assert_eq!(range_of(&instances.index(0).key("scale").key("mean")), Some(&SCALE));
+        assert_eq!(range_of(&materials.name("soil").key("temperature")), Some(&TEMPERATURE));
+        let irradiance = sun.key("irradiance");
+        assert_eq!(range_of(&irradiance), Some(&IRRADIANCE));
+        assert_eq!(range_of(&irradiance.index(3).index(0)), Some(&WAVELENGTH));
+        assert_eq!(range_of(&irradiance.index(3).index(1)), Some(&IRRADIANCE));
+        assert_eq!(range_of(&params.name("height_m")), None);
     }
 }

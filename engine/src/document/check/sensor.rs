@@ -6,11 +6,11 @@ use super::super::diagnostic::Diagnostic;
 use super::super::scene::{
     ImageMeasure, Layers, PhotonMeasure, Scene, Sensor, StopCriterion, Terrain, TerrainPlane, Views,
 };
-use super::Report;
 use super::camera::{check_fisheye, check_orthographic, check_perspective};
 use super::plane::check_plane;
 use super::system::check_system;
 use super::thermal::{check_emission, check_photon_emission};
+use super::{Report, ScenePath};
 
 /// An image or a map may hold so many values, bands included: 16 GiB as f64.
 pub(super) const VALUES: f64 = 2_147_483_648.0;
@@ -25,13 +25,13 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
     }
     report.own_names("sensors", "a sensor", &scene.sensors);
     for (name, sensor) in &scene.sensors {
-        let path = format!("sensors.{name}");
-        let measure = format!("{path}.measure");
+        let path = ScenePath::from("sensors").name(name);
+        let measure = path.key("measure");
         if let Some(measures) = sensor.image_measures() {
             check_components(&measure, measures, scene, report);
             check_emission(&path, measures, scene, report);
         }
-        check_until(&format!("{path}.until"), sensor, report);
+        check_until(&path.key("until"), sensor, report);
         check_system(&path, sensor, scene, report);
         check_plane(&path, sensor.virtual_plane(), scene, report);
         match sensor {
@@ -48,14 +48,14 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
                 check_measures(&measure, &sensor.image.measure, "Radiance", report);
             }
             Sensor::Directions(sensor) => {
-                check_views(&format!("{path}.views"), &sensor.views, scene, report);
+                check_views(&path.key("views"), &sensor.views, scene, report);
                 check_measures(&measure, &sensor.measure, "Brf", report);
             }
             Sensor::Photons(sensor) => {
-                report.above_zero(&format!("{path}.per_m2"), sensor.per_m2);
+                report.above_zero(path.key("per_m2"), sensor.per_m2);
                 check_measures(&measure, &sensor.measure, "Albedo", report);
                 for (index, one) in sensor.measure.iter().enumerate() {
-                    check_photon_measure(&format!("{measure}[{index}]"), one, scene, report);
+                    check_photon_measure(&measure.index(index), one, scene, report);
                 }
                 check_photon_emission(&measure, &sensor.measure, scene, report);
             }
@@ -63,7 +63,7 @@ pub(super) fn check_sensors(scene: &Scene, report: &mut Report<'_>) {
     }
 }
 
-fn check_views(path: &str, views: &Views, scene: &Scene, report: &mut Report<'_>) {
+fn check_views(path: &ScenePath, views: &Views, scene: &Scene, report: &mut Report<'_>) {
     let (name, max_deg, step_deg) = match views {
         Views::List(views) => {
             if views.is_empty() {
@@ -71,19 +71,19 @@ fn check_views(path: &str, views: &Views, scene: &Scene, report: &mut Report<'_>
                 report.error(path, "the list of views is empty", help);
             }
             for (index, (zenith, azimuth)) in views.iter().enumerate() {
-                report.zenith(&format!("{path}[{index}][0]"), *zenith);
-                report.azimuth(&format!("{path}[{index}][1]"), *azimuth);
+                report.zenith(path.index(index).index(0), *zenith);
+                report.azimuth(path.index(index).index(1), *azimuth);
             }
             return;
         }
         Views::PrincipalPlane { max_deg, step_deg } => ("PrincipalPlane", max_deg, step_deg),
         Views::CrossPlane { max_deg, step_deg } => ("CrossPlane", max_deg, step_deg),
     };
-    report.zenith(&format!("{path}.max_deg"), *max_deg);
-    report.above_zero(&format!("{path}.step_deg"), *step_deg);
+    report.zenith(path.key("max_deg"), *max_deg);
+    report.above_zero(path.key("step_deg"), *step_deg);
     if *step_deg > 0.0 && 2.0 * max_deg / step_deg > VIEWS {
         let message = format!("steps of {step_deg}° make more than {VIEWS} views");
-        report.error(&format!("{path}.step_deg"), message, "write a larger step");
+        report.error(path.key("step_deg"), message, "write a larger step");
     }
     if scene.sun.is_none() && report.is_readable("sun") {
         let message = format!("`{name}` is a plane of the sun, and there is no sun");
@@ -95,7 +95,7 @@ fn check_views(path: &str, views: &Views, scene: &Scene, report: &mut Report<'_>
 /// Largest number of samples: at 10⁷ a second they take more than a day.
 const MOST_SAMPLES: u64 = 1_000_000_000_000;
 
-fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
+fn check_until(path: &ScenePath, sensor: &Sensor, report: &mut Report<'_>) {
     let ends = sensor.until();
     let least = match sensor {
         Sensor::Directions(_) | Sensor::Photons(_) => 32,
@@ -105,7 +105,7 @@ fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
         report.error(path, "nothing would end the measurement", "write `until: RelError(0.01)`");
     }
     for (index, end) in ends.iter().enumerate() {
-        let path = if ends.len() == 1 { path.to_owned() } else { format!("{path}[{index}]") };
+        let path = if ends.len() == 1 { path.clone() } else { path.index(index) };
         match end {
             StopCriterion::RelError(error) => check_rel_error(&path, *error, report),
             StopCriterion::RelErrors(errors) => {
@@ -114,24 +114,24 @@ fn check_until(path: &str, sensor: &Sensor, report: &mut Report<'_>) {
                     report.error(&path, "no product is named", help);
                 }
                 for (name, error) in errors {
-                    check_rel_error(&format!("{path}.{name}"), *error, report);
+                    check_rel_error(&path.name(name), *error, report);
                 }
             }
-            StopCriterion::Seconds(seconds) => report.above_zero(&path, *seconds),
+            StopCriterion::Seconds(seconds) => report.above_zero(path, *seconds),
             StopCriterion::Samples(samples) if *samples < least => {
                 let message = format!("expected {least} samples or more, found {samples}");
-                report.error(&path, message, "fewer give no error estimate");
+                report.error(path, message, "fewer give no error estimate");
             }
             StopCriterion::Samples(samples) if *samples > MOST_SAMPLES => {
                 let message = format!("expected {MOST_SAMPLES} samples or fewer, found {samples}");
-                report.error(&path, message, "the first of several ends that holds ends it: `[RelError(0.01), Seconds(60.0)]`");
+                report.error(path, message, "the first of several ends that holds ends it: `[RelError(0.01), Seconds(60.0)]`");
             }
             StopCriterion::Samples(_) => {}
         }
     }
 }
 
-fn check_rel_error(path: &str, error: f64, report: &mut Report<'_>) {
+fn check_rel_error(path: &ScenePath, error: f64, report: &mut Report<'_>) {
     if !(error > 0.0 && error < 1.0) {
         let message = format!("expected a relative error above 0 and below 1, found {error}");
         report.error(path, message, "half a percent is `RelError(0.005)`");
@@ -139,7 +139,7 @@ fn check_rel_error(path: &str, error: f64, report: &mut Report<'_>) {
 }
 
 fn check_photon_measure(
-    path: &str,
+    path: &ScenePath,
     measure: &PhotonMeasure,
     scene: &Scene,
     report: &mut Report<'_>,
@@ -163,11 +163,11 @@ fn check_photon_measure(
             check_cones(path, cones, report);
         }
         PhotonMeasure::Fapar { layer_m } => {
-            check_layers(&format!("{path}.layer_m"), layer_m, report);
+            check_layers(&path.key("layer_m"), layer_m, report);
         }
         PhotonMeasure::Fluxes { pixel_m, heights_m } => {
-            report.above_zero(&format!("{path}.pixel_m"), *pixel_m);
-            report.finite(&format!("{path}.heights_m"), heights_m);
+            report.above_zero(path.key("pixel_m"), *pixel_m);
+            report.finite(path.key("heights_m"), heights_m);
             if let Terrain::Plane(TerrainPlane { size_m, .. }) = &scene.terrain
                 && let Some(problem) = check_maps(path, measure, scene.bands.len(), *size_m)
             {
@@ -178,7 +178,12 @@ fn check_photon_measure(
 }
 
 /// Nothing is sunlit without a sun.
-fn check_components(path: &str, measures: &[ImageMeasure], scene: &Scene, report: &mut Report<'_>) {
+fn check_components(
+    path: &ScenePath,
+    measures: &[ImageMeasure],
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
     let asked = measures.iter().position(|measure| *measure == ImageMeasure::FourComponents);
     if let Some(index) = asked
         && scene.sun.is_none()
@@ -186,36 +191,36 @@ fn check_components(path: &str, measures: &[ImageMeasure], scene: &Scene, report
     {
         let message = "two of the four components are sunlit, and there is no sun";
         let help = "write `sun: (zenith_deg: 30.0)`, or measure `GapFraction` alone";
-        report.error(&format!("{path}[{index}]"), message, help);
+        report.error(path.index(index), message, help);
     }
 }
 
 /// Full angle of the narrowest cone, degrees.
 const NARROWEST_DEG: f64 = 1e-3;
 
-fn check_cones(path: &str, cones: &[(f64, f64, f64)], report: &mut Report<'_>) {
+fn check_cones(path: &ScenePath, cones: &[(f64, f64, f64)], report: &mut Report<'_>) {
     if cones.is_empty() {
         let help = "write zenith, azimuth and full angle: `[(30.0, 90.0, 5.0)]`";
         report.error(path, "the list of cones is empty", help);
     }
     for (index, (zenith, azimuth, full)) in cones.iter().enumerate() {
-        report.zenith(&format!("{path}[{index}][0]"), *zenith);
-        report.azimuth(&format!("{path}[{index}][1]"), *azimuth);
+        report.zenith(path.index(index).index(0), *zenith);
+        report.azimuth(path.index(index).index(1), *azimuth);
         if !(*full >= NARROWEST_DEG && full.is_finite()) {
             let message =
                 format!("expected a full angle of at least {NARROWEST_DEG}°, found {full}");
-            report.error(&format!("{path}[{index}][2]"), message, "hardly a photon leaves in less");
+            report.error(path.index(index).index(2), message, "hardly a photon leaves in less");
         }
         if (0.0..90.0).contains(zenith) && zenith + 0.5 * full > 90.0 {
             let message =
                 format!("a cone of {full}° about zenith {zenith}° reaches below the horizon");
             let help = format!("write an angle of at most {}", 2.0 * (90.0 - zenith));
-            report.error(&format!("{path}[{index}][2]"), message, help);
+            report.error(path.index(index).index(2), message, help);
         }
     }
 }
 
-fn check_layers(path: &str, layers: &Layers, report: &mut Report<'_>) {
+fn check_layers(path: &ScenePath, layers: &Layers, report: &mut Report<'_>) {
     match layers {
         Layers::Thickness(thickness) => report.above_zero(path, *thickness),
         Layers::Borders(borders) => {
@@ -227,8 +232,8 @@ fn check_layers(path: &str, layers: &Layers, report: &mut Report<'_>) {
             for (index, pair) in borders.windows(2).enumerate() {
                 if pair[0] >= pair[1] {
                     let message = format!("the border at {} m is not above {} m", pair[1], pair[0]);
-                    let at = format!("{path}[{}]", index + 1);
-                    report.error(&at, message, "write heights upwards, each once");
+                    let help = "write heights upwards, each once";
+                    report.error(path.index(index + 1), message, help);
                 }
             }
         }
@@ -236,7 +241,7 @@ fn check_layers(path: &str, layers: &Layers, report: &mut Report<'_>) {
 }
 
 /// Checks for at least one measure, each kind once: outputs are named by it.
-fn check_measures<T>(path: &str, measures: &[T], example: &str, report: &mut Report<'_>) {
+fn check_measures<T>(path: &ScenePath, measures: &[T], example: &str, report: &mut Report<'_>) {
     if measures.is_empty() && report.is_readable(path) {
         let help = format!("write, for example, `measure: [{example}]`");
         report.error(path, "nothing is measured here", help);
@@ -244,19 +249,18 @@ fn check_measures<T>(path: &str, measures: &[T], example: &str, report: &mut Rep
     for (index, measure) in measures.iter().enumerate() {
         let before = measures[..index].iter();
         let repeated = before.enumerate().any(|(earlier, other)| {
-            discriminant(other) == discriminant(measure)
-                && report.is_readable(&format!("{path}[{earlier}]"))
+            discriminant(other) == discriminant(measure) && report.is_readable(path.index(earlier))
         });
         if repeated {
             let message = "this is measured twice";
-            report.error(&format!("{path}[{index}]"), message, "take one of the two out");
+            report.error(path.index(index), message, "take one of the two out");
         }
     }
 }
 
 /// Checks that maps of fluxes over a scene of this extent, m, are not excessively large.
 pub(crate) fn check_maps(
-    path: &str,
+    path: &ScenePath,
     measure: &PhotonMeasure,
     bands: usize,
     (width, height): (f64, f64),
@@ -266,7 +270,7 @@ pub(crate) fn check_maps(
     let values = (width / pixel_m).ceil() * (height / pixel_m).ceil() * maps as f64;
     (values > VALUES && *pixel_m > 0.0).then(|| {
         let message = format!("pixels of {pixel_m} m make maps of {values:.0} values");
-        Diagnostic::error(format!("{path}.pixel_m"), message)
+        Diagnostic::error(path.key("pixel_m"), message)
             .help(format!("write a larger `pixel_m`: at most {VALUES} values"))
     })
 }

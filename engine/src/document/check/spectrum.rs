@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::super::scene::{
     Band, Coating, Leaf, Material, Prospect, Scene, Spectrum, SurfaceQuantity,
 };
-use super::{Report, count};
+use super::{Report, ScenePath, count};
 
 /// A spectrum may name one that names one, and so on, so often.
 const CHAIN: usize = 16;
@@ -31,32 +31,32 @@ pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
     }
     let mut names = HashMap::new();
     for (index, Band { name, center_nm, width_nm, source: _ }) in scene.bands.iter().enumerate() {
-        let path = |key: &str| format!("bands[{index}].{key}");
+        let path = |key: &'static str| ScenePath::from("bands").index(index).key(key);
         if name.is_empty() {
             let help = "outputs call the band by its name";
-            report.error(&path("name"), "this band has no name", help);
+            report.error(path("name"), "this band has no name", help);
         } else if let Some(first) = names.insert(name, index) {
             let message = format!("a second band `{name}`");
             let help = format!("`bands[{first}]` has that name already");
-            report.error(&path("name"), message, help);
+            report.error(path("name"), message, help);
         }
-        report.above_zero(&path("center_nm"), *center_nm);
+        report.above_zero(path("center_nm"), *center_nm);
         if *center_nm > 0.0 && *center_nm < SHORTEST_NM {
             refuse_micrometres(*center_nm, *width_nm, &path("center_nm"), report);
             continue;
         }
-        report.at_least(&path("width_nm"), *width_nm, 0.0);
+        report.at_least(path("width_nm"), *width_nm, 0.0);
         if *center_nm > 0.0 && *width_nm >= 2.0 * center_nm {
             let message = format!(
                 "a band of {width_nm} nm around {center_nm} nm reaches to a wavelength of 0"
             );
-            report.error(&path("width_nm"), message, "the width is that from edge to edge");
+            report.error(path("width_nm"), message, "the width is that from edge to edge");
         }
     }
 }
 
 /// Refuses a band whose wavelengths are no light in nanometres.
-fn refuse_micrometres(center: f64, width: f64, path: &str, report: &mut Report<'_>) {
+fn refuse_micrometres(center: f64, width: f64, path: &ScenePath, report: &mut Report<'_>) {
     let message = format!("a wavelength of {center} nm is no light");
     let nanometres = |micrometres: f64| (1e6 * micrometres).round() / 1e3;
     let width = if width > 0.0 && width < center {
@@ -71,7 +71,7 @@ fn refuse_micrometres(center: f64, width: f64, path: &str, report: &mut Report<'
 pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("spectra", "a spectrum", &scene.spectra);
     for (index, (name, spectrum)) in scene.spectra.iter().enumerate() {
-        let path = format!("spectra.{name}");
+        let path = ScenePath::from("spectra").name(name);
         check_spectrum(&path, spectrum, Quantity::Any, scene, report);
         check_chain(index, &path, scene, report);
     }
@@ -84,27 +84,27 @@ pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
             warn_two_leaves(name, [reflectance, transmittance], scene, report);
         }
         for (key, spectrum, quantity) in material.spectra() {
-            let path = format!("materials.{name}.{key}");
+            let path = ScenePath::from("materials").name(name).key(key);
             check_spectrum(&path, spectrum, Quantity::Surface(quantity), scene, report);
         }
         if let Material::Leaf(Leaf { coating: Some(coating), .. }) = material {
-            check_coating(&format!("materials.{name}.coating"), coating, report);
+            check_coating(&ScenePath::from("materials").name(name).key("coating"), coating, report);
         }
     }
 }
 
-fn check_coating(path: &str, coating: &Coating, report: &mut Report<'_>) {
+fn check_coating(path: &ScenePath, coating: &Coating, report: &mut Report<'_>) {
     let Coating { refractive_index, roughness } = *coating;
     if !(1.1..=2.0).contains(&refractive_index) {
         let message =
             format!("expected a refractive index from 1.1 to 2, found {refractive_index}");
         let help = "the wax of leaves has about 1.45";
-        report.error(&format!("{path}.refractive_index"), message, help);
+        report.error(path.key("refractive_index"), message, help);
     }
     if !(0.05..=1.0).contains(&roughness) {
         let message = format!("expected a roughness from 0.05 to 1, found {roughness}");
         let help = "it is a slope: about 0.1 for glossy leaves, 0.5 for dull ones";
-        report.error(&format!("{path}.roughness"), message, help);
+        report.error(path.key("roughness"), message, help);
     }
 }
 
@@ -120,18 +120,18 @@ fn warn_two_leaves(name: &str, spectra: [&Spectrum; 2], scene: &Scene, report: &
         let message = "reflectance and transmittance are those of two different leaves";
         let help = "define the leaf once, `spectra: { \"leaf\": Prospect(..) }`, and write \
                     `Named(\"leaf\")` in both";
-        report.warning(&format!("materials.{name}.transmittance"), message, help);
+        report.warning(ScenePath::from("materials").name(name).key("transmittance"), message, help);
     }
 }
 
 pub(super) fn check_spectrum(
-    path: &str,
+    path: &ScenePath,
     spectrum: &Spectrum,
     quantity: Quantity,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
-    let value = |report: &mut Report<'_>, path: &str, value: f64| match quantity {
+    let value = |report: &mut Report<'_>, path: &ScenePath, value: f64| match quantity {
         Quantity::Surface(SurfaceQuantity::Fraction) => report.fraction(path, value),
         Quantity::Surface(SurfaceQuantity::Parameter { least, most }) => {
             report.within(path, value, least, most);
@@ -143,16 +143,16 @@ pub(super) fn check_spectrum(
         Spectrum::Bands(values) => {
             check_band_count(path, "Bands", values.len(), scene, report);
             for (index, one) in values.iter().enumerate() {
-                value(report, &format!("{path}[{index}]"), *one);
+                value(report, &path.index(index), *one);
             }
         }
         Spectrum::Points(points) => {
             check_wavelengths(path, points, report);
             for (index, (_, one)) in points.iter().enumerate() {
-                value(report, &format!("{path}[{index}][1]"), *one);
+                value(report, &path.index(index).index(1), *one);
             }
         }
-        Spectrum::Table(table) => report.above_zero(&format!("{path}.scale"), table.scale),
+        Spectrum::Table(table) => report.above_zero(path.key("scale"), table.scale),
         Spectrum::AstmG173 => {
             if matches!(quantity, Quantity::Surface(_)) {
                 let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
@@ -183,7 +183,7 @@ pub(super) fn check_spectrum(
 
 /// Checks that there are as many values as bands.
 pub(super) fn check_band_count(
-    path: &str,
+    path: &ScenePath,
     what: &str,
     values: usize,
     scene: &Scene,
@@ -201,30 +201,30 @@ pub(super) fn check_band_count(
     report.error(path, message, help);
 }
 
-fn check_wavelengths(path: &str, points: &[(f64, f64)], report: &mut Report<'_>) {
+fn check_wavelengths(path: &ScenePath, points: &[(f64, f64)], report: &mut Report<'_>) {
     if points.is_empty() {
         let help = "write, for example, `Points([(400.0, 0.05), (800.0, 0.3)])`";
         report.error(path, "`Points` has no point", help);
     }
     let mut before = 0.0;
     for (index, &(wavelength, _)) in points.iter().enumerate() {
-        let at = format!("{path}[{index}][0]");
+        let at = path.index(index).index(0);
         if index == 0 {
-            report.above_zero(&at, wavelength);
+            report.above_zero(at, wavelength);
         } else if !(wavelength > before && wavelength.is_finite()) {
             let message = format!("wavelength {wavelength} nm follows {before} nm");
-            report.error(&at, message, "sort the points: wavelengths must rise");
+            report.error(at, message, "sort the points: wavelengths must rise");
         }
         before = wavelength;
     }
 }
 
-fn refuse_leaf_as_light(path: &str, report: &mut Report<'_>) {
+fn refuse_leaf_as_light(path: &ScenePath, report: &mut Report<'_>) {
     let help = "write `Constant(..)`, `Bands(..)`, `Points(..)` or `Table(..)`";
     report.error(path, "`Prospect` is the spectrum of a leaf, not of light", help);
 }
 
-fn check_prospect(path: &str, leaf: &Prospect, report: &mut Report<'_>) {
+fn check_prospect(path: &ScenePath, leaf: &Prospect, report: &mut Report<'_>) {
     let Prospect {
         n,
         chlorophyll_ug_cm2,
@@ -236,7 +236,7 @@ fn check_prospect(path: &str, leaf: &Prospect, report: &mut Report<'_>) {
         protein_g_cm2,
         carbon_g_cm2,
     } = leaf;
-    report.at_least(&format!("{path}.n"), *n, 1.0);
+    report.at_least(path.key("n"), *n, 1.0);
     let contents = [
         ("chlorophyll_ug_cm2", chlorophyll_ug_cm2),
         ("carotenoid_ug_cm2", carotenoid_ug_cm2),
@@ -248,7 +248,7 @@ fn check_prospect(path: &str, leaf: &Prospect, report: &mut Report<'_>) {
         ("carbon_g_cm2", carbon_g_cm2),
     ];
     for (key, content) in contents {
-        report.at_least(&format!("{path}.{key}"), *content, 0.0);
+        report.at_least(path.key(key), *content, 0.0);
     }
     if *n >= 1.0 {
         let help = "it is the number of layers of a leaf, without a unit";
@@ -287,7 +287,7 @@ fn resolve<'a>(name: &str, scene: &'a Scene) -> Option<&'a Spectrum> {
 }
 
 /// Names that lead back to where they started, reported once, at the first of them.
-fn check_chain(start: usize, path: &str, scene: &Scene, report: &mut Report<'_>) {
+fn check_chain(start: usize, path: &ScenePath, scene: &Scene, report: &mut Report<'_>) {
     let mut chain = Vec::new();
     let mut at = start;
     while let Some((name, Spectrum::Named(next))) = scene.spectra.get_index(at) {

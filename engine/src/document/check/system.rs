@@ -1,10 +1,15 @@
 //! Transport systems: which sensor can be measured by which.
 
 use super::super::scene::{ImageMeasure, Photons, Scene, Sensor, System};
-use super::Report;
+use super::{Report, ScenePath};
 
 /// Checks that the transport system of a sensor can measure its quantities.
-pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &mut Report<'_>) {
+pub(super) fn check_system(
+    path: &ScenePath,
+    sensor: &Sensor,
+    scene: &Scene,
+    report: &mut Report<'_>,
+) {
     let Some(system) = sensor.system() else { return };
     if let Sensor::Photons(Photons { measure, .. }) = sensor
         && system == System::Analog
@@ -12,7 +17,7 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
         let views = measure.iter().position(|measure| !measure.is_measured_by(system));
         if let Some(index) = views {
             let help = "measure cones, such as `BrfCones([(30.0, 90.0, 5.0)])`, or take `system: Analog` out";
-            report.error(&format!("{path}.measure[{index}]"), WHOLE, help);
+            report.error(path.key("measure").index(index), WHOLE, help);
         }
     }
     let measures = sensor.image_measures().unwrap_or_default();
@@ -21,7 +26,7 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
         refusal(*measure, system, scene).filter(|_| !is_measured).map(|refusal| (index, refusal))
     });
     if let Some((index, (message, help))) = refused {
-        report.error(&format!("{path}.measure[{index}]"), message, help);
+        report.error(path.key("measure").index(index), message, help);
     }
     if sensor.systems().contains(&system) {
         return;
@@ -37,7 +42,7 @@ pub(super) fn check_system(path: &str, sensor: &Sensor, scene: &Scene, report: &
         ),
         _ => (WHOLE, "take `system: Analog` out; it is for `Photons`"),
     };
-    report.error(&format!("{path}.system"), message, help);
+    report.error(path.key("system"), message, help);
 }
 
 /// Message and help for a measure that a transport system does not estimate; `None` for the first surface along each ray, which paths measure beside it, and where another check reports.

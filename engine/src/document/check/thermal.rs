@@ -3,16 +3,16 @@
 use super::super::scene::{
     Band, BandSource, ImageMeasure, PhotonMeasure, Scene, Temperature, ThermalSky,
 };
-use super::Report;
 use super::range::TEMPERATURE;
 use super::spectrum::{Quantity, check_spectrum};
+use super::{Report, ScenePath};
 
 pub(super) fn check_thermal_sky(scene: &Scene, report: &mut Report<'_>) {
     match &scene.thermal_sky {
         ThermalSky::None => {}
-        ThermalSky::BlackBody(value) => kelvin("thermal_sky", *value, report),
+        ThermalSky::BlackBody(value) => kelvin(&"thermal_sky".into(), *value, report),
         ThermalSky::Radiance(radiance) => {
-            check_spectrum("thermal_sky", radiance, Quantity::Irradiance, scene, report);
+            check_spectrum(&"thermal_sky".into(), radiance, Quantity::Irradiance, scene, report);
         }
     }
 }
@@ -21,20 +21,20 @@ pub(super) fn check_temperatures(scene: &Scene, report: &mut Report<'_>) {
     let is_measured = scene.measures_emission();
     for (name, material) in &scene.materials {
         let Some(temperature) = material.temperature() else { continue };
-        let path = format!("materials.{name}.temperature");
+        let path = ScenePath::from("materials").name(name).key("temperature");
         match temperature {
             Temperature::Uniform(value) => kelvin(&path, *value, report),
             Temperature::SunlitShaded { sunlit_k, shaded_k } => {
-                kelvin(&format!("{path}.sunlit_k"), *sunlit_k, report);
-                kelvin(&format!("{path}.shaded_k"), *shaded_k, report);
+                kelvin(&path.key("sunlit_k"), *sunlit_k, report);
+                kelvin(&path.key("shaded_k"), *shaded_k, report);
             }
             Temperature::MeanDelta { mean_k, delta_k } => {
-                kelvin(&format!("{path}.mean_k"), *mean_k, report);
+                kelvin(&path.key("mean_k"), *mean_k, report);
                 let (sunlit, shaded) = temperature.sunlit_and_shaded();
                 if *mean_k >= 0.0 && !(sunlit >= 0.0 && shaded >= 0.0 && delta_k.is_finite()) {
                     let message = format!("{mean_k} ± {delta_k} / 2 reaches below 0 K");
                     let help = "`delta_k` is the sunlit temperature less the shaded one";
-                    report.error(&format!("{path}.delta_k"), message, help);
+                    report.error(path.key("delta_k"), message, help);
                 }
             }
         }
@@ -45,44 +45,44 @@ pub(super) fn check_temperatures(scene: &Scene, report: &mut Report<'_>) {
         {
             let message = "the sun tells sunlit from shaded, and there is no sun";
             let help = "write `sun: (zenith_deg: 30.0)` too, or one `temperature: Uniform(300.0)`";
-            report.error(&path, message, help);
+            report.error(path, message, help);
         }
     }
 }
 
 /// Checks that a sensor can measure its emission.
 pub(super) fn check_emission(
-    path: &str,
+    path: &ScenePath,
     measures: &[ImageMeasure],
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
     for (index, measure) in measures.iter().enumerate() {
         if *measure == ImageMeasure::BrightnessTemperature {
-            check_band(&format!("{path}.measure[{index}]"), scene, report);
+            check_band(&path.key("measure").index(index), scene, report);
         }
     }
 }
 
 /// Checks that photons can measure their emission.
 pub(super) fn check_photon_emission(
-    path: &str,
+    path: &ScenePath,
     measures: &[PhotonMeasure],
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
     let asked = |measure: &PhotonMeasure| matches!(measure, PhotonMeasure::BrightnessTemperature);
     let Some(index) = measures.iter().position(asked) else { return };
-    let at = format!("{path}[{index}]");
+    let at = path.index(index);
     check_band(&at, scene, report);
     if !measures.iter().any(PhotonMeasure::is_radiance) && report.is_whole(path) {
         let message = "a brightness temperature is that of a radiance, and none is measured here";
-        report.error(&at, message, "write, for example, `RadianceViews(List([(0.0, 0.0)]))` too");
+        report.error(at, message, "write, for example, `RadianceViews(List([(0.0, 0.0)]))` too");
     }
 }
 
 /// A band that holds emission.
-fn check_band(at: &str, scene: &Scene, report: &mut Report<'_>) {
+fn check_band(at: &ScenePath, scene: &Scene, report: &mut Report<'_>) {
     if !scene.bands.iter().any(Band::emits) && report.is_whole("bands") {
         let message = "a brightness temperature is that of emitted radiance, and no band holds any";
         let help = "bands beyond 3000 nm hold it, and those with `source: Emission`";
@@ -113,7 +113,7 @@ pub(super) fn needs_light(scene: &Scene) -> bool {
 /// Temperature below which degrees Celsius may have been meant, K.
 const COLD: f64 = 100.0;
 
-fn kelvin(path: &str, value: f64, report: &mut Report<'_>) {
+fn kelvin(path: &ScenePath, value: f64, report: &mut Report<'_>) {
     if value > 0.0 && value < COLD {
         let message = format!("{value} K is {:.2} °C", value - 273.15);
         let help = format!("temperatures are in kelvins: {value} °C is {:.2} K", value + 273.15);

@@ -86,7 +86,7 @@ impl<'a> Fields<'a> {
                     suggestion(name, known, "keys here"),
                 ),
             };
-            reader.within(Step::Key(name), |reader| {
+            reader.within(Step::Key(name.to_owned().into()), |reader| {
                 reader.error(field.name_span, message, Some(help));
             });
         }
@@ -111,7 +111,7 @@ impl<'a> Fields<'a> {
     ) -> T {
         // The example of a key with a default is for its owner.
         let example = if default.is_some() { None } else { example };
-        reader.within(Step::Key(name), |reader| {
+        reader.within(name.into(), |reader| {
             if let Some(field) = self.find(name) {
                 return reader.by_example(example, |reader| T::decode(&field.value, reader));
             }

@@ -12,7 +12,7 @@ pub(super) use plain::MapKey;
 
 use super::describe::Book;
 use super::diagnostic::{Diagnostic, Place};
-use super::path::{Step, path_of};
+use super::path::{ScenePath, Step};
 use super::ron_text::{Node, Span, Value};
 use super::scene::Param;
 use super::source::Source;
@@ -47,13 +47,15 @@ pub(super) trait Decode: Sized {
 /// State of the reader, and the faults found so far.
 pub(super) struct Reader<'a> {
     source: &'a Source,
-    path: Vec<Step<'a>>,
+    path: ScenePath,
     diagnostics: Vec<Diagnostic>,
     dropped: usize,
     /// Values of formulas, by their first byte; none where there was no value.
     computed: HashMap<u32, Option<Param>>,
     /// Paths without a value, beside those of `diagnostics`.
-    broken: Vec<String>,
+    broken: Vec<ScenePath>,
+    /// Namespaces of included files that could not be read.
+    lost: Vec<String>,
     /// The scene, and the names of its parameters, for advice.
     tree: Option<&'a Node>,
     params: HashSet<String>,
@@ -67,18 +69,21 @@ pub(super) struct Findings {
     /// Number of further errors.
     pub(super) dropped: usize,
     /// Paths without a value.
-    pub(super) broken: Vec<String>,
+    pub(super) broken: Vec<ScenePath>,
+    /// Namespaces of included files that could not be read.
+    pub(super) lost: Vec<String>,
 }
 
 impl<'a> Reader<'a> {
     pub(super) fn new(source: &'a Source) -> Self {
         Self {
             source,
-            path: Vec::new(),
+            path: ScenePath::root(),
             diagnostics: Vec::new(),
             dropped: 0,
             computed: HashMap::new(),
             broken: Vec::new(),
+            lost: Vec::new(),
             tree: None,
             params: HashSet::new(),
             example: None,
@@ -90,26 +95,26 @@ impl<'a> Reader<'a> {
         for one in diagnostics {
             self.push(one);
         }
-        self.broken.extend(lost.iter().take(BROKEN / 2).map(|lost| format!("include.{lost}")));
+        self.lost = lost.iter().take(BROKEN / 2).cloned().collect();
     }
 
     /// Returns whether some included file could not be read: missing names may stand there.
     fn has_lost_files(&self) -> bool {
-        self.broken.iter().any(|path| path.starts_with("include."))
+        !self.lost.is_empty()
     }
 
     /// The faults.
     pub(super) fn finish(self) -> Findings {
-        let Self { diagnostics, dropped, mut broken, .. } = self;
+        let Self { diagnostics, dropped, mut broken, lost, .. } = self;
         let errors = diagnostics.iter().filter(|one| one.is_error());
         broken.extend(errors.map(|error| error.path.clone()));
-        Findings { diagnostics, dropped, broken }
+        Findings { diagnostics, dropped, broken, lost }
     }
 
     /// There is no value here, for a reason that has been reported elsewhere.
     pub(super) fn mark_broken(&mut self) {
         if self.broken.len() < BROKEN {
-            self.broken.push(path_of(&self.path));
+            self.broken.push(self.path.clone());
         }
     }
 
@@ -118,7 +123,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads something one step down.
-    pub(super) fn within<T>(&mut self, step: Step<'a>, read: impl FnOnce(&mut Self) -> T) -> T {
+    pub(super) fn within<T>(&mut self, step: Step, read: impl FnOnce(&mut Self) -> T) -> T {
         self.path.push(step);
         let value = read(self);
         self.path.pop();
@@ -128,7 +133,7 @@ impl<'a> Reader<'a> {
     /// Something wrong where reading has come to.
     pub(super) fn error(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
         if self.has_room() {
-            let error = Diagnostic::error(path_of(&self.path), message).at(self.place_of(span));
+            let error = Diagnostic::error(&self.path, message).at(self.place_of(span));
             self.diagnostics.push(Diagnostic { help, ..error });
         }
     }
@@ -136,7 +141,7 @@ impl<'a> Reader<'a> {
     /// A value that is lawful and may not be meant, where reading has come to.
     pub(super) fn warn(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
         if self.has_room() {
-            let warning = Diagnostic::warning(path_of(&self.path), message).at(self.place_of(span));
+            let warning = Diagnostic::warning(&self.path, message).at(self.place_of(span));
             self.diagnostics.push(Diagnostic { help, ..warning });
         }
     }
@@ -193,7 +198,7 @@ impl<'a> Reader<'a> {
         example: Option<&'static str>,
         read: impl FnOnce(&mut Self) -> T,
     ) -> T {
-        self.example = example.map(|example| (self.path.len(), example));
+        self.example = example.map(|example| (self.path.steps().len(), example));
         let value = read(self);
         self.example = None;
         value
@@ -211,7 +216,7 @@ impl<'a> Reader<'a> {
             };
             let message = format!("expected {}, found {found}", T::expected());
             let example = match self.example {
-                Some((depth, example)) if depth == self.path.len() => example.to_owned(),
+                Some((depth, example)) if depth == self.path.steps().len() => example.to_owned(),
                 _ => T::example(),
             };
             let help = self

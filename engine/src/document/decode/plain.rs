@@ -280,7 +280,7 @@ impl<K: MapKey, T: Decode> Decode for IndexMap<K, T> {
                 }
                 continue;
             };
-            let value = reader.within(Step::Key(name), |reader| T::decode(value, reader));
+            let value = reader.within(Step::Name(name.clone()), |reader| T::decode(value, reader));
             map.insert(K::of_node(name, key, reader), value);
         }
         map

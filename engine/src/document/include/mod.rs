@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use super::decode::{Decode as _, Reader};
 use super::diagnostic::Diagnostic;
 use super::params::plain_number;
-use super::path::Step;
+use super::path::ScenePath;
 use super::read::{FILE_SIZE, ReadError, text_of_file};
 use super::ron_text::{Field, Node, Span, Value, parse};
 use super::scene::{Include, Map, Scene};
@@ -86,12 +86,12 @@ impl Including<'_> {
         let mut plain = includes.clone();
         let written = simplify(&mut plain);
         let mut reader = Reader::new(self.source);
-        let map = reader.within(Step::Key("include"), |r| Map::<Include>::decode(&plain, r));
+        let map = reader.within("include".into(), |r| Map::<Include>::decode(&plain, r));
         let findings = reader.finish();
         let broken = findings.broken;
         self.included.diagnostics.extend(findings.diagnostics);
         for (name, node, passed) in written {
-            let at = format!("include.{name}");
+            let at = ScenePath::from("include").name(&name);
             let full = format!("{namespace}{name}.");
             if let Value::Formula(formula) = &node.value {
                 let message = format!("`={formula}` cannot name an included file");
@@ -103,7 +103,7 @@ impl Including<'_> {
             }
             let Some(include) = map
                 .get(&name)
-                .filter(|_| !broken.iter().any(|path| path == "include" || path.starts_with(&at)))
+                .filter(|_| !broken.iter().any(|path| at.is_within(path) || path.is_within(&at)))
             else {
                 self.included.lost.push(full);
                 continue;
@@ -120,7 +120,7 @@ impl Including<'_> {
         }
     }
 
-    fn error(&mut self, span: Span, path: &str, message: String, help: String) {
+    fn error(&mut self, span: Span, path: impl Into<ScenePath>, message: String, help: String) {
         let place = self.source.place_of(span);
         self.included.diagnostics.push(Diagnostic::error(path, message).help(help).at(place));
     }
@@ -134,7 +134,7 @@ impl Including<'_> {
         namespace: &str,
         scene: &mut Vec<Field>,
     ) -> Option<()> {
-        let at = format!("include.{}", namespace.trim_end_matches('.'));
+        let at = path_of(namespace);
         let folder = Path::new(&self.chain.last()?.shown).parent().unwrap_or(Path::new(""));
         let path = folder.join(&include.file);
         let link = Link { real: real_path(&path), shown: path.display().to_string() };
@@ -157,7 +157,7 @@ impl Including<'_> {
     }
 
     /// Refuses a file that includes itself, and files beyond the limits.
-    fn check_chain(&mut self, link: &Link, entry: &Node, at: &str) -> Option<()> {
+    fn check_chain(&mut self, link: &Link, entry: &Node, at: &ScenePath) -> Option<()> {
         if let Some(first) = self.chain.iter().position(|other| other.real == link.real) {
             let circle = self.chain[first..].iter().chain([link]);
             let circle: Vec<_> = circle.map(|link| link.shown.as_str()).collect();
@@ -190,7 +190,7 @@ impl Including<'_> {
         entry: &Node,
         namespace: &str,
     ) -> Option<Node> {
-        let at = format!("include.{}", namespace.trim_end_matches('.'));
+        let at = path_of(namespace);
         let read = text_of_file(path, true).and_then(|text| {
             let bytes = (self.source.text().len() + text.len()) as u64;
             let file = link.shown.clone();
@@ -278,13 +278,20 @@ impl Including<'_> {
     /// A key that the scene has once, from two files of which neither includes the other.
     fn refuse_second(&mut self, name: &str, span: Span, namespace: &str) {
         let Some((_, from)) = self.single.iter().find(|(single, _)| single == name) else { return };
-        if Scene::KEYS.contains(&name) && !namespace.starts_with(from.as_str()) {
+        if let Some(&key) = Scene::KEYS.iter().find(|key| **key == name)
+            && !namespace.starts_with(from.as_str())
+        {
             let (a, b) = (from.trim_end_matches('.'), namespace.trim_end_matches('.'));
             let message = format!("both `{a}` and `{b}` say `{name}`");
             let help = format!("write the `{name}` that is meant into the file that includes them");
-            self.error(span, name, message, help);
+            self.error(span, key, message, help);
         }
     }
+}
+
+/// Path of the include that put a namespace before names.
+fn path_of(namespace: &str) -> ScenePath {
+    ScenePath::from("include").name(namespace.trim_end_matches('.'))
 }
 
 /// Keys of a file, with or without a word before the parentheses.

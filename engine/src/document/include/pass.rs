@@ -4,7 +4,7 @@ use super::super::diagnostic::{Diagnostic, unknown_name};
 use super::super::params::{entries, key, plain};
 use super::super::ron_text::{Field, Node, Value};
 use super::super::scene::Include;
-use super::{Including, fields};
+use super::{Including, fields, path_of};
 
 /// Parameters that an include passes, by name.
 pub(super) type Passed = Vec<(Node, Node)>;
@@ -19,7 +19,7 @@ impl Including<'_> {
         entry: &Node,
         namespace: &str,
     ) -> Option<()> {
-        let at = format!("include.{}", namespace.trim_end_matches('.'));
+        let at = path_of(namespace);
         passed.extend(self.changes_of_variant(tree, include, entry, namespace)?);
         let own: Vec<String> = entries(key(tree, "params"))
             .map(|(name, _)| bare(name, namespace).to_owned())
@@ -27,7 +27,7 @@ impl Including<'_> {
         for (key, _) in &passed {
             let Value::Text(name) = &key.value else { continue };
             if !own.contains(name) {
-                let path = format!("{at}.params.{name}");
+                let path = at.key("params").name(name);
                 let error = unknown_name(path, "parameter", name, own.iter().map(String::as_str));
                 let message = format!("no parameter `{name}` in {}", include.file);
                 let help = error.help.map(|help| help.replace("this scene", "that file"));
@@ -64,7 +64,7 @@ impl Including<'_> {
         else {
             let own = entries(key(tree, "variants"));
             let own = own.map(|(name, _)| bare(name, namespace));
-            let path = format!("include.{}.variant", namespace.trim_end_matches('.'));
+            let path = path_of(namespace).key("variant");
             let error = unknown_name(path, "variant", name, own);
             let error = error.at(self.source.place_of(entry.span));
             self.included.diagnostics.push(Diagnostic {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::super::path::{ScenePath, Step};
+
 /// Largest number of characters of a line, where a value can be broken.
 const WIDTH: usize = 100;
 
@@ -27,8 +29,8 @@ pub(in super::super) struct Group {
 /// An item of a group.
 #[derive(Debug)]
 pub(in super::super) struct Item {
-    /// Its key, as a step of a path in the document; none in lists.
-    pub(in super::super) name: Option<String>,
+    /// Step of a path in the document to its value; none in lists.
+    pub(in super::super) step: Option<Step>,
     /// Text before the value.
     pub(in super::super) key: String,
     pub(in super::super) text: Text,
@@ -39,9 +41,8 @@ pub(in super::super) struct Item {
 }
 
 impl Item {
-    pub(in super::super) fn new(name: Option<&str>, key: String, text: Text) -> Self {
-        let name = name.map(str::to_owned);
-        Self { name, key, text, above: Vec::new(), behind: String::new() }
+    pub(in super::super) fn new(step: Option<Step>, key: String, text: Text) -> Self {
+        Self { step, key, text, above: Vec::new(), behind: String::new() }
     }
 
     fn has_comments(&self) -> bool {
@@ -50,7 +51,7 @@ impl Item {
 }
 
 /// Remark at the end of the line of a path in the document.
-pub(in super::super) type Remark<'a> = &'a dyn Fn(&str) -> Option<String>;
+pub(in super::super) type Remark<'a> = &'a dyn Fn(&ScenePath) -> Option<String>;
 
 impl Text {
     /// `Name(key: value)`; a name alone where nothing else is to be said.
@@ -66,8 +67,8 @@ impl Text {
     }
 
     /// `key: value`.
-    pub(in super::super) fn item(name: &str, value: Self) -> Item {
-        Item::new(Some(name), format!("{name}: "), value)
+    pub(in super::super) fn item(name: &'static str, value: Self) -> Item {
+        Item::new(Some(name.into()), format!("{name}: "), value)
     }
 
     /// `Name(value)`; of a tuple `Name(value, value)`.
@@ -98,7 +99,7 @@ impl Text {
 
     /// Text of a file with remarks at the ends of lines.
     pub(in super::super) fn into_file_with(self, remark: Remark<'_>) -> String {
-        let mut writer = Writer { out: String::new(), path: String::new(), remark };
+        let mut writer = Writer { out: String::new(), path: ScenePath::root(), remark };
         writer.broken(&self, 0);
         writer.out.push('\n');
         writer.out
@@ -106,7 +107,7 @@ impl Text {
 
     /// Text on one line.
     pub(in super::super) fn into_line(self) -> String {
-        let mut writer = Writer { out: String::new(), path: String::new(), remark: &|_| None };
+        let mut writer = Writer { out: String::new(), path: ScenePath::root(), remark: &|_| None };
         writer.flat(&self);
         writer.out
     }
@@ -141,7 +142,7 @@ impl Text {
 struct Writer<'a> {
     out: String,
     /// Path in the document of what is being written.
-    path: String,
+    path: ScenePath,
     remark: Remark<'a>,
 }
 
@@ -186,7 +187,7 @@ impl Writer<'_> {
         };
         let fill = items.len() > 8 && items.iter().all(small);
         self.out.push_str(open);
-        if !self.path.is_empty() {
+        if !self.path.is_root() {
             self.remark();
         }
         let mut column = WIDTH;
@@ -200,8 +201,7 @@ impl Writer<'_> {
                 self.line(inner);
                 column = inner + width;
             }
-            let length = self.path.len();
-            self.step(item.name.as_deref(), index);
+            self.path.push(item.step.clone().unwrap_or(Step::Index(index)));
             self.out.push_str(&item.key);
             self.text(&item.text, inner + item.key.chars().count(), inner);
             self.out.push(',');
@@ -212,19 +212,11 @@ impl Writer<'_> {
             if !fill && (is_flat.is_some() || matches!(item.text, Text::Leaf(_))) {
                 self.remark();
             }
-            self.path.truncate(length);
+            self.path.pop();
         }
         self.comments(tail, inner);
         self.line(indent);
         self.out.push_str(close);
-    }
-
-    fn step(&mut self, name: Option<&str>, index: usize) {
-        match name {
-            Some(name) if self.path.is_empty() => self.path.push_str(name),
-            Some(name) => self.path.extend([".", name]),
-            None => self.path.extend(["[", &index.to_string(), "]"]),
-        }
     }
 
     fn remark(&mut self) {

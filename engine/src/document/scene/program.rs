@@ -1,7 +1,7 @@
 //! Included files, and the points of a sweep.
 
 use super::super::leaves::{LeafValue, visit_leaves};
-use super::super::path::path_of;
+use super::super::path::ScenePath;
 use super::super::schema::ReadKeys as _;
 use super::{Band, Map, Param, Scene, Terrain};
 
@@ -37,11 +37,11 @@ impl Scene {
 
     /// Paths of all files that it names, each with its path in the document.
     #[must_use]
-    pub fn files(&self) -> Vec<(String, &str)> {
+    pub fn files(&self) -> Vec<(ScenePath, &str)> {
         let mut files = Vec::new();
-        visit_leaves(self, &mut |steps, leaf| {
+        visit_leaves(self, &mut |path, leaf| {
             if let LeafValue::File(file) = leaf {
-                files.push((path_of(steps), file));
+                files.push((path.clone(), file));
             }
         });
         files

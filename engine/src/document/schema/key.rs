@@ -86,7 +86,7 @@ macro_rules! key {
     };
 
     (@walk $walk:ident, $value:expr; $field:ident: $type:ty) => {
-        $walk.below(crate::document::path::Step::Key(stringify!($field)), $value)
+        $walk.below(stringify!($field).into(), $value)
     };
     (@walk $walk:ident, $value:expr; $field:ident as keys: $type:ty) => {
         crate::document::encode::Encode::visit($value, $walk)

@@ -2,7 +2,7 @@ use super::{CoordinateSystem, MapFrame};
 use crate::assets::crs::{Agreement, TargetSystem, compare};
 use crate::assets::{AssetError, Crs};
 use crate::components::Projection;
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, ScenePath, Step};
 use crate::systems::Resources;
 
 /// Compares the coordinate reference system of a file with that of the scene; the first that is known becomes that
@@ -10,7 +10,7 @@ use crate::systems::Resources;
 pub(in crate::systems) fn check_crs(
     crs: &Crs,
     file: &str,
-    path: &str,
+    path: &ScenePath,
     map: &mut MapFrame,
     resources: &mut Resources,
 ) -> Option<()> {
@@ -23,7 +23,7 @@ pub(in crate::systems) fn check_crs(
     };
     let names = format!("it is in {}, but {owner} in {}", crs.name, reference.name);
     let target = reference.code.map_or_else(|| "EPSG:..".to_owned(), |code| format!("EPSG:{code}"));
-    let is_area = path.contains("inside") || path.contains("outside");
+    let is_area = ["inside", "outside"].iter().any(|key| path.steps().contains(&Step::from(*key)));
     let (tool, correct) = if is_area {
         (
             format!("`ogr2ogr -t_srs {target} out.geojson in.geojson`"),

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::Resources;
 use crate::assets::{Axes, Crs, Raster};
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, ScenePath};
 use crate::geometry::{Rectangle, place_text};
 use crate::terrain::Cells;
 
@@ -76,7 +76,7 @@ impl MapFrame {
 pub(super) fn locate_raster(
     raster: &Raster,
     terrain: Rectangle,
-    path: &str,
+    path: &ScenePath,
     map: &MapFrame,
     resources: &mut Resources,
 ) -> Option<(DVec2, DVec2)> {

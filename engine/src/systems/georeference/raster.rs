@@ -9,7 +9,7 @@ use crate::assets::{
     AssetError, Assumed, Axes, Heights, Length, Raster, RasterError, RasterExtent,
     RasterGeoreference, read_raster,
 };
-use crate::document::{Coordinates, Diagnostic};
+use crate::document::{Coordinates, Diagnostic, ScenePath};
 use crate::geometry::Rectangle;
 use crate::systems::Resources;
 
@@ -29,7 +29,7 @@ pub(in crate::systems) enum Quantity {
 pub(in crate::systems) struct RasterSource<'a> {
     pub(in crate::systems) file: &'a str,
     /// Path of the key in the document that names the file.
-    pub(in crate::systems) path: &'a str,
+    pub(in crate::systems) path: &'a ScenePath,
     pub(in crate::systems) quantity: Quantity,
     /// Unit of the coordinates, if the scene says it.
     pub(in crate::systems) coordinates: Option<Coordinates>,
@@ -43,7 +43,7 @@ pub(in crate::systems) struct RasterSource<'a> {
 
 impl<'a> RasterSource<'a> {
     /// Whole raster, with the units that its file names.
-    pub(in crate::systems) fn new(file: &'a str, path: &'a str, quantity: Quantity) -> Self {
+    pub(in crate::systems) fn new(file: &'a str, path: &'a ScenePath, quantity: Quantity) -> Self {
         let (coordinates, has_size, height_unit_m, extent) = (None, false, None, None);
         Self { file, path, quantity, coordinates, has_size, height_unit_m, extent }
     }
@@ -133,7 +133,7 @@ fn check_unit(
             format!("reproject it to UTM (`gdalwarp -t_srs {target} in out`)"),
         ),
     };
-    let help = if source.path == "terrain.file" {
+    let help = if *source.path == ["terrain", "file"].into() {
         format!("{help}, or write `coordinates: Metres` if they are metres after all")
     } else {
         help

@@ -9,7 +9,7 @@ use super::Resources;
 use super::hide_and_select::needed_meshes;
 use crate::assets::{self, AssetError, Import, Loaded};
 use crate::components::{Mesh, PartMaterials};
-use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj};
+use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj, ScenePath};
 
 pub(super) use part_materials::part_materials;
 
@@ -33,7 +33,7 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
     let folder = &resources.folder;
     let loaded: Vec<_> = wanted.par_iter().map(|(.., source)| load(source, folder)).collect();
     for ((name, entity, source), loaded) in wanted.into_iter().zip(loaded) {
-        let path = format!("meshes.{name}");
+        let path = ScenePath::from("meshes").name(name);
         match loaded {
             Ok(Loaded { value, warnings }) => {
                 for warning in warnings {
@@ -43,12 +43,12 @@ pub(super) fn load_meshes(world: &mut World, resources: &mut Resources) {
                 world.insert(entity, (value, PartMaterials(materials))).expect("meshes exist");
             }
             Err(error) => {
-                let key = match source {
-                    document::Prototype::Faces { .. } => ".faces_m",
-                    document::Prototype::Crown(_) => "",
-                    _ => ".file",
+                let path = match source {
+                    document::Prototype::Faces { .. } => path.key("faces_m"),
+                    document::Prototype::Crown(_) => path,
+                    _ => path.key("file"),
                 };
-                resources.report(Diagnostic::error(format!("{path}{key}"), error.to_string()));
+                resources.report(Diagnostic::error(path, error.to_string()));
             }
         }
     }

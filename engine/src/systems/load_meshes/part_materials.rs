@@ -2,7 +2,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::components::{MaterialId, Mesh};
 use crate::document::{
-    self, Diagnostic, GeneratedCrown, Map, Material, Obj, PartsBy, Ref, unknown_name,
+    self, Diagnostic, GeneratedCrown, Map, Material, Obj, PartsBy, Ref, ScenePath, unknown_name,
 };
 use crate::placement::is_like;
 use crate::systems::Resources;
@@ -14,7 +14,7 @@ const MOST_SHOWN: usize = 10;
 pub(in crate::systems) fn part_materials(
     mesh: &document::Prototype,
     loaded: &Mesh,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Vec<MaterialId> {
     let none = Map::new();
@@ -35,11 +35,11 @@ pub(in crate::systems) fn part_materials(
     let mut known: HashMap<&str, Option<MaterialId>> = HashMap::new();
     for part in &loaded.parts {
         let pattern = || patterns.iter().find(|(pattern, _)| is_like(pattern, &part.name));
-        let (material, key) = match (named.get(&part.name), rest) {
-            (Some(material), _) => (material, format!("parts.{}", part.name)),
+        let (material, at) = match (named.get(&part.name), rest) {
+            (Some(material), _) => (material, path.key("parts").name(&part.name)),
             (None, rest) => match (pattern(), rest) {
-                (Some((pattern, material)), _) => (*material, format!("parts.{pattern}")),
-                (None, Some(material)) => (material, "material".to_owned()),
+                (Some((pattern, material)), _) => (*material, path.key("parts").name(*pattern)),
+                (None, Some(material)) => (material, path.key("material")),
                 (None, None) => {
                     missing.push(part.name.as_str());
                     continue;
@@ -49,7 +49,7 @@ pub(in crate::systems) fn part_materials(
         let id = if let Some(id) = known.get(material.as_str()) {
             *id
         } else {
-            let id = resources.material(material, &format!("{path}.{key}"));
+            let id = resources.material(material, &at);
             known.insert(material, id);
             id
         };
@@ -66,7 +66,7 @@ pub(in crate::systems) fn part_materials(
 fn check_part_names(
     named: &Map<Ref<Material>>,
     loaded: &Mesh,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) {
     if named.is_empty() {
@@ -79,14 +79,14 @@ fn check_part_names(
     };
     let unknown: Vec<&String> = named.keys().filter(|name| !is_known(name)).collect();
     for name in unknown.iter().take(MOST_SHOWN) {
-        let at = format!("{path}.parts.{name}");
+        let at = path.key("parts").name(*name);
         let error = unknown_name(at, "part", name, known());
         let help = error.help.map(|help| help.replace("this scene defines", "its file has"));
         resources.report(Diagnostic { help, ..error });
     }
     if let Some(more) = unknown.len().checked_sub(MOST_SHOWN).filter(|more| *more > 0) {
         let message = format!("{more} more names in `parts` are names of no part");
-        resources.report(Diagnostic::error(format!("{path}.parts"), message));
+        resources.report(Diagnostic::error(path.key("parts"), message));
     }
 }
 
@@ -94,12 +94,12 @@ fn check_part_names(
 fn crown_materials(
     crown: &GeneratedCrown,
     loaded: &Mesh,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Vec<MaterialId> {
-    let leaf = resources.material(&crown.leaf_material, &format!("{path}.leaf_material"));
+    let leaf = resources.material(&crown.leaf_material, &path.key("leaf_material"));
     let wood = crown.wood_material.as_deref();
-    let wood = wood.and_then(|name| resources.material(name, &format!("{path}.wood_material")));
+    let wood = wood.and_then(|name| resources.material(name, &path.key("wood_material")));
     let of = |part: &str| if part == "leaf" { leaf } else { wood };
     // `document::check` asks for a wood material wherever there is wood.
     loaded.parts.iter().map(|part| of(&part.name).unwrap_or(MaterialId(0))).collect()
@@ -114,7 +114,7 @@ fn patterns(named: &Map<Ref<Material>>) -> Vec<(&str, &Ref<Material>)> {
     patterns
 }
 
-fn missing_parts(mesh: &document::Prototype, missing: &[&str], path: &str) -> Diagnostic {
+fn missing_parts(mesh: &document::Prototype, missing: &[&str], path: &ScenePath) -> Diagnostic {
     let shown = missing.iter().take(MOST_SHOWN);
     let list = shown.clone().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let more = match missing.len() {

@@ -2,7 +2,7 @@ use glam::DVec2;
 
 use super::Site;
 use crate::assets;
-use crate::document::{Area, Diagnostic};
+use crate::document::{Area, Diagnostic, ScenePath};
 use crate::geometry::{Polygon, Rectangle, place_text};
 use crate::placement::{PlacementError, Region};
 use crate::systems::Resources;
@@ -17,10 +17,10 @@ pub(super) fn region(
     site: &mut Site<'_>,
 ) -> Option<Region> {
     let mut owners = Vec::new();
-    let mut read = |key: &str, areas: &[Area], site: &mut Site<'_>| {
+    let mut read = |key, areas: &[Area], site: &mut Site<'_>| {
         let mut polygons = Vec::new();
         for (index, area) in areas.iter().enumerate() {
-            let path = format!("{}.{key}[{index}]", site.path);
+            let path = site.path.key(key).index(index);
             let of_area = polygons_of(area, &path, site)?;
             warn_area_beside(area, &of_area, terrain, &path, site.resources);
             owners.extend(of_area.iter().map(|_| path.clone()));
@@ -56,7 +56,7 @@ pub(super) fn region(
 }
 
 /// Polygons of an area in the local frame.
-fn polygons_of(area: &Area, path: &str, site: &mut Site<'_>) -> Option<Vec<Polygon>> {
+fn polygons_of(area: &Area, path: &ScenePath, site: &mut Site<'_>) -> Option<Vec<Polygon>> {
     let crs;
     let (read, is_georeferenced) = match area {
         Area::Polygon { outline_m, holes_m } => {
@@ -81,7 +81,7 @@ fn polygons_of(area: &Area, path: &str, site: &mut Site<'_>) -> Option<Vec<Polyg
         Ok(mut polygons) => {
             if is_georeferenced {
                 if let Some((crs, file)) = &crs {
-                    let at = format!("{path}.file");
+                    let at = path.key("file");
                     check_crs(crs, file, &at, &mut site.map, site.resources)?;
                 }
                 let (x, y, _) = site.resources.frame.origin_m;
@@ -92,7 +92,7 @@ fn polygons_of(area: &Area, path: &str, site: &mut Site<'_>) -> Option<Vec<Polyg
         }
         Err(mut error) => {
             name_target(&mut error, &site.map);
-            site.report(Diagnostic::error(format!("{path}.file"), error.to_string()));
+            site.report(Diagnostic::error(path.key("file"), error.to_string()));
             None
         }
     }
@@ -103,7 +103,7 @@ fn warn_area_beside(
     area: &Area,
     polygons: &[Polygon],
     terrain: Rectangle,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) {
     let corners = || polygons.iter().flat_map(|polygon| &polygon.rings).flatten().copied();

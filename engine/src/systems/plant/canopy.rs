@@ -21,7 +21,7 @@ pub(super) fn plant_canopy(
     let CanopyHeights { file, of, height_unit_m, min_height_m, window, sink_m, name } = canopy;
     let terrain = rectangle_of(ground);
     let models = models(of, site)?;
-    let at = format!("{}.file", site.path);
+    let at = site.path.key("file");
     let source = RasterSource {
         height_unit_m: *height_unit_m,
         ..RasterSource::new(file, &at, Quantity::Heights)
@@ -74,7 +74,7 @@ pub(super) fn plant_canopy(
 fn models(of: &[Ref<Prototype>], site: &mut Site<'_>) -> Option<Vec<Model>> {
     let mut models = Vec::new();
     for (index, name) in of.iter().enumerate() {
-        let path = format!("{}.of[{index}]", site.path);
+        let path = site.path.key("of").index(index);
         let Some(prototype) = site.resources.prototype(name, &path) else { continue };
         // One that is hidden everywhere or could not be loaded stands for no tree.
         let Some(shape) = site.shapes.get(&prototype.0) else { continue };

@@ -25,7 +25,7 @@ use crate::components::{
     Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingId, PrototypeId, Scale,
     SceneId, ShownMeshes,
 };
-use crate::document::{Diagnostic, Instances, Terrain};
+use crate::document::{Diagnostic, Instances, ScenePath, Terrain};
 use crate::geometry::{Rectangle, place_text};
 use crate::sampling::Key;
 use crate::terrain::Ground;
@@ -49,7 +49,7 @@ struct Shape {
 /// Data that placing the instances of a planting takes.
 struct Site<'a> {
     /// Path of the planting in the document.
-    path: String,
+    path: ScenePath,
     /// Number of the planting.
     index: usize,
     terrain: &'a Terrain,
@@ -96,7 +96,7 @@ pub(super) fn plant(world: &mut World, resources: &mut Resources) {
             let terrain = world.get::<&Terrain>(resources.terrain);
             let ground = world.get::<&Ground>(resources.terrain).ok();
             let mut site = Site {
-                path: format!("instances[{index}]"),
+                path: ScenePath::from("instances").index(index),
                 index,
                 terrain: &terrain.expect("`spawn` gives the terrain its source"),
                 ground: ground.as_deref(),
@@ -114,7 +114,7 @@ pub(super) fn plant(world: &mut World, resources: &mut Resources) {
         let start = placements.len();
         if start + placed.len() > MOST_INSTANCES {
             let message = format!("more than {MOST_INSTANCES} instances");
-            let problem = Diagnostic::error(format!("instances[{index}]"), message);
+            let problem = Diagnostic::error(ScenePath::from("instances").index(index), message);
             resources.report(problem.help("group trees into larger meshes"));
             break;
         }
@@ -166,7 +166,7 @@ fn placements_of(instances: &Instances, site: &mut Site<'_>) -> Vec<Placement> {
         Instances::Table(_) => plant_table(instances, site),
         Instances::List(list) => {
             let rows = listed(&list.at_m, &list.yaw_deg, &list.scale);
-            match site.resources.prototype(&list.of, &format!("{}.of", site.path)) {
+            match site.resources.prototype(&list.of, &site.path.key("of")) {
                 Some(prototype) => {
                     let prototypes = vec![prototype; rows.len()];
                     plant_rows(instances, &rows, &prototypes, list.on_terrain, site)

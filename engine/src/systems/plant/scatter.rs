@@ -73,7 +73,7 @@ fn species<'a>(
 ) -> Vec<Species<'a>> {
     let mut species = Vec::new();
     for (name, &share) in of {
-        let path = format!("{}.of.{name}", site.path);
+        let path = site.path.key("of").name(name.as_str());
         let Some(prototype) = site.resources.prototype(name, &path) else {
             continue;
         };
@@ -99,7 +99,7 @@ fn densities(
     needed: Rectangle,
     site: &mut Site<'_>,
 ) -> Option<Cells<f64>> {
-    let path = format!("{}.stems.file", site.path);
+    let path = site.path.key("stems").key("file");
     let source = RasterSource::new(file, &path, Quantity::Density);
     let mut cells = read_raster_on_terrain(&source, terrain, &mut site.map, site.resources)?;
     if let Some(value) = cells.values.iter().find(|value| **value < 0.0) {

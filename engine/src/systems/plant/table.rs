@@ -4,7 +4,7 @@ use super::{Site, plant_rows};
 use crate::assets::{Row, StemTable, read_instances};
 use crate::components::{Placement, PrototypeId};
 use crate::document::{
-    Diagnostic, InstanceTable, Instances, SpeciesMeshes, TableCoordinates, suggestion,
+    Diagnostic, InstanceTable, Instances, ScenePath, SpeciesMeshes, TableCoordinates, suggestion,
 };
 use crate::geometry::place_text;
 
@@ -39,7 +39,7 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
     else {
         return Vec::new();
     };
-    let at = format!("{}.file", site.path);
+    let at = site.path.key("file");
     let table = match read_instances(&site.resources.file(file), columns.as_deref()) {
         Ok(table) => table,
         Err(error) => {
@@ -75,7 +75,7 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
 }
 
 /// Warns of rows that lie so near to each other that their coordinates may be degrees.
-fn warn_degrees(rows: &[Row], file: &str, path: &str, site: &mut Site<'_>) {
+fn warn_degrees(rows: &[Row], file: &str, path: &ScenePath, site: &mut Site<'_>) {
     let places = || rows.iter().map(|row| row.position.truncate());
     let Some(first) = places().next() else { return };
     let (low, high) = places().fold((first, first), |(a, b), p| (a.min(p), b.max(p)));
@@ -101,7 +101,7 @@ fn report_unused_columns(
     table: &StemTable,
     of: &SpeciesMeshes,
     file: &str,
-    path: &str,
+    path: &ScenePath,
     site: &mut Site<'_>,
 ) {
     for (name, meant) in &table.misspelt {
@@ -127,7 +127,7 @@ fn kinds(
     file: &str,
     site: &mut Site<'_>,
 ) -> Option<Vec<Kind>> {
-    let at = format!("{}.of", site.path);
+    let at = site.path.key("of");
     let named = match of {
         SpeciesMeshes::One(mesh) => return Some(vec![kind(mesh, table, &at, site)?]),
         SpeciesMeshes::BySpecies(named) => named,
@@ -158,12 +158,12 @@ fn kinds(
     }
     let kinds = table.species.iter().map(|species| {
         let mesh = named.get(species.as_str())?;
-        kind(mesh, table, &format!("{at}.{species}"), site)
+        kind(mesh, table, &at.name(species), site)
     });
     kinds.collect()
 }
 
-fn kind(mesh: &str, table: &StemTable, path: &str, site: &mut Site<'_>) -> Option<Kind> {
+fn kind(mesh: &str, table: &StemTable, path: &ScenePath, site: &mut Site<'_>) -> Option<Kind> {
     let prototype = site.resources.prototype(mesh, path)?;
     let has = |size: fn(&Row) -> Option<f64>| table.rows.iter().any(|row| size(row).is_some());
     // A hidden mesh is not loaded, and its size not needed.
@@ -186,7 +186,12 @@ fn kind(mesh: &str, table: &StemTable, path: &str, site: &mut Site<'_>) -> Optio
 }
 
 /// Returns whether coordinates are those of the map rather than the scene's: whichever lies on the terrain.
-fn guess_coordinates(rows: &[Row], file: &str, path: &str, site: &mut Site<'_>) -> Option<bool> {
+fn guess_coordinates(
+    rows: &[Row],
+    file: &str,
+    path: &ScenePath,
+    site: &mut Site<'_>,
+) -> Option<bool> {
     let Some(ground) = site.ground else { return Some(false) };
     let map = site.transform();
     let is_same = |place: DVec2| (map.apply(place) - place).abs().max_element() < 1e-3;
@@ -273,7 +278,7 @@ fn scale(row: &mut Row, kind: &Kind, is_of_crown: bool, file: &str) -> Result<()
 struct SizeProblem(String);
 
 impl SizeProblem {
-    fn with_path(self, path: &str) -> Diagnostic {
+    fn with_path(self, path: &ScenePath) -> Diagnostic {
         let help = "call the column of stems `dbh_m`, which is let be, or that of crowns \
                     `crown_diameter_m`";
         Diagnostic::error(path, self.0).help(help)

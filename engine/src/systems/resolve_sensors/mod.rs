@@ -9,7 +9,7 @@ use super::{Resources, set_component};
 use crate::components::{
     CountingPlane, DirectionSensor, PhotonProduct, PhotonSensor, ResolvedSensor, TerrainPatch, View,
 };
-use crate::document::{self, Diagnostic, PhotonMeasure, Sun, Views};
+use crate::document::{self, Diagnostic, PhotonMeasure, ScenePath, Sun, Views};
 
 use images::image;
 
@@ -39,7 +39,7 @@ pub(super) fn resolve_sensors(world: &mut World, resources: &mut Resources) {
         let resolved = {
             let source = world.get::<&document::Sensor>(entity);
             let source = source.expect("`spawn` gives sensors their source");
-            sensor(&source, &format!("sensors.{name}"), &place, resources)
+            sensor(&source, &ScenePath::from("sensors").name(name), &place, resources)
         };
         set_component(world, entity, resolved);
     }
@@ -48,7 +48,7 @@ pub(super) fn resolve_sensors(world: &mut World, resources: &mut Resources) {
 /// Sensor of a source that the author wrote; `None` after an error.
 fn sensor(
     sensor: &document::Sensor,
-    path: &str,
+    path: &ScenePath,
     place: &SensorPlace,
     resources: &mut Resources,
 ) -> Option<ResolvedSensor> {
@@ -59,15 +59,14 @@ fn sensor(
         | document::Sensor::Perspective(_)
         | document::Sensor::Fisheye(_) => ResolvedSensor::Image(image(sensor, place, resources)?),
         document::Sensor::Directions(directions) => {
-            let views =
-                resolve_views(&directions.views, &format!("{path}.views"), place, resources)?;
+            let views = resolve_views(&directions.views, &path.key("views"), place, resources)?;
             let (measure, system) = (directions.measure.clone(), directions.system);
             ResolvedSensor::Directions(DirectionSensor { views, until, measure, plane, system })
         }
         document::Sensor::Photons(photons) => {
             let mut products = Vec::new();
             for (index, source) in photons.measure.iter().enumerate() {
-                let at = format!("{path}.measure[{index}]");
+                let at = path.key("measure").index(index);
                 products.push(PhotonProduct {
                     measure: source.clone(),
                     views: match source {
@@ -101,7 +100,7 @@ pub(super) fn resolve_plane(
 /// Directions of views; `None` after an error.
 fn resolve_views(
     views: &Views,
-    path: &str,
+    path: &ScenePath,
     place: &SensorPlace,
     resources: &mut Resources,
 ) -> Option<Vec<View>> {

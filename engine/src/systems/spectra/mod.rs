@@ -3,7 +3,7 @@ mod table;
 use std::collections::BTreeSet;
 
 use super::Resources;
-use crate::document::{Diagnostic, IRRADIANCE, Prospect, Spectrum, unknown_name};
+use crate::document::{Diagnostic, IRRADIANCE, Prospect, ScenePath, Spectrum, unknown_name};
 use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
 use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
 
@@ -39,7 +39,7 @@ impl Quantity {
 pub(super) fn resolve_spectrum(
     spectrum: &Spectrum,
     quantity: Quantity,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<Vec<f64>> {
     let resolved = resolve(spectrum, quantity, path, &mut BTreeSet::new(), resources);
@@ -56,7 +56,7 @@ pub(super) fn resolve_spectrum(
 }
 
 /// Warns of light that is several times that of the sun: other units may have been meant.
-fn warn_strong_light(values: &[f64], path: &str, resources: &mut Resources) {
+fn warn_strong_light(values: &[f64], path: &ScenePath, resources: &mut Resources) {
     let strongest = values.iter().copied().fold(0.0, f64::max);
     if strongest <= STRONG || !strongest.is_finite() {
         return;
@@ -70,7 +70,7 @@ fn warn_strong_light(values: &[f64], path: &str, resources: &mut Resources) {
 }
 
 /// Warns of a wide band within which a surface differs so much that its mean says little.
-fn warn_wide_bands(points: &[(f64, f64)], path: &str, resources: &mut Resources) {
+fn warn_wide_bands(points: &[(f64, f64)], path: &ScenePath, resources: &mut Resources) {
     for band in &resources.bands {
         let (low, high) = edges(band);
         let within =
@@ -107,7 +107,7 @@ pub(super) fn reads_file<'a>(mut spectrum: &'a Spectrum, resources: &'a Resource
 fn resolve(
     spectrum: &Spectrum,
     quantity: Quantity,
-    path: &str,
+    path: &ScenePath,
     visited: &mut BTreeSet<String>,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
@@ -129,7 +129,8 @@ fn resolve(
                 return Err(Box::new(problem.help(help)));
             }
             let named = named.clone();
-            resolve(&named, quantity, &format!("spectra.{name}"), visited, resources)
+            let path = ScenePath::from("spectra").name(name.as_str());
+            resolve(&named, quantity, &path, visited, resources)
         }
         Spectrum::Prospect(leaf) => prospect_means(leaf, quantity, path, resources),
     }
@@ -139,7 +140,7 @@ fn resolve(
 fn prospect_means(
     leaf: &Prospect,
     quantity: Quantity,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
     let chemistry = LeafChemistry {
@@ -168,7 +169,7 @@ fn prospect_means(
 /// The sun's irradiance of ASTM G173 in each band that holds sunlight, 0 in others.
 fn astm_g173(
     quantity: Quantity,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
     if quantity != Quantity::Irradiance {
@@ -208,7 +209,7 @@ fn astm_g173(
 fn mean_over_bands(
     points: &[(f64, f64)],
     quantity: Quantity,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
     if quantity.is_fraction() {
@@ -223,7 +224,11 @@ fn mean_over_bands(
 }
 
 /// The values, if they can be those of the quantity.
-fn lawful(values: Vec<f64>, quantity: Quantity, path: &str) -> Result<Vec<f64>, Box<Diagnostic>> {
+fn lawful(
+    values: Vec<f64>,
+    quantity: Quantity,
+    path: &ScenePath,
+) -> Result<Vec<f64>, Box<Diagnostic>> {
     let error = match quantity {
         Quantity::Reflectance | Quantity::Transmittance => None,
         Quantity::Irradiance => {
@@ -241,6 +246,6 @@ fn lawful(values: Vec<f64>, quantity: Quantity, path: &str) -> Result<Vec<f64>, 
     error.map_or(Ok(values), |error| Err(Box::new(error)))
 }
 
-fn problem(path: &str, error: &dyn std::error::Error) -> Diagnostic {
+fn problem(path: &ScenePath, error: &dyn std::error::Error) -> Diagnostic {
     Diagnostic::error(path, error.to_string())
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Quantity, STRONG, warn_wide_bands};
 use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
-use crate::document::{Band, Diagnostic, TabulatedSpectrum, ValueUnit, WavelengthUnit};
+use crate::document::{Band, Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 use crate::spectral::band_mean;
 use crate::systems::Resources;
 
@@ -34,18 +34,18 @@ struct Values<'a> {
     /// Values of its points in the unit of the scene.
     scaled: Vec<f64>,
     file: &'a str,
-    path: String,
+    path: ScenePath,
 }
 
 /// Mean in each band of a spectrum that a table holds.
 pub(super) fn table_means(
     spectrum: &TabulatedSpectrum,
     quantity: Quantity,
-    path: &str,
+    path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
     let TabulatedSpectrum { file, wavelength, value, wavelength_unit, unit, scale } = spectrum;
-    let path = format!("{path}.file");
+    let path = path.key("file");
     let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
     let table = read_spectrum(&resources.file(file), &columns)
         .map_err(|error| Box::new(Diagnostic::error(&path, error.to_string())))?;

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use crate::assets::Raster;
-use crate::document::{Diagnostic, LandCover, unknown_name};
+use crate::document::{Diagnostic, LandCover, ScenePath, unknown_name};
 use crate::geometry::{Rectangle, millimetres, place_text};
 use crate::systems::Resources;
 use crate::systems::georeference::{
@@ -19,19 +19,20 @@ pub(super) fn land_cover_cells(
     map: &mut MapFrame,
     resources: &mut Resources,
 ) -> Option<(Cells<u16>, Parts)> {
+    let file = ScenePath::from(["terrain", "land_cover", "file"]);
     let source = RasterSource {
         extent: extent_on_map(terrain, map),
-        ..RasterSource::new(&cover.file, "terrain.land_cover.file", Quantity::Classes)
+        ..RasterSource::new(&cover.file, &file, Quantity::Classes)
     };
     let raster = read_georaster(&source, map, resources)?;
     for name in cover.classes.keys().filter(|name| name.parse::<f64>().is_err()) {
         if !raster.class_names.contains(name) {
             let known = raster.class_names.iter().map(String::as_str);
-            let path = format!("terrain.land_cover.classes.{name}");
+            let path = ScenePath::from(["terrain", "land_cover", "classes"]).name(name);
             resources.report(unknown_name(path, "class", name, known));
         }
     }
-    let (low, size) = locate_raster(&raster, terrain, "terrain.land_cover.file", map, resources)?;
+    let (low, size) = locate_raster(&raster, terrain, &file, map, resources)?;
     let (high, room) = (low + size, 1e-6 * terrain.size());
     if !(low.cmple(terrain.min + room).all() && high.cmpge(terrain.max - room).all()) {
         let Rectangle { min, max } = terrain;
@@ -43,7 +44,7 @@ pub(super) fn land_cover_cells(
             place_text(max)
         );
         let help = "give every place a class, or cut the heights";
-        resources.report(Diagnostic::error("terrain.land_cover.file", message).help(help));
+        resources.report(Diagnostic::error(file, message).help(help));
         return None;
     }
     let mut parts: Parts = Vec::new();
@@ -77,7 +78,8 @@ fn part_of_class(
     parts: &mut Parts,
     resources: &mut Resources,
 ) -> Option<u16> {
-    let id = resources.material(material, &format!("terrain.land_cover.classes.{class}"))?;
+    let path = ScenePath::from(["terrain", "land_cover", "classes"]).name(class.to_string());
+    let id = resources.material(material, &path)?;
     // Classes of one material need no border between them.
     let part = parts.iter().position(|(_, known)| *known == id).unwrap_or_else(|| {
         parts.push((material.to_owned(), id));
@@ -88,7 +90,7 @@ fn part_of_class(
 
 /// Refuses classes that have no material, all in one error.
 fn refuse_missing(mut missing: Vec<f64>, raster: &Raster, resources: &mut Resources) {
-    let path = "terrain.land_cover.classes";
+    let path = ["terrain", "land_cover", "classes"];
     if missing.iter().any(|class| class.is_nan()) {
         let message = "the land cover has cells without data";
         let help = "give them a class";

@@ -10,7 +10,7 @@ use super::Resources;
 use super::georeference::{MapFrame, frame_projection};
 use super::load_meshes::{load, note_file, part_materials};
 use crate::components::TerrainPatch;
-use crate::document::{self, Diagnostic, Terrain};
+use crate::document::{self, Diagnostic, ScenePath, Terrain};
 use crate::terrain::{self, Ground, plane};
 
 use raster::raster_patch;
@@ -50,8 +50,8 @@ fn terrain_patch(
         return Some(patch);
     }
     let path = match terrain {
-        Terrain::Plane(_) => "terrain.size_m",
-        Terrain::Raster(_) | Terrain::Mesh { .. } => "terrain",
+        Terrain::Plane(_) => ScenePath::from(["terrain", "size_m"]),
+        Terrain::Raster(_) | Terrain::Mesh { .. } => "terrain".into(),
     };
     let message = format!("the ground is {x:?} m x {y:?} m: at least {SMALLEST_M} m are expected");
     let problem = Diagnostic::error(path, message).help("extents are in metres");
@@ -68,7 +68,7 @@ fn patch_of_any_size(
     let projection = frame_projection(map, resources);
     let patch = match terrain {
         Terrain::Plane(ground) => {
-            let material = resources.material(&ground.material, "terrain.material")?;
+            let material = resources.material(&ground.material, &["terrain", "material"].into())?;
             let (corner, size) = (DVec2::from(ground.corner_m), DVec2::from(ground.size_m));
             plane(corner, size, ground.height_m, material)
         }
@@ -85,11 +85,11 @@ fn mesh_patch(
     world: &World,
     resources: &mut Resources,
 ) -> Option<TerrainPatch> {
-    resources.prototype(name, "terrain.mesh")?;
+    resources.prototype(name, &["terrain", "mesh"].into())?;
     let mesh = world.get::<&document::Prototype>(resources.meshes[name]);
     let mesh = mesh.expect("`spawn` gives each mesh prototype its source");
     note_file(&mesh, resources);
-    let path = format!("meshes.{name}");
+    let path = ScenePath::from("meshes").name(name);
     let loaded = match load(&mesh, &resources.folder) {
         Ok(loaded) => loaded,
         Err(error) => {
@@ -106,7 +106,7 @@ fn mesh_patch(
     if patch.is_none() {
         let message = format!("`{name}` covers no ground: it has no extent to the east or north");
         resources.report(
-            Diagnostic::error("terrain.mesh", message)
+            Diagnostic::error(["terrain", "mesh"], message)
                 .help("check `up` of the mesh: it says which axis of the file points up"),
         );
     }

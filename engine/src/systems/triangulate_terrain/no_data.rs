@@ -20,7 +20,7 @@ pub(super) fn fill_no_data(
                      them, or `Hole` to leave them out",
             );
             let message = format!("{missing} of its {all} cells have no data");
-            resources.report(Diagnostic::error("terrain.file", message).help(help));
+            resources.report(Diagnostic::error(["terrain", "file"], message).help(help));
             return None;
         }
         NoData::Neighbours => fill_from_neighbours(raster),

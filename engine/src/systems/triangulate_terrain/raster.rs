@@ -41,7 +41,8 @@ pub(super) fn raster_patch(
     warn_steepness(&heights, resources);
     let (cover, parts) = match (&terrain.material, &terrain.land_cover) {
         (Some(name), _) => {
-            (None, vec![(name.to_string(), resources.material(name, "terrain.material")?)])
+            let material = resources.material(name, &["terrain", "material"].into())?;
+            (None, vec![(name.to_string(), material)])
         }
         (None, Some(cover)) => {
             let (cells, parts) = land_cover_cells(cover, rectangle, map, resources)?;
@@ -53,7 +54,7 @@ pub(super) fn raster_patch(
     let patch = terrain::raster(&heights, terrain.tolerance_m, cover.as_ref(), parts, periodic);
     let Some(mut patch) = patch else {
         let message = "none of its cells has data".to_owned();
-        resources.report(Diagnostic::error("terrain.file", message));
+        resources.report(Diagnostic::error(["terrain", "file"], message));
         return None;
     };
     patch.projection =
@@ -73,12 +74,13 @@ fn read_heights(
         let corner = DVec2::from(window.corner_m) + DVec2::new(east, north);
         RasterExtent { min: corner, max: corner + DVec2::from(window.size_m) }
     });
+    let path = ["terrain", "file"].into();
     let source = RasterSource {
         coordinates: coordinates.clone(),
         has_size: size_m.is_some(),
         height_unit_m: *height_unit_m,
         extent,
-        ..RasterSource::new(file, "terrain.file", Quantity::Heights)
+        ..RasterSource::new(file, &path, Quantity::Heights)
     };
     let mut raster = read_georaster(&source, map, resources)?;
     if let Some(place) = &raster.place {
@@ -98,7 +100,7 @@ fn read_heights(
         let help = "if the heights are in centimetres, write `height_unit_m: 0.01` (0.1 for decimetres, \
                     0.3048 for feet); if it stands for no data, name it in the file's header \
                     (`gdal_edit.py -a_nodata`)";
-        resources.report(Diagnostic::error("terrain.file", message).help(help));
+        resources.report(Diagnostic::error(["terrain", "file"], message).help(help));
         return None;
     }
     Some((raster, Rectangle { min: corner, max: corner + size }))
@@ -130,7 +132,7 @@ fn rectangle_of(
         if size.is_none() {
             let message = "the file does not say how large its cells are".to_owned();
             let help = "write the extent of the whole raster: `size_m: (100.0, 100.0)`";
-            resources.report(Diagnostic::error("terrain.file", message).help(help));
+            resources.report(Diagnostic::error(["terrain", "file"], message).help(help));
         }
         return Some((corner.unwrap_or(DVec2::ZERO), size?));
     };
@@ -163,7 +165,7 @@ fn rectangle_of(
                  out`), or write `coordinates: Degrees` to take small rasters for metres as in \
                  their middle, `coordinates: Metres` if they are metres after all"
         );
-        resources.report(Diagnostic::error("terrain.file", problem).help(help));
+        resources.report(Diagnostic::error(["terrain", "file"], problem).help(help));
         return None;
     }
     let (x, y, _) = resources.frame.origin_m;

@@ -31,7 +31,7 @@ pub(super) fn warn_steepness(heights: &Cells<f64>, resources: &mut Resources) {
         let message = format!("{percent} % of the ground is steeper than 75 degrees");
         let help = "heights may be in another unit than metres: write `height_unit_m: 0.01` for \
                         centimetres, 0.1 for decimetres, 0.3048 for feet";
-        resources.report(Diagnostic::warning("terrain.file", message).help(help));
+        resources.report(Diagnostic::warning(["terrain", "file"], message).help(help));
     } else if steps.highest > CLIFF {
         let message = format!(
             "the ground rises or falls by {:.1} m from the cell at {} to the next",
@@ -40,7 +40,7 @@ pub(super) fn warn_steepness(heights: &Cells<f64>, resources: &mut Resources) {
         );
         let help = "a cell without data may hold a height that the file does not name as such: name it \
                         (`gdal_edit.py -a_nodata 0`) and write `no_data: Neighbours`";
-        resources.report(Diagnostic::warning("terrain.file", message).help(help));
+        resources.report(Diagnostic::warning(["terrain", "file"], message).help(help));
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{CameraPlace, Relief, metres};
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, ScenePath};
 use crate::systems::coordinate_advice::far_from;
 
 /// Horizontal distance from the ground, over the height of the camera, from which other coordinates must be
@@ -14,7 +14,7 @@ const FAR_HEIGHTS: f64 = 10.0;
 /// a camera that looks at all directions. `frame` is the origin of the scene on the map, m.
 pub(super) fn problem_of_camera_beside(
     camera: &CameraPlace,
-    path: &str,
+    path: &ScenePath,
     relief: &Relief<'_>,
     frame: DVec2,
 ) -> Option<Diagnostic> {
@@ -23,7 +23,7 @@ pub(super) fn problem_of_camera_beside(
     if gap <= 0.0 {
         return None;
     }
-    let path = format!("{path}.position_m");
+    let path = path.key("position_m");
     let above = (camera.position.z - relief.highest).max(0.0);
     let is_far = gap > far_from(relief.ground).max(FAR_HEIGHTS * above);
     let message = format!("the camera is {} m beside the ground", metres(gap));

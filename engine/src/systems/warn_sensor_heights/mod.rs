@@ -11,7 +11,7 @@ use super::resolve_sensors::resolve_plane;
 use super::warn_floating_instances::vertical_extent;
 use crate::components::{Instance, InstanceQuery, MeshBounds, TerrainPatch};
 use crate::document::{
-    Diagnostic, Fisheye, Layers, Look, Perspective, PhotonMeasure, Sensor, VirtualPlane,
+    Diagnostic, Fisheye, Layers, Look, Perspective, PhotonMeasure, ScenePath, Sensor, VirtualPlane,
 };
 use crate::terrain::Ground;
 
@@ -138,7 +138,7 @@ pub(super) fn warn_sensor_heights(world: &mut World, resources: &mut Resources) 
     for (name, &entity) in &resources.sensors {
         let sensor = world.get::<&Sensor>(entity).expect("`spawn` gives sensors their source");
         let sensor = &*sensor;
-        let path = format!("sensors.{name}");
+        let path = ScenePath::from("sensors").name(name);
         if let Some(camera) = CameraPlace::of(sensor) {
             let (x, y, _) = resources.frame.origin_m;
             let frame = DVec2::new(x, y);
@@ -149,7 +149,7 @@ pub(super) fn warn_sensor_heights(world: &mut World, resources: &mut Resources) 
         }
         let Sensor::Photons(photons) = sensor else { continue };
         for (index, measure) in photons.measure.iter().enumerate() {
-            let at = format!("{path}.measure[{index}]");
+            let at = path.key("measure").index(index);
             match measure {
                 PhotonMeasure::Fluxes { heights_m, .. } => {
                     diagnostics.extend(warn_levels(heights_m, &at, &relief));
@@ -169,12 +169,12 @@ pub(super) fn warn_sensor_heights(world: &mut World, resources: &mut Resources) 
 /// An error if a virtual plane lies below all ground, a warning if a part of it does.
 fn check_plane_height(
     plane: &VirtualPlane,
-    path: &str,
+    path: &ScenePath,
     relief: &Relief<'_>,
     patch: &TerrainPatch,
 ) -> Option<Diagnostic> {
     let height = plane.height_m?;
-    let path = format!("{path}.virtual_plane.height_m");
+    let path = path.key("virtual_plane").key("height_m");
     let help = "heights are those of the local frame: leave `height_m` out, and the plane lies on \
                     the highest point of the scene";
     let z = metres(height);
@@ -196,7 +196,7 @@ fn check_plane_height(
 
 fn warn_camera(
     camera: &CameraPlace,
-    path: &str,
+    path: &ScenePath,
     relief: &Relief<'_>,
     frame: DVec2,
 ) -> Vec<Diagnostic> {
@@ -205,7 +205,7 @@ fn warn_camera(
         return vec![problem];
     }
     let Some(ground) = relief.height(DVec2::new(x, y)) else { return Vec::new() };
-    let at = format!("{path}.position_m");
+    let at = path.key("position_m");
     let high = metres(ground);
     if camera.is_above_ground {
         // A height above sea level that is added to that of the ground.
@@ -250,7 +250,7 @@ fn warn_camera(
 }
 
 /// Warns of a target so deep below the ground that another direction was meant.
-fn warn_target(camera: &CameraPlace, path: &str, relief: &Relief<'_>) -> Option<Diagnostic> {
+fn warn_target(camera: &CameraPlace, path: &ScenePath, relief: &Relief<'_>) -> Option<Diagnostic> {
     let target = camera.target?;
     let ground = relief.height(target.truncate())?;
     let depth = ground - target.z;
@@ -266,10 +266,10 @@ fn warn_target(camera: &CameraPlace, path: &str, relief: &Relief<'_>) -> Option<
     );
     let help = "heights are those of the local frame: give that of the target, or write \
                 `above_ground: true` if both heights are above the ground";
-    Some(Diagnostic::warning(format!("{path}.{}", camera.target_key), message).help(help))
+    Some(Diagnostic::warning(path.key(camera.target_key), message).help(help))
 }
 
-fn warn_levels(heights: &[f64], path: &str, relief: &Relief<'_>) -> Vec<Diagnostic> {
+fn warn_levels(heights: &[f64], path: &ScenePath, relief: &Relief<'_>) -> Vec<Diagnostic> {
     let (corner, size) = (relief.ground.corner(), relief.ground.size());
     let help = "heights are those of the local frame, not above the ground";
     let warn = |(index, &height): (usize, &f64)| {
@@ -291,14 +291,14 @@ fn warn_levels(heights: &[f64], path: &str, relief: &Relief<'_>) -> Vec<Diagnost
                 relief.text()
             ),
         };
-        Some(Diagnostic::warning(format!("{path}.heights_m[{index}]"), message).help(help))
+        Some(Diagnostic::warning(path.key("heights_m").index(index), message).help(help))
     };
     heights.iter().enumerate().filter_map(warn).collect()
 }
 
 fn warn_layers(
     borders: &[f64],
-    path: &str,
+    path: &ScenePath,
     relief: &Relief<'_>,
     world: &World,
 ) -> Option<Diagnostic> {
@@ -321,7 +321,7 @@ fn warn_layers(
     let message = format!("{which} {side}, where nothing absorbs: {}", relief.text());
     let help = "heights of layers are those of the local frame, not above the ground; \
                 `layer_m: 1.0` starts at the lowest ground";
-    Some(Diagnostic::warning(format!("{path}.layer_m"), message).help(help))
+    Some(Diagnostic::warning(path.key("layer_m"), message).help(help))
 }
 
 /// Height of the highest instance, m.
