@@ -174,15 +174,19 @@ const GAUSS: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),
 ];
 
+/// Cosine of 85°: grazing directions, where models change fast, have a panel of their own.
+const GRAZING: f64 = 0.087_155_742_747_658_17;
+
 /// Directional-hemispherical reflectance `∫ f cos θi dωi` for light from a zenith angle.
 ///
 /// Panels of a Gauss-Legendre rule over `cos² θi` meet at the angle of the light, where models have their hot
-/// spot, and at the kinks of the model; azimuths are denser towards the hot spot.
+/// spot, at grazing angles and at the kinks of the model; azimuths are denser towards the hot spot.
 fn dhr<B: BandModel>(band: &B, cosine: f64) -> f64 {
     let cosine = cosine.max(1e-6);
     let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let kinks = B::KINKS.iter().map(|kink| kink * kink);
-    let mut borders: Vec<f64> = [0.0, cosine * cosine, 1.0].into_iter().chain(kinks).collect();
+    let ends = [0.0, GRAZING * GRAZING, cosine * cosine, 1.0];
+    let mut borders: Vec<f64> = ends.into_iter().chain(kinks).collect();
     borders.sort_by(f64::total_cmp);
     let mut sum = 0.0;
     for panel in borders.windows(2) {
