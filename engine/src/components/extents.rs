@@ -19,7 +19,7 @@ pub struct LeafArea(pub f64);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InstanceCount(pub u64);
 
-/// Extents of all geometry, and what it takes to build the ray engine's trees.
+/// Extents of all geometry, and the memory that the ray engine will take.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneExtents {
     /// Height of the lowest point, m, local frame.

@@ -37,7 +37,7 @@ pub struct Setting {
 
 /// Extracts the stage of a world. Reads all derived components.
 ///
-/// `built` are the trees of the ray engine of the same meshes, instances and terrain; without them, they are built.
+/// `built` is the ray engine of the same meshes, instances and terrain; without it, it is built.
 ///
 /// Entities are sorted by document order, because a `World` has none. Prototypes without instances and materials
 /// without surfaces are left out.
@@ -67,7 +67,7 @@ pub fn extract(
     let ground_surfaces = surfaces.of_parts(&terrain.materials);
     let part_surfaces: Vec<Vec<u32>> =
         prototypes.iter().map(|(_, _, materials)| surfaces.of_parts(materials)).collect();
-    // A matrix per instance: computed only for new trees of the ray engine and for reports of each instance.
+    // A matrix per instance: computed only to build the ray engine and for reports of each instance.
     let instances = LazyCell::new(|| instance_inputs(terrain, &placed, &mesh_of));
     let geometry = if let Some(geometry) = built {
         geometry

@@ -28,7 +28,7 @@ pub struct Stage {
     pub first_cut: u32,
     /// True if the rectangle repeats without end.
     pub periodic: bool,
-    /// Models of the surfaces, by the id that hits carry, and all spectra; 0 is the ground's.
+    /// Models of the surfaces, by the id that hits carry, and all spectra; those of the ground come first.
     pub models: SurfaceModels,
     /// Names of the surfaces' materials, which their absorption is reported under.
     pub surface_names: Vec<String>,

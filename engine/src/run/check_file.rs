@@ -100,7 +100,7 @@ pub struct Ready {
     pub stage: Stage,
     /// Seconds to read and spawn the scene.
     pub load_seconds: f64,
-    /// Seconds to build the stage, the ray engine's trees above all.
+    /// Seconds to build the stage, above all the ray engine's hierarchies.
     pub build_seconds: f64,
 }
 

@@ -10,11 +10,11 @@ use crate::extract::{Stage, extract};
 use crate::products::data_size;
 use crate::systems::{Resources, place_of_instance};
 
-/// Extracts the stage of a world; builds the trees of the ray engine unless they are there. `free` is the memory that
+/// Extracts the stage of a world; builds the ray engine unless it is there. `free` is the memory that
 /// the ray engine may take, bytes.
 ///
 /// # Errors
-/// If the trees of the ray engine take more memory than there is, or it refuses a mesh or an instance.
+/// If the ray engine takes more memory than there is, or it refuses a mesh or an instance.
 pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result<Stage, Failure> {
     let built = world.geometry.clone();
     if built.is_none() {

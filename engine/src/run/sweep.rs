@@ -78,7 +78,7 @@ impl SweepRun {
         &self.order
     }
 
-    /// Number of times that the trees of the ray engine have been built so far.
+    /// Number of times that the ray engine has been built so far.
     #[must_use]
     pub fn builds(&self) -> usize {
         self.world.builds

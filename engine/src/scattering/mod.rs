@@ -66,7 +66,7 @@ pub struct Interaction<'m> {
 pub struct BsdfSample {
     /// Direction in which the path continues.
     pub wi: DVec3,
-    /// Weight of the sample, `f |cos θ| / pdf`.
+    /// Weight of the sample, `f |cos θ| / pdf` with `f` itself, not `π f`.
     pub weight: Lobe,
 }
 
@@ -268,7 +268,7 @@ impl Bsdf {
     }
 }
 
-const NO_MODEL_LOBE: &str = "lobes of these models are spectra of the table";
+const NO_MODEL_LOBE: &str = "lobes of these models are spectra of the table or sums of two";
 
 /// A spectrum padded with zeros to whole groups of [`LANES`].
 #[must_use]

@@ -72,7 +72,7 @@ impl Changes {
     /// Irradiance of sun and sky.
     pub const LIGHT: Self = Self(1 << 24);
 
-    /// Kinds that the trees of the ray engine are built from.
+    /// Kinds that the ray engine is built from.
     pub const GEOMETRY: Self =
         Self(Self::BOUNDARY.0 | Self::GROUND.0 | Self::LOADED_MESHES.0 | Self::INSTANCES.0);
 

@@ -8,7 +8,7 @@ use crate::transport::ProgressFn;
 /// A measurement that samples can be added to. However they are cut into rounds, the sums are the same, bit for
 /// bit, if every round but the last ends where its [`Schedule`] says.
 pub trait Film {
-    /// Adds the samples of each randomisation up to `to`; `progress` receives the part of them that is done.
+    /// Adds the samples of each randomisation up to `to` (in an image, of each pixel); `progress` receives the part of them that is done.
     fn trace(&mut self, to: u64, progress: ProgressFn<'_>);
 
     /// Restricts it to a partition of the samples.

@@ -18,7 +18,8 @@ use crate::transport::{Camera, ProgressFn, RANDOMISATIONS};
 /// Outcome of an image measurement.
 #[derive(Clone, Debug)]
 pub struct ImageOutcome {
-    /// Radiance of each pixel in the unit of its [`LightSource`], shape `[rows, columns, spectra, bands]` (the whole
+    /// Radiance of each pixel in the unit of its
+    /// [`LightSource`](crate::transport::LightSource), shape `[rows, columns, spectra, bands]` (the whole
     /// and, on request, its parts): the mean over the samples that met the scene; NaN where none did.
     pub pixels: Vec<f32>,
     /// Its standard error, from its own samples and, where those are few, from those of the tile of 16 × 16

@@ -18,7 +18,7 @@ use crate::transport::scattering_order::{ScatteringOrder, spectrum_count};
 /// Each point of a random walk adds the sun's light, and the sky adds its light where the walk leaves the
 /// scene. Direct light of sun and sky, which the sensor would look into, is left out.
 ///
-/// `reference.rs` is the same estimator as one plain loop.
+/// `reference.rs` is the same estimator as one plain loop, but for its Russian roulette.
 #[derive(Clone, Debug)]
 pub(in crate::transport) struct BackwardPath {
     history: History,
