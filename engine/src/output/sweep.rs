@@ -34,7 +34,7 @@ pub fn is_complete(point: &SweepPoint, folder: &Path) -> bool {
 /// Writes the results of a point, `point.csv` with them.
 ///
 /// # Errors
-/// The same as those of [`write()`](super::write()).
+/// Errors of [`write()`](super::write()).
 pub fn write_point(
     report: &Report,
     point: &SweepPoint,

@@ -60,7 +60,7 @@ pub enum Amount<'a> {
     Density(f64),
     /// Number per m² by the cell at each place; none beside the cells and where the value is NaN.
     Map(&'a Cells<f64>),
-    /// As many stems as find room.
+    /// Maximum number of stems that find room.
     Fill,
 }
 

@@ -24,7 +24,7 @@ pub use hit::{Departure, Hit, Ray};
 impl TwoLevelBvh {
     /// Returns the first surface on a ray at a distance above 0.
     ///
-    /// Of surfaces at one distance, the one of the lowest instance and primitive counts.
+    /// Surfaces at one distance are told apart by instance, then by primitive: the lowest is the closest.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
         TileIter::new(self, ray, f64::INFINITY).find_map(|tile_ray| {

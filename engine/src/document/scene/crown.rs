@@ -130,7 +130,7 @@ choice! {
 choice! {
     /// Vertical profile of leaf area. Only ratios count: `leaf_area_m2` is the total.
     pub enum LeafProfile ("a leaf profile") {
-        /// The same leaf area density everywhere in the crown.
+        /// Constant leaf area density in the crown.
         Even,
         /// Leaf area density, m² m⁻³, by height above the ground, m: linear between, 0 beyond.
         Density(Vec<(f64, f64)> => "[(2.0, 0.3), (5.0, 1.0), (7.0, 0.5)]"),

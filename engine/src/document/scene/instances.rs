@@ -167,7 +167,7 @@ choice! {
             /// Stems per hectare of a value of 1.
             factor: f64 = 1.0,
         },
-        /// As many stems as the rule has room for.
+        /// Maximum number of stems that the rule has room for.
         Fill,
     }
 }

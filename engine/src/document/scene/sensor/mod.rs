@@ -111,7 +111,7 @@ impl Sensor {
     }
 
     /// The sensor with the quantities that a transport system can measure in a scene; `None` if there are none.
-    /// Where it drops some, the largest limit of single products holds for all that are left.
+    /// The largest limit of single products holds for all that are left if it drops some.
     #[must_use]
     pub fn measured_by(&self, by: System, scene: &Scene) -> Option<Self> {
         let mut sensor = self.clone();
