@@ -88,6 +88,7 @@ pub fn extract(
     let (mut models, surface_names) = surfaces.models(world, setting.bands);
     let thermal = Thermal::from_world(world, &surfaces.ordered, &mut models.spectra);
     let light = Light::from_world(world, &mut models.spectra);
+    models.choose_representatives();
     Ok(Stage {
         bands: setting.bands,
         rules: setting.rules,

@@ -27,6 +27,7 @@ mod staging;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod uncovered;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -149,9 +150,9 @@ fn run_in(
         seed: scene.transport.seed,
         seconds: start.elapsed().as_secs_f64(),
         rays: reports.iter().map(|report| report.rays).sum(),
-        bands: context.bands,
+        bands: context.bands.clone(),
         wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
-        irradiance: context.irradiance,
+        irradiance: context.irradiance.clone(),
         stages: clock.laps,
         skipped: messages.skipped().cloned().collect(),
         notes: messages.notes().cloned().chain(pixel_notes).collect(),
@@ -160,6 +161,7 @@ fn run_in(
             .chain(&enclosed::warnings(&sensors, &stage))
             .map(failure::one_line)
             .chain(footprint::warnings(&sensors, &stage))
+            .chain(uncovered::warning(&stage, &context))
             .chain(unbalanced(&reports))
             .chain(unsaved)
             .collect(),

@@ -41,8 +41,8 @@ impl BiLambertian {
             Side {
                 reflected,
                 is_black: spectra.is_zero(reflected),
-                absorbed: spectra.add(scattered.clone().map(|scattered| 1.0 - scattered)),
-                scattered: spectra.add(scattered),
+                absorbed: spectra.add_counted(scattered.clone().map(|scattered| 1.0 - scattered)),
+                scattered: spectra.add_counted(scattered),
             }
         };
         let (front, back) = (side(optics.front()), side(optics.back()));

@@ -6,8 +6,10 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::spectrum::group_size;
-use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SceneSpectra, SpectrumId};
+use super::{
+    Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, RepresentativeBands, SceneSpectra,
+    SpectrumId,
+};
 use crate::components::DirectionalOptics;
 use crate::sampling::cosine_direction;
 
@@ -26,6 +28,8 @@ pub trait BandModel: Copy + Sync {
 pub struct Directional<B> {
     bands: Vec<B>,
     fractions: FractionTable,
+    /// Representative bands, each with the brightest of those that it stands for.
+    representatives: Vec<[u32; 2]>,
 }
 
 impl<B: BandModel> Directional<B> {
@@ -33,7 +37,19 @@ impl<B: BandModel> Directional<B> {
     #[must_use]
     pub fn new(optics: &DirectionalOptics<B>, spectra: &mut SceneSpectra) -> Self {
         let DirectionalOptics { bands, dhr } = optics;
-        Self { bands: bands.clone(), fractions: FractionTable::new(dhr, spectra) }
+        let fractions = FractionTable::new(dhr, spectra);
+        let mut model = Self { bands: bands.clone(), fractions, representatives: Vec::new() };
+        model.choose_representatives(spectra);
+        model
+    }
+
+    /// Takes over the representative bands of the spectra.
+    pub(super) fn choose_representatives(&mut self, spectra: &SceneSpectra) {
+        let chosen = spectra.representative_bands();
+        let middle = self.fractions.scattered[INTERVALS / 2];
+        let brightest = chosen.brightest_of(spectra.lanes(middle));
+        let pairs = chosen.bands().iter().zip(brightest);
+        self.representatives = pairs.map(|(&band, brightest)| [band, brightest]).collect();
     }
 
     pub(super) fn scattered_fraction(&self, at: &Interaction<'_>) -> Lobe {
@@ -51,15 +67,15 @@ impl<B: BandModel> Directional<B> {
         }
     }
 
-    /// Writes `π f` in the representative bands: the middle band of each group, or a part of the brightest of
-    /// its first, middle and last band, so that a group is zero only if these are.
+    /// Writes `π f` in the representative bands: at least a part of the brightest of the bands that each stands for.
     pub(super) fn evaluate_representatives(&self, angles: &Angles, values: &mut [f32]) {
         values.fill(0.0);
-        for (value, group) in values.iter_mut().zip(self.bands.chunks(group_size(self.bands.len())))
-        {
-            let [first, middle, last] =
-                [0, group.len() / 2, group.len() - 1].map(|band| group[band].f(angles));
-            *value = middle.max(SceneSpectra::LEAST * first.max(last));
+        for (value, &[band, brightest]) in values.iter_mut().zip(&self.representatives) {
+            *value = self.bands[band as usize].f(angles);
+            if brightest != band {
+                let least = RepresentativeBands::LEAST * self.bands[brightest as usize].f(angles);
+                *value = value.max(least);
+            }
         }
     }
 }
@@ -101,7 +117,7 @@ impl FractionTable {
         let (mut scattered, mut absorbed) = (Vec::new(), Vec::new());
         for node in 0..=INTERVALS {
             let of_node = || dhr.iter().map(move |band| band[node]);
-            absorbed.push(spectra.add(of_node().map(|dhr| 1.0 - dhr)));
+            absorbed.push(spectra.add_counted(of_node().map(|dhr| 1.0 - dhr)));
             scattered.push(spectra.add(of_node()));
         }
         Self { scattered, absorbed }

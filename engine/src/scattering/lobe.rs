@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{SceneSpectra, SpectrumId, SurfaceModels};
+use super::{RepresentativeBands, SpectrumId, SurfaceModels};
 
 /// Identifies a surface: the id that hits carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -135,7 +135,7 @@ impl SurfaceModels {
         if let LobeSpectrum::Table(id) = *spectrum {
             function(self.spectra.representatives(id))
         } else {
-            let mut buffer = [0.0; SceneSpectra::REPRESENTATIVES];
+            let mut buffer = [0.0; RepresentativeBands::MOST];
             function(self.evaluate_representatives(spectrum, &mut buffer))
         }
     }
@@ -144,9 +144,9 @@ impl SurfaceModels {
     fn evaluate_representatives<'b>(
         &self,
         spectrum: &LobeSpectrum,
-        buffer: &'b mut [f32; SceneSpectra::REPRESENTATIVES],
+        buffer: &'b mut [f32; RepresentativeBands::MOST],
     ) -> &'b [f32] {
-        let buffer = &mut buffer[..SceneSpectra::representatives_len(self.spectra.bands())];
+        let buffer = &mut buffer[..self.spectra.representative_bands().lanes()];
         match *spectrum {
             LobeSpectrum::Table(id) => buffer.copy_from_slice(self.spectra.representatives(id)),
             LobeSpectrum::Sum(terms) => add(terms, |id| self.spectra.representatives(id), buffer),

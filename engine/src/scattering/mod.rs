@@ -10,6 +10,7 @@ mod directional;
 mod glossy_leaf;
 mod lanes;
 mod lobe;
+mod representatives;
 mod rpv;
 mod soilspect;
 mod spectrum;
@@ -23,7 +24,7 @@ pub use directional::{BandModel, Directional, ModelFault};
 pub use glossy_leaf::GlossyLeaf;
 pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, with_simd};
 pub use lobe::{Angles, Lobe, LobeSpectrum, SurfaceId};
-pub(crate) use spectrum::representatives_of;
+pub use representatives::RepresentativeBands;
 pub use spectrum::{SceneSpectra, SpectrumId};
 
 use crate::components::{RpvParameters, SoilspectParameters, SurfaceOptics};
@@ -98,6 +99,18 @@ impl SurfaceModels {
             SurfaceOptics::Soilspect(optics) => Bsdf::Soilspect(Directional::new(optics, spectra)),
         });
         SurfaceId(self.bsdfs.len() as u32 - 1)
+    }
+
+    /// Chooses the representative bands, when all surfaces and all light are there.
+    pub fn choose_representatives(&mut self) {
+        self.spectra.choose_representatives();
+        for bsdf in &mut self.bsdfs {
+            match bsdf {
+                Bsdf::BiLambertian(_) | Bsdf::GlossyLeaf(_) => {}
+                Bsdf::Rpv(model) => model.choose_representatives(&self.spectra),
+                Bsdf::Soilspect(model) => model.choose_representatives(&self.spectra),
+            }
+        }
     }
 
     /// Number of surfaces.

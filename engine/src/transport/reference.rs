@@ -60,7 +60,7 @@ fn radiance(
         // The path continues in a direction sampled from the BSDF: T ← T f |cos θ| / pdf.
         let [lobe, u, v, survival] = sampler.next_4d();
         let weights: Vec<f32> = throughput.iter().map(|&weight: &f64| weight as f32).collect();
-        let importance = crate::scattering::representatives_of(&weights);
+        let importance = stage.models.spectra.representative_bands().values_of(&weights);
         let sample = surface.sample_f(Importance::Representatives(&importance), [lobe, u, v]);
         let Some(sample) = sample else { break };
         for (band, weight) in throughput.iter_mut().enumerate() {

@@ -9,7 +9,7 @@ use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Interaction, Lobe, SceneSpectra};
+use crate::scattering::{Interaction, Lobe};
 use crate::transport::band_blocks::{BLOCK, Block};
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 use crate::transport::scattering_order::{ScatteringOrder, spectrum_count};
@@ -42,11 +42,12 @@ pub(in crate::transport) struct BackwardPath {
 }
 
 impl BackwardPath {
-    /// A path for stages with this number of bands.
-    pub(in crate::transport) fn new(bands: usize, separates_orders: bool) -> Self {
+    /// A path through a stage.
+    pub(in crate::transport) fn new(stage: &Stage, separates_orders: bool) -> Self {
+        let lanes = stage.models.spectra.representative_bands().lanes();
         Self {
             history: History::default(),
-            throughput: vec![0.0; SceneSpectra::representatives_len(bands)],
+            throughput: vec![0.0; lanes],
             next_event: None,
             continuation: None,
             direction: None,

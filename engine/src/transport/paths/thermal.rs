@@ -7,7 +7,6 @@ use super::tracer::{PathTracer, RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::{Key, Sampler};
-use crate::scattering::SceneSpectra;
 use crate::transport::band_blocks::Block;
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 
@@ -31,10 +30,11 @@ pub(in crate::transport) struct ThermalPath {
 }
 
 impl ThermalPath {
-    pub(in crate::transport) fn new(bands: usize) -> Self {
+    pub(in crate::transport) fn new(stage: &Stage) -> Self {
+        let lanes = stage.models.spectra.representative_bands().lanes();
         Self {
             history: History::default(),
-            throughput: vec![0.0; SceneSpectra::representatives_len(bands)],
+            throughput: vec![0.0; lanes],
             sampler: Sampler::new(Key::new(0), 0),
             direction: DVec3::ZERO,
             order: 0,

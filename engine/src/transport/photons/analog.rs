@@ -4,7 +4,7 @@ use super::counters::{Event, Visited};
 use super::packet::{Packet, fly, report};
 use crate::accel::Ray;
 use crate::sampling::Sampler;
-use crate::scattering::{Importance, Lobe, SceneSpectra};
+use crate::scattering::{Importance, Lobe};
 
 /// Order after which a photon ends where nothing is absorbed and nothing escapes; the rest of its power counts as
 /// removed by the limit of orders.
@@ -31,7 +31,7 @@ impl Packet<'_> {
         self.tally.scatter(share.scaled(total as f32));
         self.throughput.fill(0.0);
         if let Some(band) = self.band {
-            let representative = SceneSpectra::representative_of(band, bands);
+            let representative = models.spectra.representative_bands().of(band);
             self.throughput[representative] = total as f32;
         }
     }

@@ -7,7 +7,7 @@ use super::thermal_emission::ThermalEmission;
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
-use crate::scattering::{Lobe, SceneSpectra, SurfaceModels, multiply};
+use crate::scattering::{Lobe, SurfaceModels, multiply};
 use crate::statistics::Sums;
 use crate::transport::films::SampleTracer;
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
@@ -138,7 +138,7 @@ impl<'a> Packet<'a> {
             stage,
             counters,
             tally: Tally::new(models, sums),
-            throughput: vec![0.0; SceneSpectra::representatives_len(bands)],
+            throughput: vec![0.0; models.spectra.representative_bands().lanes()],
             initial,
             kind: *kind,
             band: None,

@@ -122,10 +122,10 @@ impl<'a> DirectionsFilm<'a> {
             (System::Reference, _) => view_tracer.film(ReferencePath::new),
             // Packets have a film of their own, above.
             (System::Backward | System::Forward | System::Analog, LightSource::Reflected) => {
-                view_tracer.film(move || BackwardPath::new(bands, separates_orders))
+                view_tracer.film(move || BackwardPath::new(stage, separates_orders))
             }
             (System::Backward | System::Forward | System::Analog, LightSource::Emitted) => {
-                view_tracer.film(move || ThermalPath::new(bands))
+                view_tracer.film(move || ThermalPath::new(stage))
             }
         };
         Self { film, places, has_sums_per_spectrum: false, spectra }

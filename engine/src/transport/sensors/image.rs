@@ -80,11 +80,11 @@ impl<'a> ImageFilm<'a> {
             // `document::check` refuses photons for cameras and `Analog` for images.
             (System::Backward | System::Forward | System::Analog, _, LightSource::Reflected) => {
                 let columns = bands * spectrum_count(separates_orders);
-                let path = move || BackwardPath::new(bands, separates_orders);
+                let path = move || BackwardPath::new(stage, separates_orders);
                 ImageTiles::new(stage, image, key, columns, path)
             }
             (System::Backward | System::Forward | System::Analog, _, LightSource::Emitted) => {
-                ImageTiles::new(stage, image, key, bands, move || ThermalPath::new(bands))
+                ImageTiles::new(stage, image, key, bands, move || ThermalPath::new(stage))
             }
         };
         Self::Paths(tiles)
@@ -175,7 +175,7 @@ pub fn path_rays(
     paths: u64,
     key: Key,
 ) -> Vec<TracedRay> {
-    let mut batch = PathBatch::logged(|| BackwardPath::new(stage.bands, false));
+    let mut batch = PathBatch::logged(|| BackwardPath::new(stage, false));
     let starts = (0..paths).map(|index| {
         let mut sampler = Sampler::new(key, index);
         let [u, v, ..] = sampler.next_4d();

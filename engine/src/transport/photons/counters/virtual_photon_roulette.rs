@@ -1,7 +1,7 @@
 use super::{AlbedoCounter, WeightFactor};
 use crate::extract::Stage;
 use crate::sampling::Key;
-use crate::scattering::{largest_product, representatives_of};
+use crate::scattering::largest_product;
 use crate::transport::photons::{PacketOptions, PhotonKind, photon_film};
 use crate::transport::{Film, LightSource, ReferencePlane, RouletteThreshold};
 
@@ -34,7 +34,8 @@ impl VirtualPhotonRoulette {
         let leaves = film.spread(1);
         let reciprocals: Vec<f32> =
             leaves.mean().iter().map(|mean| (mean.recip() as f32).min(f32::MAX)).collect();
-        Self { reciprocal_mean: representatives_of(&reciprocals) }
+        let representatives = stage.models.spectra.representative_bands();
+        Self { reciprocal_mean: representatives.values_of(&reciprocals) }
     }
 
     /// Largest ratio over the representative bands of a contribution to the mean: of a fraction of the
