@@ -7,12 +7,12 @@ use std::path::Path;
 
 use sunfleck::document::{self, ReadOptions, Reading};
 use sunfleck::products::Report;
-use sunfleck::run::Options;
+use sunfleck::run::{Options, SweepRun, Unwatched};
 
 use crate::SheetOptics;
 
 /// Keys of a scene in the order of the language, each with the brackets around its entries.
-const KEYS: [(&str, [&str; 2]); 13] = [
+const KEYS: [(&str, [&str; 2]); 14] = [
     ("params", ["{ ", " }"]),
     ("frame", ["(", ")"]),
     ("bands", ["[", "]"]),
@@ -26,6 +26,7 @@ const KEYS: [(&str, [&str; 2]); 13] = [
     ("boundary", ["", ""]),
     ("sensors", ["{ ", " }"]),
     ("transport", ["(", ")"]),
+    ("sweep", ["", ""]),
 ];
 
 /// Band `a` in the red.
@@ -209,6 +210,34 @@ impl SceneText {
             fs::write(folder.path().join(name), text).expect("a file");
         }
         crate::measure(&self.to_string(), folder.path(), options)
+    }
+}
+
+impl SceneText {
+    /// Runs the scene at all points of its sweep; returns the groups that were traced on the same paths, and the reports of
+    /// all points in their order.
+    ///
+    /// # Panics
+    /// If the scene is wrong: the message is what its author would read.
+    #[must_use]
+    pub fn sweep(&self) -> (Vec<Vec<usize>>, Vec<Report>) {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("test.ron");
+        fs::write(&file, self.to_string()).expect("a file");
+        let mut sweep = SweepRun::read(&file, &Options::default())
+            .unwrap_or_else(|failure| panic!("{failure}"));
+        let groups = sweep.groups().to_vec();
+        let mut reports: Vec<Option<Report>> = sweep.points().iter().map(|_| None).collect();
+        for (group, places) in groups.iter().enumerate() {
+            let found = sweep.run(group, &Unwatched).unwrap_or_else(|failure| panic!("{failure}"));
+            for (&place, report) in places.iter().zip(found) {
+                reports[place] = Some(report);
+            }
+        }
+        (
+            groups,
+            reports.into_iter().map(|report| report.expect("a report of each point")).collect(),
+        )
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, bail};
 use sunfleck::output::{Results, Written};
-use sunfleck::products::{Night, SweepPoint};
+use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::run::Partition;
 use sunfleck::{document, output, run};
 
@@ -162,29 +162,29 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let mut sweep = run::SweepRun::read(scene, &run_options(arguments))?;
     let points = sweep.points().to_vec();
     let (mut is_first, mut ran, mut dark) = (true, 0, 0);
-    for index in sweep.order().to_vec() {
-        let point = &points[index];
-        if output::is_complete(point, &folder) {
+    for (group, places) in sweep.groups().to_vec().into_iter().enumerate() {
+        let of_group: Vec<SweepPoint> = places.iter().map(|&place| points[place].clone()).collect();
+        let is_unfinished = |&index: &usize| !output::is_complete(&of_group[index], &folder);
+        let unfinished: Vec<usize> = (0..of_group.len()).filter(is_unfinished).collect();
+        if unfinished.is_empty() {
             continue;
         }
-        warn_night(point);
+        of_group.iter().for_each(warn_night);
         let bars = Bars::new();
-        bars.heading(&format!("point {} of {}: {}", index + 1, points.len(), point.name()));
-        let report = sweep.run(point, &bars);
+        bars.heading(&heading(places[0], &of_group, points.len()));
+        let reports = sweep.run(group, &bars);
         bars.clear();
-        let report = report?;
+        let reports = reports?;
         if is_first {
-            let is_of_night =
-                |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
-            let others: Vec<String> =
-                report.warnings.iter().filter(|text| !is_of_night(text)).cloned().collect();
-            warn(&others);
+            warn(&warnings_beside_night(&reports[0], &of_group[0]));
             // From now on the folder says which scene its points are of.
             results.write_texts(&sweep.report(), &[])?;
         }
-        output::write_point(&report, point, &folder)?;
         is_first = false;
-        if point.darkness().is_some() { dark += 1 } else { ran += 1 }
+        output::write_points(&reports, &of_group, &unfinished, &folder)?;
+        let of_night = unfinished.iter().filter(|&&index| of_group[index].darkness().is_some());
+        let of_night = of_night.count();
+        (ran, dark) = (ran + unfinished.len() - of_night, dark + of_night);
     }
     let table = output::sweep_table(&points, &folder)?;
     let daily = output::daily_sums(&sweep.days(), &points, &folder)?;
@@ -200,6 +200,21 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
             builds => format!("{builds} times"),
         }
     ))
+}
+
+/// Heading of the bars of a group of points, the first of which has this place among all.
+fn heading(first: usize, group: &[SweepPoint], all: usize) -> String {
+    match group {
+        [point] => format!("point {} of {all}: {}", first + 1, point.name()),
+        _ => format!("{} of {all} points, on the same paths", group.len()),
+    }
+}
+
+/// Warnings of a point without the one about its night, which has been shown.
+fn warnings_beside_night(report: &Report, point: &SweepPoint) -> Vec<String> {
+    let is_of_night =
+        |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
+    report.warnings.iter().filter(|text| !is_of_night(text)).cloned().collect()
 }
 
 /// Says what a sun below the horizon means at a point of a sweep.

@@ -22,6 +22,28 @@ pub struct DirectionalOptics<B> {
 }
 
 impl SurfaceOptics {
+    /// Appends the bands of the same surface in another scene.
+    ///
+    /// # Panics
+    /// If the two are of different models, or of coatings that differ.
+    pub fn join(&mut self, next: &Self) {
+        match (self, next) {
+            (Self::BiLambertian(optics), Self::BiLambertian(next)) => optics.join(next),
+            (Self::GlossyLeaf(optics), Self::GlossyLeaf(next)) => {
+                assert!(optics.coating == next.coating, "coatings differ by nothing but bands");
+                optics.body.join(&next.body);
+            }
+            (Self::Rpv(optics), Self::Rpv(next)) => optics.join(next),
+            (Self::Soilspect(optics), Self::Soilspect(next)) => optics.join(next),
+            (
+                Self::BiLambertian(_) | Self::GlossyLeaf(_) | Self::Rpv(_) | Self::Soilspect(_),
+                _,
+            ) => {
+                panic!("surfaces that are joined have the same model")
+            }
+        }
+    }
+
     /// Lambertian part of the model, if it has one.
     #[must_use]
     pub const fn lambertian(&self) -> Option<&LambertianOptics> {
@@ -30,6 +52,13 @@ impl SurfaceOptics {
             Self::GlossyLeaf(optics) => Some(&optics.body),
             Self::Rpv(_) | Self::Soilspect(_) => None,
         }
+    }
+}
+
+impl<B: Clone> DirectionalOptics<B> {
+    fn join(&mut self, next: &Self) {
+        self.bands.extend_from_slice(&next.bands);
+        self.dhr.extend_from_slice(&next.dhr);
     }
 }
 
@@ -130,6 +159,15 @@ impl LambertianOptics {
         }
         let narrow = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
         Ok(Self { front: narrow(front), back: narrow(back), transmittance: narrow(transmittance) })
+    }
+
+    fn join(&mut self, next: &Self) {
+        let join = |values: &mut Box<[f32]>, next: &[f32]| {
+            *values = [&**values, next].concat().into();
+        };
+        join(&mut self.front, &next.front);
+        join(&mut self.back, &next.back);
+        join(&mut self.transmittance, &next.transmittance);
     }
 
     /// Reflectance of the front side, shape `[bands]`.

@@ -1,7 +1,6 @@
 use glam::{DVec2, DVec3};
-use hecs::World;
 
-use crate::components::{SkyLight, SunLight};
+use super::SceneOptics;
 use crate::sampling::{Sampler, concentric_disc};
 use crate::scattering::{SceneSpectra, SpectrumId};
 
@@ -87,18 +86,10 @@ pub struct Dome {
 }
 
 impl Light {
-    /// Light of the sun and sky entities. Adds their spectra to the table.
-    pub(super) fn from_world(world: &World, spectra: &mut SceneSpectra) -> Self {
-        let bands = spectra.bands();
-        let sun = world.query::<&SunLight>().iter().next().cloned();
-        let sky = world.query::<&SkyLight>().iter().next().cloned();
-        let beam_irradiance: Vec<f64> = sun.as_ref().map_or_else(
-            || vec![0.0; bands],
-            |sun| sun.irradiance.iter().map(|e| e * sun.direction.z).collect(),
-        );
-        let sky_irradiance = sky.map_or_else(|| vec![0.0; bands], |sky| sky.irradiance);
-        let irradiance: Vec<f64> =
-            beam_irradiance.iter().zip(&sky_irradiance).map(|(sun, sky)| sun + sky).collect();
+    /// Light of sun and sky. Adds their spectra to the table.
+    pub(super) fn new(optics: &SceneOptics, spectra: &mut SceneSpectra) -> Self {
+        let (beam_irradiance, sky_irradiance) = (optics.beam_irradiance(), optics.sky_irradiance());
+        let irradiance = optics.irradiance();
         // A band without any light has no share of it: all it can measure is zero.
         let mut share = |part: &[f64]| {
             spectra.add(
@@ -109,7 +100,7 @@ impl Light {
         };
         let beam_share = share(&beam_irradiance);
         let sky_share = share(&sky_irradiance);
-        let sun = sun.map(|sun| Beam {
+        let sun = optics.sun.as_ref().map(|sun| Beam {
             direction: sun.direction,
             disc: SunDisc::new(sun.direction, sun.radius),
             share: beam_share,

@@ -2,6 +2,7 @@
 
 mod inventory;
 mod light;
+mod optics;
 mod stage;
 mod thermal;
 
@@ -12,30 +13,28 @@ use std::sync::Arc;
 use hecs::World;
 
 use crate::accel::{BuildError, Domain, InstanceInput, MeshInput, TwoLevelBvh};
-use crate::components::{
-    Instance, MaterialId, Mesh, Name, PartMaterials, SceneId, SurfaceOptics, TerrainPatch,
-};
+use crate::components::{Instance, MaterialId, Mesh, PartMaterials, SceneId, TerrainPatch};
 use crate::scattering::SurfaceModels;
 
 use inventory::reported_absorption;
 
 pub use inventory::{Face, Inventory, PlacedInstance};
 pub use light::{Beam, Dome, Light, SunDisc};
+pub use optics::SceneOptics;
 pub use stage::{Rules, Stage};
 pub use thermal::{SurfaceBlackBody, Thermal};
 
 /// Settings of a scene that belong to no entity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Number of spectral bands.
-    pub bands: usize,
     /// `true` if the terrain's rectangle repeats without end.
     pub is_periodic: bool,
     /// Rules of transport.
     pub rules: Rules,
 }
 
-/// Extracts the stage of a world. Reads all derived components.
+/// Extracts the stage of a world. Reads all derived components but those of the optics, which may be those of
+/// several scenes, joined.
 ///
 /// `built` is the ray engine of the same meshes, instances and terrain; without it, it is built.
 ///
@@ -50,6 +49,7 @@ pub struct Setting {
 /// guarantees both.
 pub fn extract(
     world: &World,
+    optics: &SceneOptics,
     setting: &Setting,
     built: Option<Arc<TwoLevelBvh>>,
 ) -> Result<Stage, BuildError> {
@@ -85,12 +85,12 @@ pub fn extract(
         let meshes: Vec<_> = prototypes.iter().map(|&(_, mesh, _)| mesh).collect();
         Arc::new(Inventory::new(world, terrain, &placed, &instances, &meshes, per))
     });
-    let (mut models, surface_names) = surfaces.models(world, setting.bands);
-    let thermal = Thermal::from_world(world, &surfaces.ordered, &mut models.spectra);
-    let light = Light::from_world(world, &mut models.spectra);
+    let (mut models, surface_names) = surfaces.models(optics);
+    let thermal = Thermal::new(optics, &surfaces.ordered, &mut models.spectra);
+    let light = Light::new(optics, &mut models.spectra);
     models.choose_representatives();
     Ok(Stage {
-        bands: setting.bands,
+        bands: optics.bands,
         rules: setting.rules,
         corner: terrain.corner,
         size: terrain.size,
@@ -156,15 +156,12 @@ impl SurfaceIds {
     }
 
     /// Models and names of the surfaces, in the order of their ids.
-    fn models(&self, world: &World, bands: usize) -> (SurfaceModels, Vec<String>) {
-        let mut query = world.query::<(&SceneId, &Name, &SurfaceOptics)>();
-        let materials: BTreeMap<_, _> =
-            query.iter().map(|(id, name, optics)| (MaterialId(id.0), (name, optics))).collect();
-        let mut models = SurfaceModels::new(bands);
+    fn models(&self, optics: &SceneOptics) -> (SurfaceModels, Vec<String>) {
+        let mut models = SurfaceModels::new(optics.bands);
         let add = |id| {
-            let (name, optics): &(&Name, &SurfaceOptics) = &materials[id];
-            models.add(optics);
-            name.0.clone()
+            let material = &optics.materials[id];
+            models.add(&material.surface);
+            material.name.clone()
         };
         let names = self.ordered.iter().map(add).collect();
         (models, names)

@@ -1,8 +1,6 @@
-use hecs::World;
-
-use super::Stage;
+use super::{SceneOptics, Stage};
 use crate::accel::Hit;
-use crate::components::{BlackBody, Emission, MaterialId, SceneId};
+use crate::components::MaterialId;
 use crate::sampling::Sampler;
 use crate::scattering::{SceneSpectra, SpectrumId};
 
@@ -31,20 +29,18 @@ pub struct SurfaceBlackBody {
 impl Thermal {
     /// Emission of these materials, in this order; `None` where no sensor measures it. Adds spectra to the
     /// table.
-    pub(super) fn from_world(
-        world: &World,
+    pub(super) fn new(
+        optics: &SceneOptics,
         materials: &[MaterialId],
         spectra: &mut SceneSpectra,
     ) -> Option<Self> {
-        let emission = world.query::<&Emission>().iter().next().cloned()?;
+        let emission = optics.emission.as_ref()?;
         let mut add = |values: &[f64]| spectra.add(values.iter().map(|&value| value as f32));
-        let mut query = world.query::<(&SceneId, &BlackBody)>();
-        let bodies: Vec<_> = query.iter().collect();
         let surfaces = materials
             .iter()
             .map(|material| {
-                let body = bodies.iter().find(|(id, _)| id.0 == material.0);
-                let (_, body) = body.expect("every material has its temperature");
+                let body = optics.materials.get(material).and_then(|one| one.body.as_ref());
+                let body = body.expect("every material has its temperature");
                 SurfaceBlackBody {
                     sunlit: add(&body.sunlit),
                     shaded: add(&body.shaded),

@@ -49,7 +49,7 @@ pub use results::{Results, Written};
 pub use rows::{harmless, number};
 pub use scale::{axis_title, range_of, tick};
 pub use size::file_size;
-pub use sweep::{folder_name, is_complete, sweep_table, write_point};
+pub use sweep::{folder_name, is_complete, sweep_table, write_points};
 pub use table::table;
 
 /// Error of writing a report; no part of it is on disk.

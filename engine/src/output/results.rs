@@ -92,6 +92,14 @@ impl Results {
         })
     }
 
+    /// Writes files that need nothing beside them.
+    pub(super) fn write_alone(
+        &self,
+        fill: impl Fn(&mut Staging) -> Result<(), OutputError>,
+    ) -> Result<Written, OutputError> {
+        self.put(|_, staging| fill(staging).map(|()| None))
+    }
+
     /// Writes texts, each with its name, and a `summary.json` that says what they are of; `report` is
     /// of one of the runs that they are made of.
     ///

@@ -8,6 +8,8 @@ use std::fs::File;
 use std::io::{self, BufRead as _, BufReader, Write};
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use super::axes::AxisColumns;
 use super::rows::{harmless, number};
 use super::staging::Staging;
@@ -31,20 +33,46 @@ pub fn is_complete(point: &SweepPoint, folder: &Path) -> bool {
     first.is_some_and(|line| line.is_ok_and(|line| line == heading(point)))
 }
 
-/// Writes the results of a point, `point.csv` with them.
+/// Number of points on the same paths above which each has its table alone, unless it has pictures: charts and summaries
+/// of thousands of points would take longer than their rays.
+const MOST_IN_FULL: usize = 64;
+
+/// Files that are written at a time: most of their time is that of the disk.
+const WRITERS: usize = 8;
+
+/// Writes the results of points that were traced on the same paths, with the `point.csv` of each. `unfinished` are
+/// those to write, by their places among the reports.
 ///
 /// # Errors
-/// Errors of [`write()`](super::write()).
-pub fn write_point(
-    report: &Report,
-    point: &SweepPoint,
+/// Errors of [`write()`](super::write()); other points may have been written.
+///
+/// # Panics
+/// If a report or a point is missing.
+pub fn write_points(
+    reports: &[Report],
+    points: &[SweepPoint],
+    unfinished: &[usize],
     folder: &Path,
-) -> Result<Vec<PathBuf>, OutputError> {
-    let results = Results::for_any_scene(&folder_of(point, folder));
-    let table = |staging: &mut Staging| {
-        staging.file(TABLE, |file| write_rows(report, point, file)).map(drop)
+) -> Result<(), OutputError> {
+    let has_pictures = |report: &Report| {
+        let mut products = report.sensors.iter().flat_map(|sensor| &sensor.products);
+        products.any(|product| product.image.is_some() || product.faces.is_some())
     };
-    Ok(results.write_with(report, table)?.files)
+    let in_full = reports.len() <= MOST_IN_FULL || reports.iter().any(has_pictures);
+    let write = |&index: &usize| {
+        let (report, point) = (&reports[index], &points[index]);
+        let results = Results::for_any_scene(&folder_of(point, folder));
+        let table = |staging: &mut Staging| {
+            staging.file(TABLE, |file| write_rows(report, point, file)).map(drop)
+        };
+        if in_full { results.write_with(report, table) } else { results.write_alone(table) }
+            .map(drop)
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(WRITERS).build();
+    match pool {
+        Ok(pool) => pool.install(|| unfinished.par_iter().try_for_each(write)),
+        Err(_no_threads) => unfinished.iter().try_for_each(write),
+    }
 }
 
 /// Rows of all points as one table: a column a parameter, then sensor, product, unit, a column an axis,

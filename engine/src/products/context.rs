@@ -4,6 +4,9 @@ use crate::spectral::BandWindow;
 /// Bands and light that all products of a run have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Context {
+    /// Number of scenes whose bands ride on the same paths: `bands` holds those of the first, then those of the next,
+    /// and so on.
+    pub scenes: usize,
     /// Names of the bands.
     pub bands: Vec<String>,
     /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
@@ -28,6 +31,23 @@ pub struct BandSources {
 }
 
 impl Context {
+    /// The bands of all of these contexts, which are alike otherwise, one behind the other.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn joined(all: &[&Self]) -> Self {
+        let mut joined = (*all.first().expect("a context")).clone();
+        for &next in &all[1..] {
+            joined.scenes += next.scenes;
+            joined.bands.extend_from_slice(&next.bands);
+            joined.irradiance.extend_from_slice(&next.irradiance);
+            joined.sources.extend_from_slice(&next.sources);
+            joined.has_sky |= next.has_sky;
+        }
+        joined
+    }
+
     /// Names of the bands that hold emission.
     #[must_use]
     pub fn emitting(&self) -> Vec<String> {

@@ -7,6 +7,7 @@ mod context;
 mod directions;
 mod images;
 mod leaf_area;
+mod of_scene;
 mod photons;
 mod product_size;
 mod reflectance;

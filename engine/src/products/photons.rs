@@ -213,6 +213,7 @@ mod tests {
             hemisphere.cells().map(|cell| 0.4 * cell.projected_solid_angle / PI).collect();
         let spread = Spread::from_rows(150, [shares.as_slice(), shares.as_slice()]);
         let context = Context {
+            scenes: 1,
             bands: vec!["b".to_owned()],
             irradiance: vec![1.5],
             has_sky: false,

@@ -58,6 +58,7 @@ mod tests {
         let window = BandWindow { center: 4_000.0, width: 100.0 };
         let source = |emits, reflects| BandSources { window, emits, reflects };
         let context = Context {
+            scenes: 1,
             bands: ["a", "b", "c"].map(str::to_owned).into(),
             irradiance: vec![2.0, 2.0, 2.0],
             has_sky: false,

@@ -108,6 +108,21 @@ fn too_many_samples(
     })
 }
 
+/// Memory that the sensors take, measured one after the other, bytes.
+pub(super) fn joined_memory(
+    sensors: &[SensorEntity],
+    measured: MeasureContext<'_>,
+    options: &Options,
+) -> u64 {
+    let store = CheckpointStore::disabled();
+    let costs = sensors.iter().map(|one| {
+        let Begun { mut measurement, .. } =
+            begin(&one.name, &one.sensor, measured, options.quality);
+        CostEstimate::new(measurement.as_mut(), &store)
+    });
+    cost::peak(&costs.collect::<Vec<_>>())
+}
+
 /// Checks the memory of all sensors.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use super::setting::context;
 use super::staging::staged;
 use super::{Failure, Options, Progress, SceneFacts, SceneWorld, Unwatched};
 use super::{check, enclosed, facts, pixels, sensors};
-use crate::extract::Stage;
+use crate::extract::{SceneOptics, Stage};
 
 /// Result of the check of a scene.
 #[derive(Clone, Debug)]
@@ -65,10 +65,11 @@ fn checked(
         let mut world =
             SceneWorld::from_scene(&reading.scene, folder_of(path)).map_err(Failure::Problems)?;
         progress.stage("building");
-        let stage = staged(&mut world, &reading.scene, options.free_memory())?;
+        let optics = SceneOptics::from_world(&world.world, reading.scene.bands.len());
+        let stage = staged(&mut world, &reading.scene, &optics, options.free_memory())?;
         let mut notes: Vec<String> = world.resources.messages.notes().cloned().collect();
         notes.extend(pixels::count_pixels(&mut world.world, &stage)?);
-        let context = context(&reading.scene, &stage);
+        let context = context(&reading.scene, &optics);
         let sensors = sensors::in_order(&world.world);
         let measured = MeasureContext { stage: &stage, context: &context };
         check::check(&sensors, measured, options, &CheckpointStore::disabled())?;
@@ -115,7 +116,8 @@ pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
         let mut world = SceneWorld::from_scene(&reading.scene, folder_of(path))
             .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
         clock.lap("load");
-        let stage = staged(&mut world, &reading.scene, options.free_memory())
+        let optics = SceneOptics::from_world(&world.world, reading.scene.bands.len());
+        let stage = staged(&mut world, &reading.scene, &optics, options.free_memory())
             .map_err(|failure| failure.with_source(&reading.source))?;
         clock.lap("build");
         let seconds = |lap: usize| clock.laps[lap].1;

@@ -2,13 +2,20 @@ use std::time::Instant;
 
 /// Wall time of stages. It is reported and does not affect any result.
 pub(super) struct Clock {
+    start: Instant,
     last: Instant,
     pub(super) laps: Vec<(String, f64)>,
 }
 
 impl Clock {
     pub(super) fn start() -> Self {
-        Self { last: Instant::now(), laps: Vec::new() }
+        let start = Instant::now();
+        Self { start, last: start, laps: Vec::new() }
+    }
+
+    /// Time since the start, s.
+    pub(super) fn seconds(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
     }
 
     pub(super) fn lap(&mut self, name: &str) {

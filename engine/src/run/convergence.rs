@@ -1,7 +1,7 @@
 //! Error control of a measurement: the criteria that end it, and the errors of its products.
 
 use crate::components::StopCriterion;
-use crate::products::{Product, ProductSize};
+use crate::products::{Context, Product, ProductSize};
 use crate::transport::{Film, Schedule};
 
 /// Measurement of a sensor.
@@ -9,8 +9,11 @@ pub(super) trait Measurement {
     /// Films that are traced for it.
     fn films(&mut self) -> Vec<PacedFilm<'_>>;
 
-    /// Products of the samples so far.
+    /// Products of the samples so far, of the bands of all scenes.
     fn products(&self) -> Vec<Product>;
+
+    /// Data that its products are made with.
+    fn context(&self) -> &Context;
 
     /// Extents of its products, except for a few single numbers.
     fn product_sizes(&self) -> Vec<ProductSize>;
@@ -104,8 +107,8 @@ impl Convergence {
             }
             (StopCriterion::RelErrors(limits), Some(errors)) => {
                 let of_name = |(name, limit): (&String, &f64)| {
-                    let product = errors.iter().find(|(known, _)| known == name);
-                    product.map_or(1.0, |(_, error)| of_error(*error, *limit))
+                    let products = errors.iter().filter(|(known, _)| known == name);
+                    products.map(|(_, error)| of_error(*error, *limit)).fold(1.0, f64::min)
                 };
                 limits.iter().map(of_name).fold(1.0, f64::min)
             }
@@ -137,7 +140,7 @@ pub(super) struct Start {
     pub(super) seconds: f64,
 }
 
-/// Median relative standard error of each product, by name. It is infinite if the product is black, or a logarithm of
+/// Median relative standard error of each product of each scene, by name. It is infinite if the product is black, or a logarithm of
 /// zero, while samples are few.
 pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String, f64)> {
     let samples: u64 = measurement.films().iter().map(|paced| paced.film.samples()).sum();
@@ -147,7 +150,15 @@ pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String,
         let error = if is_unknown { Some(black) } else { product.median_relative_error() };
         error.map(|error| (product.name.clone(), error))
     };
-    measurement.products().iter().filter_map(of).collect()
+    let scenes = measurement.context().scenes;
+    let products = measurement.products();
+    if scenes == 1 {
+        return products.iter().filter_map(of).collect();
+    }
+    let of_all = |product: &Product| -> Vec<(String, f64)> {
+        (0..scenes).filter_map(|scene| of(&product.of_scene(scene, scenes))).collect()
+    };
+    products.iter().flat_map(of_all).collect()
 }
 
 /// Returns whether a product is an energy balance, to whose accuracy no criterion applies: the loss by roulette is 0 but

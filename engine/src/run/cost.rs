@@ -120,7 +120,7 @@ fn sum(bytes: impl IntoIterator<Item = u64>) -> u64 {
 }
 
 /// Peak memory of sensors that are measured one after the other.
-fn peak(costs: &[CostEstimate]) -> u64 {
+pub(super) fn peak(costs: &[CostEstimate]) -> u64 {
     let (mut most, mut permanent) = (0, 0);
     for &CostEstimate { films, beside, products, checkpoint, .. } in costs {
         permanent = sum([permanent, products, checkpoint]);

@@ -15,14 +15,17 @@ mod footprint;
 mod options;
 mod photons;
 mod pixels;
+mod points;
 mod pool;
 mod provenance;
 mod reading;
+mod reports;
 mod rounds;
 mod scene_world;
 mod sensors;
 mod session;
 mod setting;
+mod settled;
 mod staging;
 mod sweep;
 #[cfg(test)]
@@ -35,8 +38,9 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::components::{Projection, TerrainPatch};
-use crate::document::{self, Diagnostic, Param, Scene, ScenePath, Sun};
-use crate::products::{Report, SceneSource, SensorReport};
+use crate::document::{self, Diagnostic, Param, Scene, ScenePath};
+use crate::extract::SceneOptics;
+use crate::products::{Context, Report, SceneSource};
 
 pub use crate::products::Forecast;
 pub use crate::transport::Partition;
@@ -53,8 +57,9 @@ use checkpoint::CheckpointStore;
 use clock::Clock;
 use pool::in_pool;
 use reading::{folder_of, read};
+use reports::{CommonResults, reports};
 use sensors::MeasureContext;
-use setting::context;
+use settled::SettledScene;
 use staging::staged;
 
 /// Runs a scene file.
@@ -113,63 +118,63 @@ fn run_in(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Report, Failure> {
-    let start = Instant::now();
     let mut clock = Clock::start();
     options.checkpoint.as_ref().map_or(Ok(()), Checkpoint::try_file)?;
-    check_scene(scene)?;
     progress.stage("loading");
-    world.set(scene).map_err(Failure::Problems)?;
+    let mut settled = SettledScene::new(world, scene.clone())?;
     // Parts that were traced with some sensors are united with those.
-    let chosen = sensors_of_parts(scene, options, &world.resources.messages.files())?;
-    let scene = chosen.as_ref().unwrap_or(scene);
-    if chosen.is_some() {
-        world.set(scene).map_err(Failure::Problems)?;
+    if let Some(chosen) = sensors_of_parts(scene, options, &settled.files)? {
+        settled = SettledScene::new(world, chosen)?;
     }
-    let files = world.resources.messages.files();
-    let hash = provenance::hash(scene, &files)?;
-    let mut store = open_store(scene, &files, options)?;
+    let mut store = open_store(&settled.scene, &settled.files, options)?;
     clock.lap("spawn");
+    let mut reports = measure_scenes(world, &[settled], options, &mut store, progress, clock)?;
+    Ok(reports.pop().expect("a report for each scene"))
+}
+
+/// Measures scenes that differ in their optics alone, on the same paths.
+fn measure_scenes(
+    world: &mut SceneWorld,
+    scenes: &[SettledScene],
+    options: &Options,
+    store: &mut CheckpointStore,
+    progress: &dyn Progress,
+    mut clock: Clock,
+) -> Result<Vec<Report>, Failure> {
     progress.stage("building");
-    let stage = staged(world, scene, options.free_memory())?;
-    let pixel_notes = pixels::count_pixels(&mut world.world, &stage)?;
+    let optics = joined_optics(scenes);
+    let stage = staged(world, &scenes[0].scene, &optics, options.free_memory())?;
+    let notes = pixels::count_pixels(&mut world.world, &stage)?;
     clock.lap("build");
-    let context = context(scene, &stage);
+    let context = joined_context(scenes);
     progress.stage("tracing");
     let measured = MeasureContext { stage: &stage, context: &context };
-    let unsaved =
-        sensors::measure_sensors(&mut world.world, measured, options, &mut store, progress)?;
-    let reports = sensors::take_reports(&mut world.world);
+    let unsaved = sensors::measure_sensors(&mut world.world, measured, options, store, progress)?;
+    let sensors = sensors::take_reports(&mut world.world);
     clock.lap("trace");
-    let messages = &world.resources.messages;
-    let sensors = sensors::in_order(&world.world);
-    Ok(Report {
-        projection: projection(&world.world),
-        scene: scene.title.clone(),
-        hash,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        seed: scene.transport.seed,
-        seconds: start.elapsed().as_secs_f64(),
-        rays: reports.iter().map(|report| report.rays).sum(),
-        bands: context.bands.clone(),
-        wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
-        irradiance: context.irradiance.clone(),
+    let common = CommonResults {
+        world: &world.world,
+        stage: &stage,
+        context: &context,
+        sensors: &sensors,
+        notes,
+        warnings: unsaved.into_iter().collect(),
+        seconds: clock.seconds(),
         stages: clock.laps,
-        skipped: messages.skipped().cloned().collect(),
-        notes: messages.notes().cloned().chain(pixel_notes).collect(),
-        warnings: messages
-            .diagnostics()
-            .chain(&enclosed::warnings(&sensors, &stage))
-            .map(failure::one_line)
-            .chain(footprint::warnings(&sensors, &stage))
-            .chain(uncovered::warning(&stage, &context))
-            .chain(unbalanced(&reports))
-            .chain(unsaved)
-            .collect(),
-        sensors: reports,
-        params: params(scene),
-        sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
-        source: None,
-    })
+    };
+    Ok(reports(scenes, &common))
+}
+
+/// Optics of scenes, the bands of all one behind the other.
+fn joined_optics(scenes: &[SettledScene]) -> SceneOptics {
+    let optics: Vec<&SceneOptics> = scenes.iter().map(|settled| &settled.optics).collect();
+    SceneOptics::joined(&optics)
+}
+
+/// Data that products of scenes are made with, the bands of all one behind the other.
+fn joined_context(scenes: &[SettledScene]) -> Context {
+    let contexts: Vec<&Context> = scenes.iter().map(|settled| &settled.context).collect();
+    Context::joined(&contexts)
 }
 
 /// Checks a scene that may have been built and not read.
@@ -227,19 +232,4 @@ fn params(scene: &Scene) -> Vec<(String, Param)> {
 /// Projection of the coordinates of the ground.
 fn projection(world: &World) -> Option<Projection> {
     world.query::<&TerrainPatch>().iter().find_map(|patch| patch.projection.clone())
-}
-
-/// Fraction of the incident energy that the rounding of f64 may lose.
-const BALANCE: f64 = 1e-9;
-
-/// Warnings about sensors whose energy balance does not close.
-fn unbalanced(reports: &[SensorReport]) -> impl Iterator<Item = String> {
-    let off = |report: &&SensorReport| report.energy_imbalance.is_some_and(|off| off > BALANCE);
-    reports.iter().filter(off).map(|report| {
-        let off = report.energy_imbalance.unwrap_or(f64::NAN);
-        format!(
-            "sensors.{}: {off:.1e} of the energy is not accounted for: this is a bug of sunfleck",
-            report.name
-        )
-    })
 }

@@ -117,6 +117,10 @@ impl Measurement for PhotonRun<'_> {
         kinds.iter().enumerate().flat_map(of).chain(energy).collect()
     }
 
+    fn context(&self) -> &Context {
+        self.measured.context
+    }
+
     fn products(&self) -> Vec<Product> {
         let MeasureContext { stage, context } = self.measured;
         let Self { sensor, kinds, reflected, emitted, .. } = self;

@@ -246,6 +246,10 @@ impl Measurement for ImageRun<'_> {
         products::image_sizes(self.sensor, light, has_zones, self.measured.context)
     }
 
+    fn context(&self) -> &Context {
+        self.measured.context
+    }
+
     fn products(&self) -> Vec<Product> {
         let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
         let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
@@ -314,6 +318,10 @@ impl Measurement for DirectionsRun<'_> {
         let light =
             MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
         products::direction_sizes(views.len(), measure, light, self.context)
+    }
+
+    fn context(&self) -> &Context {
+        self.context
     }
 
     fn products(&self) -> Vec<Product> {

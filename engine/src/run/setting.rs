@@ -1,14 +1,15 @@
 use crate::document::{self, Scene};
-use crate::extract::{Rules, Setting, Stage};
+use crate::extract::{Rules, SceneOptics, Setting};
 use crate::products::{BandSources, Context};
 use crate::spectral::BandWindow;
 
 /// Data of a scene that products are made with.
-pub(super) fn context(scene: &Scene, stage: &Stage) -> Context {
+pub(super) fn context(scene: &Scene, optics: &SceneOptics) -> Context {
     Context {
+        scenes: 1,
         bands: scene.bands.iter().map(|band| band.name.clone()).collect(),
-        irradiance: stage.light.irradiance.clone(),
-        has_sky: stage.light.dome.is_some(),
+        irradiance: optics.irradiance(),
+        has_sky: optics.has_sky(),
         origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
         sources: scene.bands.iter().map(sources).collect(),
     }
@@ -24,7 +25,6 @@ fn sources(band: &document::Band) -> BandSources {
 pub(super) fn setting(scene: &Scene) -> Setting {
     let transport = &scene.transport;
     Setting {
-        bands: scene.bands.len(),
         is_periodic: scene.boundary == document::Boundary::Periodic,
         rules: Rules {
             seed: transport.seed,

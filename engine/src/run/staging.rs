@@ -6,16 +6,21 @@ use super::setting::setting;
 use crate::accel::BuildError;
 use crate::components::{InstanceCount, SceneExtents, SceneId};
 use crate::document::{Diagnostic, Scene, ScenePath};
-use crate::extract::{Stage, extract};
+use crate::extract::{SceneOptics, Stage, extract};
 use crate::products::data_size;
 use crate::systems::{Resources, place_of_instance};
 
-/// Extracts the stage of a world; builds the ray engine unless it is there. `free` is the memory that
+/// Extracts the stage of a world, with the optics of one scene or several; builds the ray engine unless it is there. `free` is the memory that
 /// the ray engine may take, bytes.
 ///
 /// # Errors
 /// If the ray engine takes more memory than there is, or it refuses a mesh or an instance.
-pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result<Stage, Failure> {
+pub(super) fn staged(
+    world: &mut SceneWorld,
+    scene: &Scene,
+    optics: &SceneOptics,
+    free: u64,
+) -> Result<Stage, Failure> {
     let built = world.geometry.clone();
     if built.is_none() {
         if let Some(problem) = check_memory(&world.resources.extents, free) {
@@ -23,7 +28,7 @@ pub(super) fn staged(world: &mut SceneWorld, scene: &Scene, free: u64) -> Result
         }
         world.builds += 1;
     }
-    let stage = extract(&world.world, &setting(scene), built)
+    let stage = extract(&world.world, optics, &setting(scene), built)
         .map_err(|error| Failure::Problems(vec![located(&error, world)]))?;
     world.geometry = Some(stage.geometry.clone());
     Ok(stage)

@@ -3,28 +3,32 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use indexmap::IndexMap;
+
+use super::points::run_points;
 use super::pool::in_pool;
 use super::provenance::content;
-use super::reading::{choose_sensors, folder_of, read, sound};
+use super::reading::{choose_sensors, folder_of, sound};
 use super::scene_world::SceneWorld;
-use super::{Failure, Options, Progress, day, params, run_in, scene_source};
+use super::{Failure, Options, Progress, day, params, scene_source};
 use crate::document::{
-    self, Lambertian, Map, Material, Reading, Scene, ScenePath, Sensor, Sky, Spectrum, Sun,
-    ThermalSky,
+    self, Lambertian, Map, Material, Reading, Scene, ScenePath, Sensor, Sky, Spectrum,
+    StopCriterion, Sun, System, ThermalSky,
 };
 use crate::products::{Day, Night, Report, SweepPoint};
 
 /// A scene file that has been read at every point of its sweep, and what its runs share.
 ///
 /// Random streams have the seed and the sensor's path as keys, so each point is traced with the same
-/// numbers: differences between points have far less noise than the points themselves.
+/// numbers: differences between points have far less noise than the points themselves. Points that differ in
+/// spectra, temperatures or irradiance alone are traced on the same paths, as if their bands were those of one scene.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
 pub struct SweepRun {
     file: PathBuf,
     options: Options,
     scene: Scene,
     points: Vec<SweepPoint>,
-    order: Vec<usize>,
+    groups: Vec<Vec<usize>>,
     suns: Vec<Option<Sun>>,
     world: SceneWorld,
 }
@@ -45,8 +49,7 @@ impl SweepRun {
         let sweep = sweep.fixed(&options.document.set);
         let mut contents = HashMap::new();
         let mut points = Vec::with_capacity(sweep.len());
-        // The first point of the same geometry as each.
-        let (mut alike, mut firsts) = (Vec::with_capacity(sweep.len()), HashMap::new());
+        let mut likeness = Vec::with_capacity(sweep.len());
         let mut suns = Vec::with_capacity(sweep.len());
         for index in 0..sweep.len() {
             let params = sweep.point(index);
@@ -56,13 +59,12 @@ impl SweepRun {
             (point.key, point.night) = (found.key, found.night);
             points.push(point);
             suns.push(found.sun);
-            alike.push(*firsts.entry(found.geometry).or_insert(index));
+            likeness.push(found.likeness);
         }
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        order.sort_by_key(|&index| alike[index]);
+        let groups = groups(&likeness, scene.bands.len());
         let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, scene, points, order, suns, world })
+        Ok(Self { file, options, scene, points, groups, suns, world })
     }
 
     /// All points, the last parameter fastest.
@@ -71,11 +73,13 @@ impl SweepRun {
         &self.points
     }
 
-    /// Places of the points in the order to run them in: those of the same geometry, which is then
-    /// built once, one after the other.
+    /// Groups of points by their places in the list of all, in the order to run them in: a group is traced on the same
+    /// paths, and groups of the same geometry, which is then built once, follow each other.
+    ///
+    /// They depend on the sweep alone, and results on the group: a point is always run with the others of its group.
     #[must_use]
-    pub fn order(&self) -> &[usize] {
-        &self.order
+    pub fn groups(&self) -> &[Vec<usize>] {
+        &self.groups
     }
 
     /// Number of times that the ray engine has been built so far.
@@ -94,30 +98,31 @@ impl SweepRun {
         }
     }
 
-    /// Runs the scene at one of its points; a point without any light has a report without sensors.
+    /// Runs the scene at the points of one of its groups, in their order; a point without any light has a report
+    /// without sensors.
     ///
     /// # Errors
-    /// All errors of the scene there.
-    pub fn run(&mut self, point: &SweepPoint, progress: &dyn Progress) -> Result<Report, Failure> {
-        if let Some(why) = point.darkness() {
-            let params = point.params.clone();
-            return Ok(Report { notes: vec![why.to_owned()], params, ..self.report() });
+    /// All errors of the scene at the first point that has any.
+    ///
+    /// # Panics
+    /// If there is no such group.
+    pub fn run(&mut self, group: usize, progress: &dyn Progress) -> Result<Vec<Report>, Failure> {
+        let points: Vec<SweepPoint> =
+            self.groups[group].iter().map(|&index| self.points[index].clone()).collect();
+        if let Some(why) = points[0].darkness() {
+            let params = points[0].params.clone();
+            return Ok(vec![Report { notes: vec![why.to_owned()], params, ..self.report() }]);
         }
-        let options = at(&self.options, point);
-        let (file, world) = (&self.file, &mut self.world);
-        let report = in_pool(&options, || {
-            let reading = read(file, &options)?;
-            run_in(world, &reading.scene, &options, progress)
-                .map_err(|failure| failure.with_source(&reading.source))
-        });
-        report
-            .map(|mut report| {
-                if let Some(Night::WithoutSun(warning)) = &point.night {
-                    report.warnings.insert(0, warning.clone());
-                }
-                Report { source: Some(scene_source(file, &self.options)), ..report }
-            })
-            .map_err(|source| wrong_at(point, source))
+        let mut reports = in_pool(&self.options, || {
+            run_points(&mut self.world, &self.file, &self.options, &points, progress)
+        })?;
+        for (report, point) in reports.iter_mut().zip(&points) {
+            if let Some(Night::WithoutSun(warning)) = &point.night {
+                report.warnings.insert(0, warning.clone());
+            }
+            report.source = Some(scene_source(&self.file, &self.options));
+        }
+        Ok(reports)
     }
 
     /// Report of what is common to all points: it has no sensors, and its hash is that of all points.
@@ -150,13 +155,13 @@ impl SweepRun {
     }
 }
 
-fn at(options: &Options, point: &SweepPoint) -> Options {
+pub(super) fn at(options: &Options, point: &SweepPoint) -> Options {
     let mut options = options.clone();
     options.document.point.clone_from(&point.params);
     options
 }
 
-fn wrong_at(point: &SweepPoint, source: Failure) -> Failure {
+pub(super) fn wrong_at(point: &SweepPoint, source: Failure) -> Failure {
     Failure::Point { point: point.name(), source: Box::new(source) }
 }
 
@@ -167,10 +172,42 @@ type Contents = HashMap<PathBuf, blake3::Hash>;
 struct Glance {
     /// Hash of all that decides its results.
     key: String,
-    /// Hash of its geometry.
-    geometry: blake3::Hash,
+    likeness: Likeness,
     sun: Option<Sun>,
     night: Option<Night>,
+}
+
+/// Hashes of what points can share.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Likeness {
+    /// Hash of the geometry: the ray engine is built once for points that are equal in it.
+    geometry: blake3::Hash,
+    /// Hash of all that decides the paths; none of a point that is traced alone.
+    paths: Option<blake3::Hash>,
+}
+
+/// Largest number of bands that are traced on the same paths.
+const MOST_BANDS: usize = 1 << 14;
+
+/// Groups of points that are traced on the same paths; those of the same geometry follow each other.
+fn groups(likeness: &[Likeness], bands: usize) -> Vec<Vec<usize>> {
+    let most = (MOST_BANDS / bands.max(1)).max(1);
+    let mut of_geometry: IndexMap<blake3::Hash, Vec<Vec<usize>>> = IndexMap::new();
+    let mut open: HashMap<(blake3::Hash, blake3::Hash), usize> = HashMap::new();
+    for (index, one) in likeness.iter().enumerate() {
+        let groups = of_geometry.entry(one.geometry).or_default();
+        let place = one.paths.and_then(|paths| open.get(&(one.geometry, paths)).copied());
+        match place.filter(|&place| groups[place].len() < most) {
+            Some(place) => groups[place].push(index),
+            None => {
+                if let Some(paths) = one.paths {
+                    open.insert((one.geometry, paths), groups.len());
+                }
+                groups.push(vec![index]);
+            }
+        }
+    }
+    of_geometry.into_values().flatten().collect()
 }
 
 /// Reads a scene, which may be dark at night.
@@ -218,8 +255,12 @@ fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Gl
         hasher.update(hash.as_bytes());
     }
     let geometry = blake3::hash(geometry_of(&reading.scene).to_ron().as_bytes());
+    let is_dark = matches!(night, Some(Night::Dark(_)));
+    let paths = paths_of(&reading.scene).filter(|_| !is_dark);
+    let paths = paths.map(|paths| blake3::hash(paths.to_ron().as_bytes()));
     let key = hasher.finalize().to_hex().to_string();
-    Ok(Glance { key, geometry, sun: reading.scene.sun, night })
+    let likeness = Likeness { geometry, paths };
+    Ok(Glance { key, likeness, sun: reading.scene.sun, night })
 }
 
 /// Scene without light, spectra and sensors: points that are equal in it follow each other, so that their geometry is
@@ -237,4 +278,35 @@ fn geometry_of(scene: &Scene) -> Scene {
         sensors: Map::<Sensor>::new(),
         ..scene.resolved()
     }
+}
+
+/// Scene without values by band: points that are equal in it are traced on the same paths. `None` for a point that is
+/// traced alone: because a sensor has a limit of time, or photons that carry one band each.
+fn paths_of(scene: &Scene) -> Option<Scene> {
+    let is_limited = |sensor: &Sensor| {
+        sensor.until().iter().any(|stop| matches!(stop, StopCriterion::Seconds(_)))
+    };
+    let is_alone = |sensor: &Sensor| is_limited(sensor) || sensor.system() == Some(System::Analog);
+    if scene.sensors.values().any(is_alone) {
+        return None;
+    }
+    let one = || Spectrum::Constant(1.0);
+    let sun = scene.sun.as_ref().map(|sun| Sun { irradiance: one(), ..sun.clone() });
+    let sky = match &scene.sky {
+        Sky::Fraction(shares) if shares.iter().any(|share| *share > 0.0) => {
+            Sky::Fraction(vec![1.0; shares.len()])
+        }
+        Sky::None | Sky::Fraction(_) => Sky::None,
+        Sky::Isotropic { .. } => Sky::Isotropic { irradiance: one() },
+    };
+    let materials = scene.materials.iter();
+    Some(Scene {
+        title: String::new(),
+        spectra: Map::new(),
+        materials: materials.map(|(name, one)| (name.clone(), one.without_values())).collect(),
+        sun,
+        sky,
+        thermal_sky: ThermalSky::None,
+        ..scene.resolved()
+    })
 }

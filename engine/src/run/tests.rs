@@ -6,9 +6,9 @@ use super::checkpoint::CheckpointStore;
 use super::convergence::{ErrorCheck, Start, relative_errors};
 use super::rounds::trace;
 use super::sensors::{Begun, MeasureContext, SensorEntity, begin, in_order, measure};
-use super::setting::setting;
-use super::{Options, SceneWorld, Unwatched, context, document};
-use crate::extract::extract;
+use super::setting::{context, setting};
+use super::{Options, SceneWorld, Unwatched, document};
+use crate::extract::{SceneOptics, extract};
 use crate::products::{Product, ProductSize};
 
 /// A tree on soil in two bands of reflected light and one of emitted, with these sensors.
@@ -42,8 +42,9 @@ fn for_each_sensor(sensors: &str, test: impl Fn(&SensorEntity, MeasureContext<'_
         document::read_text("test.ron", &text, &document::ReadOptions::default()).expect("a scene");
     assert!(reading.is_sound(), "{}", reading.render());
     let built = SceneWorld::from_scene(&reading.scene, Path::new("")).expect("a world");
-    let stage = extract(&built.world, &setting(&reading.scene), None).expect("a stage");
-    let context = context(&reading.scene, &stage);
+    let optics = SceneOptics::from_world(&built.world, reading.scene.bands.len());
+    let stage = extract(&built.world, &optics, &setting(&reading.scene), None).expect("a stage");
+    let context = context(&reading.scene, &optics);
     for sensor in in_order(&built.world) {
         test(&sensor, MeasureContext { stage: &stage, context: &context });
     }

@@ -107,6 +107,21 @@ impl Material {
         }
     }
 
+    /// A surface of the same model without values by band or temperature: paths along surfaces that are equal in that
+    /// can be shared.
+    #[must_use]
+    pub fn without_values(&self) -> Self {
+        let zero = || Spectrum::Constant(0.0);
+        match self {
+            Self::Lambertian(_) => Self::Lambertian(Lambertian::new(zero())),
+            Self::Leaf(leaf) => {
+                Self::Leaf(Leaf { coating: leaf.coating.clone(), ..Leaf::new(zero(), zero()) })
+            }
+            Self::Rpv(_) => Self::Rpv(Rpv::new(zero(), zero(), zero())),
+            Self::Soilspect(_) => Self::Soilspect(Soilspect::new(zero(), zero())),
+        }
+    }
+
     /// Its temperature, if it was given.
     #[must_use]
     pub const fn temperature(&self) -> Option<&Temperature> {

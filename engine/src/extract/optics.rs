@@ -1,0 +1,128 @@
+//! What differs by band in a world: surfaces, light and emission.
+
+use std::collections::BTreeMap;
+
+use hecs::World;
+
+use crate::components::{
+    BlackBody, Emission, MaterialId, Name, SceneId, SkyLight, SunLight, SurfaceOptics,
+};
+
+/// All of a world that differs by band. Worlds that differ in nothing else can be joined: their bands then ride on the
+/// same paths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneOptics {
+    /// Materials that are used.
+    pub(super) materials: BTreeMap<MaterialId, MaterialOptics>,
+    pub(super) sun: Option<SunLight>,
+    pub(super) sky: Option<SkyLight>,
+    pub(super) emission: Option<Emission>,
+    /// Number of bands.
+    pub(super) bands: usize,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MaterialOptics {
+    pub(super) name: String,
+    pub(super) surface: SurfaceOptics,
+    /// What it would emit if it were black, where a sensor measures that.
+    pub(super) body: Option<BlackBody>,
+}
+
+impl SceneOptics {
+    /// The optics of a world. Reads [`SurfaceOptics`], [`BlackBody`], [`SunLight`], [`SkyLight`] and [`Emission`].
+    #[must_use]
+    pub fn from_world(world: &World, bands: usize) -> Self {
+        let mut query = world.query::<(&SceneId, &Name, &SurfaceOptics, Option<&BlackBody>)>();
+        let materials = query.iter().map(|(id, name, surface, body)| {
+            let (name, surface, body) = (name.0.clone(), surface.clone(), body.cloned());
+            (MaterialId(id.0), MaterialOptics { name, surface, body })
+        });
+        Self {
+            materials: materials.collect(),
+            sun: world.query::<&SunLight>().iter().next().cloned(),
+            sky: world.query::<&SkyLight>().iter().next().cloned(),
+            emission: world.query::<&Emission>().iter().next().cloned(),
+            bands,
+        }
+    }
+
+    /// Number of bands.
+    #[must_use]
+    pub const fn bands(&self) -> usize {
+        self.bands
+    }
+
+    /// Irradiance of the sun on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
+    pub(super) fn beam_irradiance(&self) -> Vec<f64> {
+        self.sun.as_ref().map_or_else(
+            || vec![0.0; self.bands],
+            |sun| sun.irradiance.iter().map(|e| e * sun.direction.z).collect(),
+        )
+    }
+
+    /// Irradiance of the sky on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
+    pub(super) fn sky_irradiance(&self) -> Vec<f64> {
+        let sky = self.sky.as_ref();
+        sky.map_or_else(|| vec![0.0; self.bands], |sky| sky.irradiance.clone())
+    }
+
+    /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
+    #[must_use]
+    pub fn irradiance(&self) -> Vec<f64> {
+        let both = self.beam_irradiance().into_iter().zip(self.sky_irradiance());
+        both.map(|(sun, sky)| sun + sky).collect()
+    }
+
+    /// Returns whether the sky gives light in some band.
+    #[must_use]
+    pub fn has_sky(&self) -> bool {
+        let gives_light = |sky: &SkyLight| {
+            sky.irradiance.iter().zip(self.irradiance()).any(|(&sky, all)| (sky / all) as f32 > 0.0)
+        };
+        self.sky.as_ref().is_some_and(gives_light)
+    }
+
+    /// The bands of all of these, one behind the other.
+    ///
+    /// # Panics
+    /// If there is none, or they differ in anything but values by band.
+    #[must_use]
+    pub fn joined(all: &[&Self]) -> Self {
+        let mut joined = (*all.first().expect("something to join")).clone();
+        for &next in &all[1..] {
+            joined.join(next);
+        }
+        joined
+    }
+
+    fn join(&mut self, next: &Self) {
+        assert!(self.materials.keys().eq(next.materials.keys()), "{ALIKE}");
+        for (material, next) in self.materials.values_mut().zip(next.materials.values()) {
+            material.surface.join(&next.surface);
+            join(&mut material.body, next.body.as_ref(), |body, next| {
+                body.sunlit.extend(&next.sunlit);
+                body.shaded.extend(&next.shaded);
+            });
+        }
+        join(&mut self.sun, next.sun.as_ref(), |sun, next| sun.irradiance.extend(&next.irradiance));
+        join(&mut self.sky, next.sky.as_ref(), |sky, next| sky.irradiance.extend(&next.irradiance));
+        join(&mut self.emission, next.emission.as_ref(), |emission, next| {
+            emission.bands.extend(&next.bands);
+            emission.sky.extend(&next.sky);
+        });
+        self.bands += next.bands;
+    }
+}
+
+const ALIKE: &str = "scenes that are joined differ in values by band alone";
+
+/// Joins two values, of which there are both or none.
+fn join<T>(value: &mut Option<T>, next: Option<&T>, join: impl FnOnce(&mut T, &T)) {
+    match (value, next) {
+        (Some(value), Some(next)) => join(value, next),
+        (None, None) => {}
+        _ => panic!("{ALIKE}"),
+    }
+}

@@ -1,0 +1,97 @@
+//! The products of one of several scenes that rode on the same paths.
+
+use std::sync::Arc;
+
+use super::{AxisPoints, Faces, Image, Product, ProductAxis, Rendering};
+
+impl Product {
+    /// The bands of one of the scenes; what has no bands is the same for all.
+    #[must_use]
+    pub fn of_scene(&self, scene: usize, scenes: usize) -> Self {
+        let Some(joined) = self.bands().filter(|_| scenes > 1) else { return self.clone() };
+        let part = BandsOfScene { joined, start: scene * (joined / scenes), len: joined / scenes };
+        let mut dimensions = self.dimensions.clone();
+        for axis in dimensions.last_mut().into_iter().flatten() {
+            axis.points = match &axis.points {
+                AxisPoints::Labels(labels) => AxisPoints::Labels(part.of(labels)),
+                AxisPoints::Numbers(numbers) => AxisPoints::Numbers(part.of(numbers)),
+            };
+        }
+        Self {
+            name: self.name.clone(),
+            unit: self.unit.clone(),
+            dimensions,
+            values: part.of(&self.values),
+            standard_error: part.of(&self.standard_error),
+            image: self.image.as_ref().map(|image| part.of_image(image)),
+            faces: self.faces.as_ref().map(|faces| part.of_faces(faces)),
+        }
+    }
+
+    /// Number of bands; `None` if its last dimension is another.
+    fn bands(&self) -> Option<usize> {
+        let is_band = |axis: &&ProductAxis| axis.name == "band";
+        self.dimensions.last()?.iter().find(is_band).map(|axis| axis.points.len())
+    }
+}
+
+/// Bands of one scene among those of all.
+#[derive(Clone, Copy)]
+struct BandsOfScene {
+    joined: usize,
+    start: usize,
+    len: usize,
+}
+
+impl BandsOfScene {
+    /// Values of the scene, of shape `[.., bands]`.
+    fn of<T: Clone>(self, values: &[T]) -> Vec<T> {
+        let rows = values.chunks_exact(self.joined.max(1));
+        let mut own = Vec::with_capacity(rows.len() * self.len);
+        rows.for_each(|row| own.extend_from_slice(&row[self.start..][..self.len]));
+        own
+    }
+
+    fn of_image(self, image: &Image) -> Image {
+        let Image {
+            width,
+            height,
+            bands,
+            values,
+            standard_error,
+            coverage,
+            rendering,
+            georeference,
+        } = image;
+        Image {
+            width: *width,
+            height: *height,
+            bands: self.of(bands),
+            values: self.of(values),
+            standard_error: self.of(standard_error),
+            coverage: coverage.clone(),
+            rendering: match rendering {
+                Rendering::Colours { channels, exposure, white } => Rendering::Colours {
+                    channels: *channels,
+                    exposure: *exposure,
+                    white: self.of(white),
+                },
+                Rendering::Quicklook | Rendering::Classes(_) | Rendering::Shares(_) => {
+                    rendering.clone()
+                }
+            },
+            georeference: *georeference,
+        }
+    }
+
+    fn of_faces(self, faces: &Faces) -> Faces {
+        let Faces { inventory, origin, bands, values, standard_error } = faces;
+        Faces {
+            inventory: Arc::clone(inventory),
+            origin: *origin,
+            bands: self.of(bands),
+            values: self.of(values),
+            standard_error: self.of(standard_error),
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Reports of scenes that were measured on the same paths.
+
+use hecs::World;
+
+use super::settled::SettledScene;
+use super::{enclosed, footprint, params, projection, sensors, uncovered};
+use crate::document::Sun;
+use crate::extract::Stage;
+use crate::products::{Context, Report, SensorReport};
+
+/// What all scenes of a run have in common.
+pub(super) struct CommonResults<'a> {
+    pub(super) world: &'a World,
+    pub(super) stage: &'a Stage,
+    pub(super) context: &'a Context,
+    /// Reports of the sensors, of the bands of all scenes.
+    pub(super) sensors: &'a [SensorReport],
+    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
+    pub(super) stages: Vec<(String, f64)>,
+    pub(super) seconds: f64,
+}
+
+/// A report for each scene. Time is shared evenly among them; rays and samples are those that each result is made
+/// of, and so those of all.
+pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Vec<Report> {
+    let count = scenes.len();
+    let share = 1.0 / count as f64;
+    let warnings = common_warnings(common);
+    let report = |(index, settled): (usize, &SettledScene)| {
+        let SettledScene { scene, context, .. } = settled;
+        let sensors: Vec<SensorReport> =
+            common.sensors.iter().map(|sensor| of_scene(sensor, index, count)).collect();
+        Report {
+            projection: projection(common.world),
+            scene: scene.title.clone(),
+            hash: settled.hash.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            seed: scene.transport.seed,
+            seconds: common.seconds * share,
+            rays: sensors.iter().map(|report| report.rays).sum(),
+            bands: context.bands.clone(),
+            wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
+            irradiance: context.irradiance.clone(),
+            stages: common.stages.iter().map(|(name, s)| (name.clone(), s * share)).collect(),
+            skipped: settled.skipped.clone(),
+            notes: [&*settled.notes, &*common.notes].concat(),
+            warnings: [&*settled.warnings, &*warnings].concat(),
+            sensors,
+            params: params(scene),
+            sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
+            source: None,
+        }
+    };
+    scenes.iter().enumerate().map(report).collect()
+}
+
+/// Report of one scene from that of all.
+fn of_scene(report: &SensorReport, scene: usize, scenes: usize) -> SensorReport {
+    SensorReport {
+        name: report.name.clone(),
+        products: report.products.iter().map(|one| one.of_scene(scene, scenes)).collect(),
+        seconds: report.seconds / scenes as f64,
+        ended_by: report.ended_by.clone(),
+        ..*report
+    }
+}
+
+/// Warnings about the paths that all scenes share.
+fn common_warnings(common: &CommonResults<'_>) -> Vec<String> {
+    let CommonResults { world, stage, context, .. } = common;
+    let sensors = sensors::in_order(world);
+    let enclosed = enclosed::warnings(&sensors, stage);
+    enclosed
+        .iter()
+        .map(super::failure::one_line)
+        .chain(footprint::warnings(&sensors, stage))
+        .chain(uncovered::warning(stage, context))
+        .chain(unbalanced(common.sensors))
+        .chain(common.warnings.iter().cloned())
+        .collect()
+}
+
+/// Fraction of the incident energy that the rounding of f64 may lose.
+const BALANCE: f64 = 1e-9;
+
+/// Warnings about sensors whose energy balance does not close.
+fn unbalanced(reports: &[SensorReport]) -> impl Iterator<Item = String> {
+    let off = |report: &&SensorReport| report.energy_imbalance.is_some_and(|off| off > BALANCE);
+    reports.iter().filter(off).map(|report| {
+        let off = report.energy_imbalance.unwrap_or(f64::NAN);
+        format!(
+            "sensors.{}: {off:.1e} of the energy is not accounted for: this is a bug of sunfleck",
+            report.name
+        )
+    })
+}
