@@ -74,16 +74,50 @@ impl CostEstimate {
 pub(super) struct PilotRun {
     cost: CostEstimate,
     start: Start,
+    /// Number of partitions of the measurement, of which it traces one.
+    partitions: u32,
+    /// Its duration, s.
+    duration: f64,
     forecast: OnceLock<Forecast>,
 }
 
 /// Duration of a pilot run, s.
 const PILOT_SECONDS: f64 = 1.0;
 
+/// Duration of a pilot run that nothing follows, s.
+const PILOT_SECONDS_ALONE: f64 = 0.5;
+
+/// Tiles of an image that a forecast traces at least.
+const PILOT_TILES: usize = 64;
+
 impl PilotRun {
     /// Pilot run of a measurement that starts, or is resumed, at `start`.
     pub(super) const fn new(cost: CostEstimate, start: Start) -> Self {
-        Self { cost, start, forecast: OnceLock::new() }
+        Self { cost, start, partitions: 1, duration: PILOT_SECONDS, forecast: OnceLock::new() }
+    }
+
+    /// Pilot run that nothing follows: of some of the tiles, if it is an image's and ends after a number of samples.
+    pub(super) fn alone(
+        cost: CostEstimate,
+        start: Start,
+        measurement: &mut dyn Measurement,
+        is_fixed: bool,
+    ) -> Self {
+        let films = measurement.films();
+        let tiles = films.iter().map(|paced| paced.film.units()).min().unwrap_or(0);
+        // Odd, so that the tiles are not those of one column.
+        let partitions = if is_fixed { (tiles / PILOT_TILES).saturating_sub(1) | 1 } else { 1 };
+        let partition = Partition { index: 0, count: partitions as u32 };
+        for paced in films {
+            paced.film.restrict(partition);
+        }
+        let duration = PILOT_SECONDS_ALONE;
+        Self { partitions: partition.count, duration, ..Self::new(cost, start) }
+    }
+
+    /// Forecast for a measurement whose partition took this time, s.
+    pub(super) fn forecast_of(&self, seconds: f64) -> Forecast {
+        self.cost.forecast(seconds * f64::from(self.partitions))
     }
 
     /// Samples of each randomisation per second since the start.
@@ -93,12 +127,12 @@ impl PilotRun {
 
     /// Longest time of a round, s.
     pub(super) fn longest_round(&self) -> f64 {
-        if self.forecast.get().is_none() { PILOT_SECONDS } else { f64::INFINITY }
+        if self.forecast.get().is_none() { self.duration } else { f64::INFINITY }
     }
 
     /// Returns whether the pilot run has taken its time and has no forecast yet.
     pub(super) fn is_over(&self, seconds: f64) -> bool {
-        seconds - self.start.seconds >= PILOT_SECONDS && self.forecast.get().is_none()
+        seconds - self.start.seconds >= self.duration && self.forecast.get().is_none()
     }
 
     /// Estimates the cost of the measurement up to `end` samples at the pace so far; `None` if the end is not finite. The
@@ -106,7 +140,7 @@ impl PilotRun {
     pub(super) fn estimate(&self, samples: f64, seconds: f64, end: f64) -> Option<Forecast> {
         let remaining = (end - self.start.samples as f64) / self.pace(samples, seconds);
         let all = self.start.seconds + remaining;
-        all.is_finite().then(|| *self.forecast.get_or_init(|| self.cost.forecast(all)))
+        all.is_finite().then(|| *self.forecast.get_or_init(|| self.forecast_of(all)))
     }
 
     /// Estimate, if there is one.

@@ -56,6 +56,7 @@ pub use sweep::SweepRun;
 use checkpoint::CheckpointStore;
 use clock::Clock;
 use pool::in_pool;
+use provenance::FileHashes;
 use reading::{folder_of, read};
 use reports::{CommonResults, reports};
 use sensors::MeasureContext;
@@ -121,10 +122,11 @@ fn run_in(
     let mut clock = Clock::start();
     options.checkpoint.as_ref().map_or(Ok(()), Checkpoint::try_file)?;
     progress.stage("loading");
-    let mut settled = SettledScene::new(world, scene.clone())?;
+    let mut hashes = FileHashes::default();
+    let mut settled = SettledScene::new(world, scene.clone(), &mut hashes)?;
     // Parts that were traced with some sensors are united with those.
     if let Some(chosen) = sensors_of_parts(scene, options, &settled.files)? {
-        settled = SettledScene::new(world, chosen)?;
+        settled = SettledScene::new(world, chosen, &mut hashes)?;
     }
     let mut store = open_store(&settled.scene, &settled.files, options)?;
     clock.lap("spawn");

@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::Failure;
@@ -6,15 +7,23 @@ use crate::files;
 
 /// Hash of a scene as it was resolved and of the content of each file that it reads, hexadecimal.
 /// Equal hashes, versions and seeds give equal results.
-pub(super) fn hash(scene: &Scene, files: &[PathBuf]) -> Result<String, Failure> {
-    Ok(scene_hash(scene, files)?.to_hex().to_string())
+pub(super) fn hash(
+    scene: &Scene,
+    files: &[PathBuf],
+    known: &mut FileHashes,
+) -> Result<String, Failure> {
+    Ok(scene_hash(scene, files, known)?.to_hex().to_string())
 }
 
-fn scene_hash(scene: &Scene, files: &[PathBuf]) -> Result<blake3::Hash, Failure> {
+fn scene_hash(
+    scene: &Scene,
+    files: &[PathBuf],
+    known: &mut FileHashes,
+) -> Result<blake3::Hash, Failure> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene.resolved().to_ron().as_bytes());
     for path in files {
-        hasher.update(content(path)?.as_bytes());
+        hasher.update(known.of(path)?.as_bytes());
     }
     Ok(hasher.finalize())
 }
@@ -36,12 +45,23 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
             Sensor::Photons(sensor) => (sensor.per_m2, sensor.until) = (1.0, None),
         }
     }
-    Ok(*scene_hash(&scene, files)?.as_bytes())
+    Ok(*scene_hash(&scene, files, &mut FileHashes::default())?.as_bytes())
 }
 
-/// Hash of what a file holds.
-pub(super) fn content(path: &Path) -> Result<blake3::Hash, Failure> {
-    let error = |source| Failure::Read { path: path.to_owned(), source };
-    let file = files::open(path).map_err(error)?;
-    Ok(blake3::Hasher::new().update_reader(file).map_err(error)?.finalize())
+/// Hashes of what files hold, by path: each file is read once for all scenes that name it.
+#[derive(Default)]
+pub(super) struct FileHashes(HashMap<PathBuf, blake3::Hash>);
+
+impl FileHashes {
+    /// Hash of what a file holds.
+    pub(super) fn of(&mut self, path: &Path) -> Result<blake3::Hash, Failure> {
+        if let Some(hash) = self.0.get(path) {
+            return Ok(*hash);
+        }
+        let error = |source| Failure::Read { path: path.to_owned(), source };
+        let file = files::open(path).map_err(error)?;
+        let hash = blake3::Hasher::new().update_reader(file).map_err(error)?.finalize();
+        self.0.insert(path.to_owned(), hash);
+        Ok(hash)
+    }
 }

@@ -56,7 +56,11 @@ pub(super) fn measure_until(
     assert!(!convergence.until.is_empty(), "a measurement has a stop criterion");
     let cost = CostEstimate::new(measurement, store);
     let start = restore(name, measurement, store)?;
-    let pilot = PilotRun::new(cost, start);
+    let pilot = if is_pilot_only {
+        PilotRun::alone(cost, start, measurement, convergence.is_fixed())
+    } else {
+        PilotRun::new(cost, start)
+    };
     let (clock, done, check) = (Instant::now(), start.samples, None);
     let mut rounds =
         Rounds { name, convergence, progress, is_pilot_only, pilot, start, clock, done, check };
@@ -74,10 +78,11 @@ pub(super) fn measure_until(
         rounds.save(measurement, store, seconds, criterion.is_some());
         if let Some(criterion) = criterion {
             progress.sensor(name, 1.0);
-            let is_whole = store.share() == Partition::ALL;
+            let is_whole = store.share() == Partition::ALL && !is_pilot_only;
             let products = if is_whole { measurement.products() } else { Vec::new() };
             let errors = rounds.errors().map_or_else(Vec::new, <[_]>::to_vec);
-            let forecast = rounds.pilot.forecast().unwrap_or_else(|| cost.forecast(seconds));
+            let forecast =
+                rounds.pilot.forecast().unwrap_or_else(|| rounds.pilot.forecast_of(seconds));
             return Ok(MeasurementEnd { products, criterion, errors, seconds, forecast });
         }
         let can_grow = measurement.films().iter().all(|paced| paced.film.can_grow().is_ok());

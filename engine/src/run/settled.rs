@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::provenance::FileHashes;
 use super::scene_world::SceneWorld;
 use super::setting::context;
 use super::{Failure, check_scene, failure, provenance};
@@ -28,7 +29,11 @@ impl SettledScene {
     ///
     /// # Errors
     /// All errors of the scene.
-    pub(super) fn new(world: &mut SceneWorld, scene: Scene) -> Result<Self, Failure> {
+    pub(super) fn new(
+        world: &mut SceneWorld,
+        scene: Scene,
+        hashes: &mut FileHashes,
+    ) -> Result<Self, Failure> {
         check_scene(&scene)?;
         world.set(&scene).map_err(Failure::Problems)?;
         let optics = SceneOptics::from_world(&world.world, scene.bands.len());
@@ -36,7 +41,7 @@ impl SettledScene {
         let files = messages.files();
         Ok(Self {
             context: context(&scene, &optics),
-            hash: provenance::hash(&scene, &files)?,
+            hash: provenance::hash(&scene, &files, hashes)?,
             skipped: messages.skipped().cloned().collect(),
             notes: messages.notes().cloned().collect(),
             warnings: messages.diagnostics().map(failure::one_line).collect(),

@@ -1,13 +1,13 @@
 //! A scene at many values of its parameters: what does not change is built once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use super::points::run_points;
+use super::points::PointRun;
 use super::pool::in_pool;
-use super::provenance::content;
+use super::provenance::FileHashes;
 use super::reading::{choose_sensors, folder_of, sound};
 use super::scene_world::SceneWorld;
 use super::{Failure, Options, Progress, day, params, scene_source};
@@ -31,6 +31,7 @@ pub struct SweepRun {
     groups: Vec<Vec<usize>>,
     suns: Vec<Option<Sun>>,
     world: SceneWorld,
+    hashes: FileHashes,
 }
 
 impl SweepRun {
@@ -47,24 +48,28 @@ impl SweepRun {
             return Err(Failure::Sweep(text));
         };
         let sweep = sweep.fixed(&options.document.set);
-        let mut contents = HashMap::new();
+        let mut hashes = FileHashes::default();
         let mut points = Vec::with_capacity(sweep.len());
         let mut likeness = Vec::with_capacity(sweep.len());
         let mut suns = Vec::with_capacity(sweep.len());
         for index in 0..sweep.len() {
             let params = sweep.point(index);
             let mut point = SweepPoint { params, key: String::new(), night: None };
-            let found = look_at(file, &at(options, &point), &mut contents);
+            let found = look_at(file, &at(options, &point), &mut hashes);
             let found = found.map_err(|source| wrong_at(&point, source))?;
             (point.key, point.night) = (found.key, found.night);
             points.push(point);
             suns.push(found.sun);
             likeness.push(found.likeness);
         }
-        let groups = groups(&likeness, scene.bands.len());
+        let mut names = HashSet::new();
+        // A list may hold a value twice.
+        let is_new = |index: &usize| names.insert(points[*index].name());
+        let distinct: Vec<usize> = (0..points.len()).filter(is_new).collect();
+        let groups = groups(&distinct, &likeness, scene.bands.len());
         let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, scene, points, groups, suns, world })
+        Ok(Self { file, options, scene, points, groups, suns, world, hashes })
     }
 
     /// All points, the last parameter fastest.
@@ -113,9 +118,9 @@ impl SweepRun {
             let params = points[0].params.clone();
             return Ok(vec![Report { notes: vec![why.to_owned()], params, ..self.report() }]);
         }
-        let mut reports = in_pool(&self.options, || {
-            run_points(&mut self.world, &self.file, &self.options, &points, progress)
-        })?;
+        let Self { file, options, world, hashes, .. } = self;
+        let mut reports =
+            in_pool(options, || PointRun { world, hashes, file, options }.run(&points, progress))?;
         for (report, point) in reports.iter_mut().zip(&points) {
             if let Some(Night::WithoutSun(warning)) = &point.night {
                 report.warnings.insert(0, warning.clone());
@@ -165,9 +170,6 @@ pub(super) fn wrong_at(point: &SweepPoint, source: Failure) -> Failure {
     Failure::Point { point: point.name(), source: Box::new(source) }
 }
 
-/// Content hashes of files by path, so that each file is read once.
-type Contents = HashMap<PathBuf, blake3::Hash>;
-
 /// Properties of a point that need no run.
 struct Glance {
     /// Hash of all that decides its results.
@@ -190,11 +192,12 @@ struct Likeness {
 const MOST_BANDS: usize = 1 << 14;
 
 /// Groups of points that are traced on the same paths; those of the same geometry follow each other.
-fn groups(likeness: &[Likeness], bands: usize) -> Vec<Vec<usize>> {
+fn groups(points: &[usize], likeness: &[Likeness], bands: usize) -> Vec<Vec<usize>> {
     let most = (MOST_BANDS / bands.max(1)).max(1);
     let mut of_geometry: IndexMap<blake3::Hash, Vec<Vec<usize>>> = IndexMap::new();
     let mut open: HashMap<(blake3::Hash, blake3::Hash), usize> = HashMap::new();
-    for (index, one) in likeness.iter().enumerate() {
+    for &index in points {
+        let one = likeness[index];
         let groups = of_geometry.entry(one.geometry).or_default();
         let place = one.paths.and_then(|paths| open.get(&(one.geometry, paths)).copied());
         match place.filter(|&place| groups[place].len() < most) {
@@ -228,7 +231,7 @@ fn read_point(file: &Path, options: &Options) -> Result<(Reading, Option<Night>)
 }
 
 /// Reads a scene at a point.
-fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Glance, Failure> {
+fn look_at(file: &Path, options: &Options, hashes: &mut FileHashes) -> Result<Glance, Failure> {
     let (reading, night) = read_point(file, options)?;
     let params = ScenePath::from("params");
     let swept: Vec<_> = options.document.point.iter().map(|(name, _)| params.name(name)).collect();
@@ -241,26 +244,20 @@ fn look_at(file: &Path, options: &Options, contents: &mut Contents) -> Result<Gl
     let mut hasher = blake3::Hasher::new();
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
     hasher.update(&options.quality.to_bits().to_le_bytes());
-    hasher.update(reading.scene.resolved().to_ron().as_bytes());
-    for (_, named) in reading.scene.files() {
-        let path = folder_of(file).join(named);
-        let hash = match contents.get(&path) {
-            Some(hash) => *hash,
-            // The run reports missing files with their places.
-            None => match content(&path) {
-                Ok(hash) => *contents.entry(path).or_insert(hash),
-                Err(_not_there) => continue,
-            },
-        };
+    let scene = Scene { sweep: None, ..reading.scene };
+    hasher.update(scene.resolved().to_ron().as_bytes());
+    for (_, named) in scene.files() {
+        // The run reports missing files with their places.
+        let Ok(hash) = hashes.of(&folder_of(file).join(named)) else { continue };
         hasher.update(hash.as_bytes());
     }
-    let geometry = blake3::hash(geometry_of(&reading.scene).to_ron().as_bytes());
+    let geometry = blake3::hash(geometry_of(&scene).to_ron().as_bytes());
     let is_dark = matches!(night, Some(Night::Dark(_)));
-    let paths = paths_of(&reading.scene).filter(|_| !is_dark);
+    let paths = paths_of(&scene).filter(|_| !is_dark);
     let paths = paths.map(|paths| blake3::hash(paths.to_ron().as_bytes()));
     let key = hasher.finalize().to_hex().to_string();
     let likeness = Likeness { geometry, paths };
-    Ok(Glance { key, likeness, sun: reading.scene.sun, night })
+    Ok(Glance { key, likeness, sun: scene.sun, night })
 }
 
 /// Scene without light, spectra and sensors: points that are equal in it follow each other, so that their geometry is

@@ -9,6 +9,7 @@ use crate::components::{MaterialId, PrototypeId, SceneExtents};
 use crate::document::{
     Band, Boundary, Diagnostic, Frame, Map, NamePattern, ScenePath, Spectrum, unknown_name,
 };
+use crate::spectral::prospect::{LeafChemistry, LeafSpectrum};
 
 /// Data of a scene that belongs to no entity: settings, entities by name, and messages.
 #[derive(Clone, Debug)]
@@ -58,6 +59,8 @@ pub struct Resources {
     pub changes: Changes,
     /// Messages of the systems.
     pub messages: Messages,
+    /// The leaf that PROSPECT has computed last: its reflectance and transmittance are asked for one after the other.
+    pub(super) leaf: Option<(LeafChemistry, LeafSpectrum)>,
 }
 
 impl Resources {
@@ -86,6 +89,7 @@ impl Resources {
             extents: SceneExtents::default(),
             changes: Changes::NONE,
             messages: Messages::default(),
+            leaf: None,
         }
     }
 

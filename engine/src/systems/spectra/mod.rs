@@ -154,8 +154,15 @@ fn prospect_means(
         protein: leaf.protein_g_cm2,
         carbon: leaf.carbon_g_cm2,
     };
-    let leaf = leaf_spectrum(&chemistry).map_err(|error| Box::new(problem(path, &error)))?;
-    match quantity {
+    let known = resources.leaf.take().filter(|(known, _)| *known == chemistry);
+    let (_, leaf) = match known {
+        Some(known) => known,
+        None => {
+            let leaf = leaf_spectrum(&chemistry);
+            (chemistry, leaf.map_err(|error| Box::new(problem(path, &error)))?)
+        }
+    };
+    let means = match quantity {
         Quantity::Reflectance => mean_over_bands(&leaf.reflectance, quantity, path, resources),
         Quantity::Transmittance => mean_over_bands(&leaf.transmittance, quantity, path, resources),
         Quantity::Irradiance | Quantity::Parameter { .. } => {
@@ -163,7 +170,9 @@ fn prospect_means(
             let help = "write AstmG173, Constant, Bands, Points or Table";
             Err(Box::new(Diagnostic::error(path, what).help(help)))
         }
-    }
+    };
+    resources.leaf = Some((chemistry, leaf));
+    means
 }
 
 /// The sun's irradiance of ASTM G173 in each band that holds sunlight, 0 in others.

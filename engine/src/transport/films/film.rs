@@ -14,6 +14,9 @@ pub trait Film {
     /// Restricts it to a partition of the samples.
     fn restrict(&mut self, partition: Partition);
 
+    /// Number of units that partitions share out: randomisations, or tiles of an image.
+    fn units(&self) -> usize;
+
     /// Writes the state of its partition; only where a round may end (see [`Schedule`]).
     ///
     /// # Errors

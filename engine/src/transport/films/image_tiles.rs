@@ -261,6 +261,10 @@ impl Film for ImageTiles<'_> {
         self.partition = partition;
     }
 
+    fn units(&self) -> usize {
+        count(self.size) as usize
+    }
+
     fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         save_u64(out, &[self.rays])?;
         save_f64(out, self.image_sums.values())?;

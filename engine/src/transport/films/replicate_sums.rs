@@ -177,6 +177,10 @@ impl Film for ReplicateSums<'_> {
         self.partition = partition;
     }
 
+    fn units(&self) -> usize {
+        RANDOMISATIONS as usize
+    }
+
     fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         save_u64(out, &[self.rays])?;
         let Store::All(rows) = &self.store else { return Ok(()) };
