@@ -37,6 +37,7 @@ impl PointRun<'_> {
         let Self { world, hashes, file, options } = self;
         let mut clock = Clock::start();
         let mut settled = Vec::with_capacity(points.len());
+        let mut first = None;
         progress.stage("loading");
         for point in points {
             let reading = read(file, &at(options, point))?;
@@ -45,6 +46,7 @@ impl PointRun<'_> {
             let scene = SettledScene::new(world, scene, hashes)
                 .map_err(|failure| wrong_at(point, failure.with_source(&reading.source)))?;
             settled.push(scene);
+            first.get_or_insert((point, reading.source));
         }
         clock.lap("spawn");
         let mut measure = || {
@@ -58,7 +60,10 @@ impl PointRun<'_> {
             }
             Ok(reports)
         };
-        measure().map_err(|failure| wrong_at(&points[0], failure))
+        measure().map_err(|failure: Failure| match &first {
+            Some((point, source)) => wrong_at(point, failure.with_source(source)),
+            None => failure,
+        })
     }
 }
 
