@@ -1,5 +1,5 @@
 use super::{SceneOptics, Stage};
-use crate::accel::Hit;
+use crate::accel::{Hit, Ray};
 use crate::components::MaterialId;
 use crate::sampling::Sampler;
 use crate::scattering::{SceneSpectra, SpectrumId};
@@ -53,14 +53,18 @@ impl Thermal {
         Some(Self { bands, sky, surfaces })
     }
 
-    /// Radiance of the black body at a point of a surface, and the number of rays that it took to find out
-    /// whether the sun is visible from there. It is the same on both sides: a leaf is too thin for two
-    /// temperatures.
-    pub fn black_body(&self, stage: &Stage, hit: &Hit, sampler: &mut Sampler) -> (SpectrumId, u64) {
+    /// Shadow ray towards the sun from a point of a surface, if its temperature depends on whether the sun is visible
+    /// from there. It is the same on both sides: a leaf is too thin for two temperatures.
+    pub fn sun_ray(&self, stage: &Stage, hit: &Hit, sampler: &mut Sampler) -> Option<Ray> {
+        let depends_on_sun = self.surfaces[hit.surface as usize].depends_on_sun;
+        let sun = stage.light.sun.as_ref().filter(|_| depends_on_sun)?;
+        Some(hit.leave(sun.towards(sampler)))
+    }
+
+    /// Radiance of the black body of a surface.
+    #[must_use]
+    pub fn black_body(&self, hit: &Hit, is_sunlit: bool) -> SpectrumId {
         let body = &self.surfaces[hit.surface as usize];
-        let sun = stage.light.sun.as_ref().filter(|_| body.depends_on_sun);
-        let is_sunlit =
-            sun.is_some_and(|sun| !stage.geometry.occluded(&hit.leave(sun.towards(sampler))));
-        (if is_sunlit { body.sunlit } else { body.shaded }, sun.is_some().into())
+        if is_sunlit { body.sunlit } else { body.shaded }
     }
 }

@@ -8,6 +8,7 @@
 //! | `camera` | points of an image to rays |
 //! | `films` | images and sums with their errors, and how samples are scheduled |
 //! | `sensors` | the system and the film of each kind of sensor |
+//! | `ray_queue.rs` | rays of many paths or packets, traced together |
 //! | `roulette.rs`, `plane.rs` | Russian roulette; the plane that reflected light leaves through |
 //! | `scattering_order.rs`, `band_blocks.rs` | parts of the light by order; bands that are evaluated at a time |
 //!
@@ -20,6 +21,7 @@ mod films;
 mod paths;
 mod photons;
 mod plane;
+mod ray_queue;
 mod reference;
 mod roulette;
 mod scattering_order;
@@ -29,13 +31,14 @@ pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,
 };
 pub use films::{Film, ImageOutcome, ImageTiles, Partition, ReplicateSums, Schedule};
-pub use paths::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS, TracedRay};
+pub use paths::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS};
 pub use photons::{
     AbsorbedCounter, AlbedoCounter, Cell, CellCounter, ConeCounter, Counter, EnergyCounter,
     FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightBeside, OrderCounter,
-    PacketOptions, PhotonKind, Tally, ViewCounter, photon_film,
+    PacketOptions, PhotonKind, Recorder, ViewCounter, photon_film,
 };
 pub use plane::ReferencePlane;
+pub use ray_queue::TracedRay;
 pub use roulette::RouletteThreshold;
 pub use scattering_order::{ScatteringOrder, spectrum_count};
 pub use sensors::{

@@ -8,7 +8,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::band_blocks::Block;
-use super::paths::{PathTracer, RayQueue, RayResults};
+use super::paths::PathTracer;
+use super::ray_queue::{RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};

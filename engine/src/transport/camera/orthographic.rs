@@ -124,14 +124,6 @@ impl OrthographicCamera {
         stage.area() / self.pixel_area()
     }
 
-    /// Returns whether any pixel shows `point` or, where the scene is periodic, one of its copies.
-    #[must_use]
-    pub fn shows(&self, point: DVec3, stage: &Stage) -> bool {
-        let mut is_shown = false;
-        self.for_each_pixel(point, stage, |_| is_shown = true);
-        is_shown
-    }
-
     /// Calls `f` with each pixel (row by row from the top left) that shows `point` or, where the
     /// scene is periodic, one of its copies.
     pub fn for_each_pixel(&self, point: DVec3, stage: &Stage, mut f: impl FnMut(usize)) {

@@ -5,12 +5,13 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::history::History;
-use super::tracer::{PathTracer, RayQueue, RayResults};
+use super::tracer::PathTracer;
 use crate::accel::{Hit, Ray};
 use crate::extract::{Light, Stage};
 use crate::sampling::{Key, Sampler};
 use crate::scattering::{Interaction, Lobe};
 use crate::transport::band_blocks::{BLOCK, Block};
+use crate::transport::ray_queue::{RayQueue, RayResults};
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 use crate::transport::scattering_order::{ScatteringOrder, spectrum_count};
 
@@ -109,7 +110,7 @@ impl PathTracer for BackwardPath {
 
     fn advance(&mut self, stage: &Stage, results: RayResults<'_>, queue: &mut RayQueue) {
         if let (Some(f), true, Some(beam)) =
-            (self.next_event.take(), results.is_lit, &stage.light.beam)
+            (self.next_event.take(), results.is_lit(), &stage.light.beam)
         {
             self.history.light(f, beam.share, 1.0);
         }

@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::tracer::{PathTracer, RayQueue, RayResults};
+use super::tracer::PathTracer;
 use crate::accel::Ray;
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
 use crate::statistics::Sums;
 use crate::transport::band_blocks::Block;
+use crate::transport::ray_queue::{RayQueue, RayResults};
 
 /// Number of columns: the four components in the order of their numbers (1 sunlit ground, 2 sunlit canopy,
 /// 3 shaded ground, 4 shaded canopy) and gaps.
@@ -66,11 +67,10 @@ impl PathTracer for FirstHitPath {
     }
 
     fn advance(&mut self, stage: &Stage, results: RayResults<'_>, queue: &mut RayQueue) {
-        let RayResults { is_lit, hit } = results;
         if let Some(is_ground) = self.queued_at_ground {
-            return self.count(is_lit, is_ground);
+            return self.count(results.is_lit(), is_ground);
         }
-        let Some(hit) = hit.filter(|hit| !stage.is_cut(hit)) else { return };
+        let Some(hit) = results.hit.filter(|hit| !stage.is_cut(hit)) else { return };
         self.has_hit = true;
         let is_ground = stage.is_ground(hit);
         let sun = stage.light.sun.as_ref().map(|sun| sun.towards(&mut self.sampler));

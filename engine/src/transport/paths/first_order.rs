@@ -6,13 +6,14 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::history::History;
-use super::tracer::{PathTracer, RayQueue, RayResults};
+use super::tracer::PathTracer;
 use crate::accel::Ray;
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler, cosine_direction};
 use crate::scattering::SpectrumId;
 use crate::transport::ScatteringOrder;
 use crate::transport::band_blocks::{BLOCK, Block};
+use crate::transport::ray_queue::{RayQueue, RayResults};
 
 /// Radiance over irradiance, `L / E` in sr⁻¹, of light that was scattered exactly once: light of sun and sky
 /// that the first surface along a ray sends back. There is no random walk, no choice of lobes and no roulette:

@@ -12,5 +12,4 @@ pub(super) use first_hit::FirstHitPath;
 pub use first_hit::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS};
 pub(super) use first_order::FirstOrderPath;
 pub(super) use thermal::ThermalPath;
-pub use tracer::TracedRay;
-pub(super) use tracer::{PathBatch, PathTracer, RayQueue, RayResults, write_each};
+pub(super) use tracer::{PathBatch, PathTracer, write_each};

@@ -3,11 +3,13 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::history::History;
-use super::tracer::{PathTracer, RayQueue, RayResults};
+use super::tracer::PathTracer;
 use crate::accel::{Hit, Ray};
-use crate::extract::{Stage, Thermal};
+use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
+use crate::scattering::{Interaction, Lobe};
 use crate::transport::band_blocks::Block;
+use crate::transport::ray_queue::{RayQueue, RayResults};
 use crate::transport::roulette::{RouletteThreshold, RussianRoulette, sample_with_roulette};
 
 /// A random walk from the sensor that gathers the radiance that surfaces and the sky emit,
@@ -22,11 +24,14 @@ pub(in crate::transport) struct ThermalPath {
     /// Throughput in the representative bands.
     throughput: Vec<f32>,
     sampler: Sampler,
-    /// Direction of the queued ray.
-    direction: DVec3,
+    /// Pending emission of a surface, whose temperature depends on the shadow ray.
+    emission: Option<(Hit, Lobe)>,
+    /// Pending weight of the continuation ray.
+    continuation: Option<Lobe>,
+    /// Direction of the continuation ray, if one is queued.
+    direction: Option<DVec3>,
     order: u32,
     has_hit: bool,
-    rays: u64,
 }
 
 impl ThermalPath {
@@ -36,19 +41,16 @@ impl ThermalPath {
             history: History::default(),
             throughput: vec![0.0; lanes],
             sampler: Sampler::new(Key::new(0), 0),
-            direction: DVec3::ZERO,
+            emission: None,
+            continuation: None,
+            direction: None,
             order: 0,
             has_hit: false,
-            rays: 0,
         }
     }
 
-    /// Adds the emission of a surface; returns the continuation ray, if the path survives.
-    fn scatter(&mut self, stage: &Stage, thermal: &Thermal, hit: &Hit) -> Option<Ray> {
-        let surface = stage.interaction(hit, -self.direction);
-        let (black_body, rays) = thermal.black_body(stage, hit, &mut self.sampler);
-        self.rays += rays;
-        self.history.light(surface.absorbed_fraction(), black_body, 1.0);
+    /// Continuation ray, if the path survives Russian roulette.
+    fn scatter(&mut self, stage: &Stage, hit: &Hit, surface: &Interaction<'_>) -> Option<Ray> {
         if self.order == stage.rules.max_order {
             return None;
         }
@@ -60,9 +62,8 @@ impl ThermalPath {
             initial: 1.0,
         };
         let u = self.sampler.next_4d();
-        let sample =
-            sample_with_roulette(&surface, &roulette, self.order, &mut self.throughput, u)?;
-        self.history.scatter(sample.weight);
+        let sample = sample_with_roulette(surface, &roulette, self.order, &mut self.throughput, u)?;
+        self.continuation = Some(sample.weight);
         Some(hit.leave(sample.wi))
     }
 }
@@ -70,7 +71,8 @@ impl ThermalPath {
 impl PathTracer for ThermalPath {
     fn start(&mut self, ray: &Ray, sampler: Sampler) {
         self.history.clear();
-        (self.sampler, self.direction) = (sampler, ray.direction);
+        (self.sampler, self.direction) = (sampler, Some(ray.direction));
+        (self.emission, self.continuation) = (None, None);
         (self.order, self.has_hit) = (0, false);
     }
 
@@ -80,8 +82,15 @@ impl PathTracer for ThermalPath {
             self.throughput.copy_from_slice(stage.models.spectra.representatives(thermal.bands));
             self.history.scatter(thermal.bands.into());
         }
+        if let Some((hit, emitted)) = self.emission.take() {
+            self.history.light(emitted, thermal.black_body(&hit, results.is_lit()), 1.0);
+        }
+        let Some(direction) = self.direction.take() else { return };
+        if let Some(weight) = self.continuation.take() {
+            self.history.scatter(weight);
+        }
         let Some(hit) = results.hit else {
-            if self.has_hit && self.direction.z > 0.0 {
+            if self.has_hit && direction.z > 0.0 {
                 self.history.see(thermal.sky, 1.0);
             }
             return;
@@ -90,8 +99,16 @@ impl PathTracer for ThermalPath {
             return;
         }
         self.has_hit = true;
-        if let Some(ray) = self.scatter(stage, thermal, hit) {
-            self.direction = ray.direction;
+        let surface = stage.interaction(hit, -direction);
+        let emitted = surface.absorbed_fraction();
+        if let Some(ray) = thermal.sun_ray(stage, hit, &mut self.sampler) {
+            queue.push_shadow(ray);
+            self.emission = Some((*hit, emitted));
+        } else {
+            self.history.light(emitted, thermal.black_body(hit, false), 1.0);
+        }
+        if let Some(ray) = self.scatter(stage, hit, &surface) {
+            self.direction = Some(ray.direction);
             queue.push_closest(ray);
         }
     }
@@ -111,9 +128,5 @@ impl PathTracer for ThermalPath {
     fn write_radiance(&self, stage: &Stage, bands: Range<usize>, radiance: &mut [Block]) {
         let [radiance, ..] = radiance else { return };
         self.history.radiance(&stage.models, self.history.len(), bands, radiance);
-    }
-
-    fn rays(&self) -> u64 {
-        self.rays
     }
 }

@@ -1,8 +1,9 @@
 use glam::DVec3;
 
 use super::counters::{Counter, Event, Visited};
-use super::packet::{PacketOptions, photon_film};
-use super::tally::{Tally, WeightFactor};
+use super::packet_film::{PacketOptions, photon_film};
+use super::record::Recorder;
+use super::tally::WeightFactor;
 use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::transport::{Film, LightSource, PhotonKind, ReferencePlane, RouletteThreshold};
@@ -74,7 +75,7 @@ impl Counter for BesideCounter {
         Self::CELLS
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         let (cells, is_beside) = match event {
             Event::Arrival { hit, surface, visited: Visited { order: 0, .. }, .. } => {
                 ([Self::INCOMING, Self::INCOMING_BESIDE], self.is_beside(hit.point, surface.wo()))
@@ -82,13 +83,12 @@ impl Counter for BesideCounter {
             Event::Escape { ray, visited: Visited { order: 1.., .. } } if ray.direction.z > 0.0 => {
                 ([Self::OUTGOING, Self::OUTGOING_BESIDE], self.is_beside(ray.origin, ray.direction))
             }
-            _ => return 0,
+            _ => return,
         };
         let [all, beside] = cells;
-        tally.add(all, WeightFactor::One, 1.0);
+        recorder.add(all, WeightFactor::One, 1.0);
         if is_beside {
-            tally.add(beside, WeightFactor::One, 1.0);
+            recorder.add(beside, WeightFactor::One, 1.0);
         }
-        0
     }
 }

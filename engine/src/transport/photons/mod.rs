@@ -6,6 +6,8 @@ mod hemisphere;
 mod light_beside;
 mod order_counter;
 mod packet;
+mod packet_film;
+mod record;
 mod source;
 mod spectrum_products;
 mod tally;
@@ -18,9 +20,8 @@ pub use counters::{
 pub use hemisphere::{Cell, Hemisphere};
 pub use light_beside::LightBeside;
 pub use order_counter::OrderCounter;
-pub use packet::{PacketOptions, photon_film};
-
-pub use tally::Tally;
+pub use packet_film::{PacketOptions, photon_film};
+pub use record::Recorder;
 
 use super::RouletteThreshold;
 

@@ -1,5 +1,5 @@
 use super::counters::{Counter, Event};
-use super::tally::Tally;
+use super::record::Recorder;
 use crate::extract::Stage;
 use crate::transport::ScatteringOrder;
 
@@ -26,7 +26,7 @@ impl Counter for OrderCounter<'_> {
         self.counter.prepare(stage);
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, stage: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         let part = match event {
             Event::Escape { visited, .. } => {
                 ScatteringOrder::from_order(visited.order, visited.has_met_ground)
@@ -35,8 +35,10 @@ impl Counter for OrderCounter<'_> {
             Event::Arrival { hit, visited, .. } => {
                 ScatteringOrder::from_order(visited.order + 1, stage.is_ground(hit))
             }
-            _ => return 0,
+            _ => return,
         };
-        if part == self.part { self.counter.count(stage, event, tally) } else { 0 }
+        if part == self.part {
+            self.counter.count(stage, event, recorder);
+        }
     }
 }

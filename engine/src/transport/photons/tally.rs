@@ -11,7 +11,7 @@ use crate::transport::band_blocks::blocks;
 /// of several packets to a cell by the same product are added before any band is evaluated. Bands are then
 /// evaluated block by block, so that a block of the products stays in the cache.
 #[derive(Clone, Debug)]
-pub struct Tally<'m> {
+pub(super) struct Tally<'m> {
     models: &'m SurfaceModels,
     products: SpectrumProducts,
     /// The packet's weight: this product times this scale.
@@ -20,8 +20,6 @@ pub struct Tally<'m> {
     /// The factor that was evaluated last: several cells in a row may get the same.
     last: Option<(WeightFactor, Weight)>,
     sums: Vec<Sums>,
-    /// Index of the sums that are added to.
-    current: usize,
 }
 
 /// A product of spectra times a number.
@@ -65,7 +63,7 @@ impl<'m> Tally<'m> {
     pub(super) fn new(models: &'m SurfaceModels, sums: Vec<Sums>) -> Self {
         let products = SpectrumProducts::new(sums.iter().any(|sums| sums.bands() > LANES));
         let (weight, entries) = (Weight::ONE, Vec::new());
-        Self { models, products, weight, entries, last: None, sums, current: 0 }
+        Self { models, products, weight, entries, last: None, sums }
     }
 
     /// Starts a packet with a weight of 1 in every band.
@@ -79,21 +77,16 @@ impl<'m> Tally<'m> {
         self.last = None;
     }
 
-    /// Selects the sums that are added to.
-    pub(super) const fn select(&mut self, sums: usize) {
-        self.current = sums;
-    }
-
-    /// Adds a fraction of the packet's weight, times a scale, to a cell.
+    /// Adds a fraction of the packet's weight, times a scale, to a cell of some of the sums.
     ///
     /// # Panics
     /// If there is no such cell.
-    pub(super) fn add(&mut self, cell: usize, factor: WeightFactor, scale: f64) {
+    pub(super) fn add(&mut self, sums: usize, cell: usize, factor: WeightFactor, scale: f64) {
         let weight = match self.last {
             Some((last, weight)) if last == factor => weight,
             _ => self.evaluate(factor),
         };
-        let (sums, start) = (self.current, self.sums[self.current].start(cell));
+        let start = self.sums[sums].start(cell);
         let weight = Weight { scale: weight.scale * scale, ..weight };
         self.entries.push(Entry { weight, sums, start });
     }
@@ -185,13 +178,11 @@ mod tests {
         for round in 0..rounds {
             tally.start();
             tally.scatter(Lobe::from(a).scaled(2.0));
-            tally.add(0, WeightFactor::One, 1.0);
-            tally.add(1, WeightFactor::Lobe(b.into()), 0.5);
-            tally.select(1);
-            tally.add(0, WeightFactor::Lobe(b.into()), 3.0);
+            tally.add(0, 0, WeightFactor::One, 1.0);
+            tally.add(0, 1, WeightFactor::Lobe(b.into()), 0.5);
+            tally.add(1, 0, WeightFactor::Lobe(b.into()), 3.0);
             tally.scatter(Lobe::from(b).scaled(0.5));
-            tally.add(0, WeightFactor::Complement(c.into()), 1.0);
-            tally.select(0);
+            tally.add(1, 0, WeightFactor::Complement(c.into()), 1.0);
             if round % 2 == 0 {
                 tally.flush(0..bands);
             }
@@ -217,7 +208,7 @@ mod tests {
         let mut tally = Tally::new(&models, vec![Sums::new(1, 20)]);
         tally.start();
         tally.scatter(Lobe::from(SpectrumId::ONE).scaled(3.0));
-        tally.add(0, WeightFactor::One, 1.0);
+        tally.add(0, 0, WeightFactor::One, 1.0);
         tally.flush(17..18);
         let expected: Vec<f64> = (0..20).map(|band| if band == 17 { 3.0 } else { 0.0 }).collect();
         assert_eq!(tally.into_sums()[0].values(), expected);

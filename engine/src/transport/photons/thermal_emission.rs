@@ -1,8 +1,14 @@
-use super::packet::{Packet, SurfaceEmission};
+use glam::DVec3;
+
+use super::counters::{Event, Visited};
+use super::packet::{Packet, PacketSettings, Phase, multiply_by_lobe, report};
 use super::source::PacketSource;
+use crate::accel::{Hit, Ray};
 use crate::extract::{Stage, Thermal};
 use crate::sampling::Sampler;
-use crate::scattering::Lobe;
+use crate::scattering::{Lobe, SpectrumId};
+use crate::transport::PhotonKind;
+use crate::transport::ray_queue::RayQueue;
 
 /// Photon packets that surfaces and the sky emit, in absolute units.
 ///
@@ -22,16 +28,15 @@ use crate::scattering::Lobe;
 pub(super) struct ThermalEmission<'a> {
     stage: &'a Stage,
     thermal: &'a Thermal,
-    source: &'a PacketSource,
     /// Flux density of a radiance of 1.
     scale: f32,
 }
 
 impl<'a> ThermalEmission<'a> {
     /// Emission of a stage; `None` where nothing emits.
-    pub(super) fn new(stage: &'a Stage, source: &'a PacketSource) -> Option<Self> {
+    pub(super) fn new(stage: &'a Stage, source: &PacketSource) -> Option<Self> {
         let thermal = stage.thermal.as_ref()?;
-        Some(Self { stage, thermal, source, scale: source.sky_etendue() as f32 })
+        Some(Self { stage, thermal, scale: source.sky_etendue() as f32 })
     }
 
     /// Weight of a packet from the warmest black body, in the band of its largest radiance.
@@ -42,37 +47,142 @@ impl<'a> ThermalEmission<'a> {
         largest.fold(f32::MIN_POSITIVE, f32::max) * self.scale
     }
 
-    /// Traces all packets that start along one line.
-    pub(super) fn trace(&self, packet: &mut Packet<'a>, sampler: &mut Sampler) {
-        let stage = self.stage;
-        let mut line = self.source.start_anywhere(sampler);
-        let (bands, sky) = (Lobe::from(self.thermal.bands), Lobe::from(self.thermal.sky));
-        packet.trace_from_outside(line, &[bands, sky.scaled(self.scale)], sampler);
-        loop {
-            packet.rays += 1;
-            let Some(hit) = stage.geometry.closest(&line) else { return };
-            if stage.is_cut(&hit) {
-                // The line crosses more of the ground beyond it.
-                line = hit.leave(line.direction);
-                continue;
+    /// Weight of a packet that the sky sends along a line, as a product.
+    pub(super) fn sky_weight(&self) -> [Lobe; 2] {
+        [self.thermal.bands.into(), Lobe::from(self.thermal.sky).scaled(self.scale)]
+    }
+
+    /// Shadow ray towards the sun, where the temperature at a point depends on it.
+    fn sun_ray(&self, hit: &Hit, sampler: &mut Sampler) -> Option<Ray> {
+        self.thermal.sun_ray(self.stage, hit, sampler)
+    }
+}
+
+/// Line along which packets are emitted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EmissionLine {
+    /// Continuation of the line.
+    pub(super) ray: Ray,
+    /// Surface that was crossed last.
+    crossing: Option<Hit>,
+    /// Black body there.
+    black_body: SpectrumId,
+    /// Number of directions in which the surface has still to emit a packet.
+    directions_left: u32,
+}
+
+impl EmissionLine {
+    /// A line that starts along a ray.
+    pub(super) const fn new(ray: Ray) -> Self {
+        Self { ray, crossing: None, black_body: SpectrumId::ZERO, directions_left: 0 }
+    }
+
+    /// Point and direction of the next packet that the last surface emits: against the line, then along it.
+    fn next_emission(&mut self, stage: &Stage) -> Option<(Hit, DVec3)> {
+        let hit = self.crossing?;
+        while self.directions_left > 0 {
+            self.directions_left -= 1;
+            let direction =
+                if self.directions_left > 0 { -self.ray.direction } else { self.ray.direction };
+            // Nothing is below the ground.
+            let is_above = (hit.normal.dot(direction) >= 0.0) == (hit.normal.z >= 0.0);
+            if !stage.is_ground(&hit) || is_above {
+                return Some((hit, direction));
             }
-            let (black_body, rays) = self.thermal.black_body(stage, &hit, sampler);
-            packet.rays += rays;
-            for direction in [-line.direction, line.direction] {
-                // Nothing is below the ground.
-                let is_above = (hit.normal.dot(direction) >= 0.0) == (hit.normal.z >= 0.0);
-                if stage.is_ground(&hit) && !is_above {
-                    continue;
-                }
-                let emission = SurfaceEmission {
-                    hit: &hit,
-                    ray: hit.leave(direction),
-                    emitted: stage.interaction(&hit, direction).absorbed_fraction(),
-                    scale: self.scale,
-                };
-                packet.trace_from_surface(&emission, [bands, black_body.into()], sampler);
-            }
-            line = hit.leave(line.direction);
         }
+        None
+    }
+}
+
+impl Packet {
+    /// Continues the line of emission at the next surface, which emits as soon as its temperature is known.
+    pub(super) fn cross_surface(
+        &mut self,
+        settings: &PacketSettings<'_>,
+        hit: Option<&Hit>,
+        queue: &mut RayQueue,
+    ) -> Phase {
+        let (Some(emission), Some(hit)) = (&settings.emission, hit) else {
+            return Phase::Ended;
+        };
+        self.line.ray = hit.leave(self.line.ray.direction);
+        if emission.stage.is_cut(hit) {
+            // The line crosses more of the ground beyond it.
+            queue.push_closest(self.line.ray);
+            return Phase::Line;
+        }
+        self.line.crossing = Some(*hit);
+        match emission.sun_ray(hit, &mut self.sampler) {
+            Some(ray) => Phase::Sun(self.record.push_shadow(ray, queue)),
+            None => self.emit(settings, false, queue),
+        }
+    }
+
+    /// Starts to emit from the last surface on the line.
+    pub(super) fn emit(
+        &mut self,
+        settings: &PacketSettings<'_>,
+        is_sunlit: bool,
+        queue: &mut RayQueue,
+    ) -> Phase {
+        if let (Some(emission), Some(hit)) = (&settings.emission, &self.line.crossing) {
+            self.line.black_body = emission.thermal.black_body(hit, is_sunlit);
+            self.line.directions_left = 2;
+        }
+        self.emit_next(settings, queue)
+    }
+
+    /// Starts the next packet from the last surface or, after all of them, continues the line.
+    pub(super) fn emit_next(
+        &mut self,
+        settings: &PacketSettings<'_>,
+        queue: &mut RayQueue,
+    ) -> Phase {
+        while let Some((hit, direction)) = self.line.next_emission(settings.stage) {
+            if self.start_from_surface(settings, &hit, direction, queue) {
+                return Phase::Flight;
+            }
+            self.end(settings);
+        }
+        queue.push_closest(self.line.ray);
+        Phase::Line
+    }
+
+    /// Starts a packet that a surface emits with the weight `black_body · emitted · scale`; returns whether it flies.
+    fn start_from_surface(
+        &mut self,
+        settings: &PacketSettings<'_>,
+        hit: &Hit,
+        direction: DVec3,
+        queue: &mut RayQueue,
+    ) -> bool {
+        let PacketSettings { stage, emission, kind, .. } = settings;
+        let Some(ThermalEmission { thermal, scale, .. }) = emission else { return false };
+        let ray = hit.leave(direction);
+        let emitted = stage.interaction(hit, direction).absorbed_fraction().scaled(*scale);
+        let [bands, radiance] = [thermal.bands.into(), self.line.black_body.into()];
+        let is_packet = *kind != PhotonKind::Photon;
+        if is_packet {
+            self.set_weight(settings, &[bands, radiance]);
+            multiply_by_lobe(&mut self.throughput, &stage.models, emitted);
+        } else {
+            self.set_weight(settings, &[bands, radiance, emitted]);
+        }
+        // A photon carries all that is emitted in its band.
+        let emitted_of_weight = if is_packet { emitted } else { Lobe::ONE };
+        let event = Event::Emission {
+            hit,
+            ray: &ray,
+            emitted: emitted_of_weight,
+            scale: *scale,
+            band: self.band,
+            throughput: &self.throughput,
+            sampler: &self.sampler,
+        };
+        report(settings, &mut self.record, queue, &event);
+        self.record.scatter(emitted_of_weight);
+        // It has left a surface once, and has not been scattered.
+        let visited = Visited { order: 1, has_met_ground: stage.is_ground(hit) };
+        self.take_off(settings, ray, visited, queue)
     }
 }

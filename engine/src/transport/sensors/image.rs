@@ -10,8 +10,9 @@ use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
 use crate::statistics::{Replicates, Spread};
 use crate::transport::films::{ImageOutcome, ImageTiles, ReplicateSums};
-use crate::transport::paths::{BackwardPath, FirstOrderPath, PathBatch, ThermalPath, TracedRay};
+use crate::transport::paths::{BackwardPath, FirstOrderPath, PathBatch, ThermalPath};
 use crate::transport::photons::{PacketOptions, PhotonKind, ViewCounter, photon_film};
+use crate::transport::ray_queue::TracedRay;
 use crate::transport::reference::ReferencePath;
 use crate::transport::scattering_order::spectrum_count;
 use crate::transport::{

@@ -1,4 +1,4 @@
-use super::{Counter, Event, Tally, WeightFactor};
+use super::{Counter, Event, Recorder, WeightFactor};
 use crate::components::Per;
 use crate::extract::{Inventory, Stage};
 use crate::transport::ReferencePlane;
@@ -44,17 +44,16 @@ impl Counter for AbsorbedCounter {
         self.total() + 1 + self.starts.last().copied().unwrap_or(0)
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
-        let Event::Arrival { hit, scattered, .. } = event else { return 0 };
+    fn count(&self, _: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
+        let Event::Arrival { hit, scattered, .. } = event else { return };
         if !self.plane.is_above(hit.point) {
-            return 0;
+            return;
         }
         let instance = hit.instance as usize;
         let start = self.starts.get(instance);
         let face = start.map(|start| self.total() + 1 + start + hit.primitive as usize);
         for cell in [Some(instance), Some(self.total()), face].into_iter().flatten() {
-            tally.add(cell, WeightFactor::Complement(*scattered), 1.0);
+            recorder.add(cell, WeightFactor::Complement(*scattered), 1.0);
         }
-        0
     }
 }

@@ -1,4 +1,4 @@
-use super::{Counter, Event, Tally, Visited, WeightFactor};
+use super::{Counter, Event, Recorder, Visited, WeightFactor};
 use crate::extract::Stage;
 use crate::transport::ReferencePlane;
 
@@ -15,12 +15,11 @@ impl Counter for AlbedoCounter {
         1
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         if let Event::Escape { ray, visited: Visited { order: 1.., .. } } = event
             && self.plane.is_left_by(ray.origin, ray.direction)
         {
-            tally.add(0, WeightFactor::One, 1.0);
+            recorder.add(0, WeightFactor::One, 1.0);
         }
-        0
     }
 }

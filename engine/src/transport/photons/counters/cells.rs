@@ -1,4 +1,4 @@
-use super::{Counter, Event, Tally, Visited, WeightFactor};
+use super::{Counter, Event, Recorder, Visited, WeightFactor};
 use crate::extract::Stage;
 use crate::transport::{Hemisphere, ReferencePlane};
 
@@ -16,12 +16,11 @@ impl Counter for CellCounter {
         self.hemisphere.len()
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         if let Event::Escape { ray, visited: Visited { order: 1.., .. } } = event
             && self.plane.is_left_by(ray.origin, ray.direction)
         {
-            tally.add(self.hemisphere.index(ray.direction), WeightFactor::One, 1.0);
+            recorder.add(self.hemisphere.index(ray.direction), WeightFactor::One, 1.0);
         }
-        0
     }
 }

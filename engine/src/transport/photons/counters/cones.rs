@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{Counter, Event, Tally, Visited, WeightFactor};
+use super::{Counter, Event, Recorder, Visited, WeightFactor};
 use crate::components::Cone;
 use crate::extract::Stage;
 use crate::transport::ReferencePlane;
@@ -37,16 +37,15 @@ impl Counter for ConeCounter {
         self.axes.len()
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         if let Event::Escape { ray, visited: Visited { order: 1.., .. } } = event
             && self.plane.is_left_by(ray.origin, ray.direction)
         {
             for (cell, (axis, cos)) in self.axes.iter().enumerate() {
                 if axis.dot(ray.direction) >= *cos {
-                    tally.add(cell, WeightFactor::One, 1.0);
+                    recorder.add(cell, WeightFactor::One, 1.0);
                 }
             }
         }
-        0
     }
 }

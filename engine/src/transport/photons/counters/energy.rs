@@ -1,4 +1,4 @@
-use super::{Counter, Event, Tally, WeightFactor};
+use super::{Counter, Event, Recorder, WeightFactor};
 use crate::extract::Stage;
 use crate::statistics::Sums;
 use crate::transport::ReferencePlane;
@@ -50,18 +50,18 @@ impl Counter for EnergyCounter {
         Self::ABSORBED + self.surfaces
     }
 
-    fn count(&self, _: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, _: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         match event {
-            Event::Start { .. } => tally.add(Self::INCIDENT, WeightFactor::One, 1.0),
+            Event::Start { .. } => recorder.add(Self::INCIDENT, WeightFactor::One, 1.0),
             Event::Emission { emitted, .. } => {
-                tally.add(Self::INCIDENT, WeightFactor::Lobe(*emitted), 1.0);
+                recorder.add(Self::INCIDENT, WeightFactor::Lobe(*emitted), 1.0);
             }
             Event::Arrival { hit, scattered, .. } => {
                 let surface = Self::ABSORBED + hit.surface as usize;
-                tally.add(surface, WeightFactor::Complement(*scattered), 1.0);
-                tally.add(Self::ROULETTE, WeightFactor::Lobe(*scattered), 1.0);
+                recorder.add(surface, WeightFactor::Complement(*scattered), 1.0);
+                recorder.add(Self::ROULETTE, WeightFactor::Lobe(*scattered), 1.0);
             }
-            Event::Departure => tally.add(Self::ROULETTE, WeightFactor::One, -1.0),
+            Event::Departure => recorder.add(Self::ROULETTE, WeightFactor::One, -1.0),
             Event::Escape { ray, visited } => {
                 let cell = match visited.order {
                     0 => Self::MISSED,
@@ -69,11 +69,10 @@ impl Counter for EnergyCounter {
                     _ if ray.direction.z > 0.0 => Self::BESIDE,
                     _ => Self::LOST,
                 };
-                tally.add(cell, WeightFactor::One, 1.0);
+                recorder.add(cell, WeightFactor::One, 1.0);
             }
-            Event::Buried => tally.add(Self::LOST, WeightFactor::One, 1.0),
+            Event::Buried => recorder.add(Self::LOST, WeightFactor::One, 1.0),
             Event::Flight { .. } => {}
         }
-        0
     }
 }

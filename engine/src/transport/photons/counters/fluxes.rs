@@ -1,6 +1,6 @@
 use glam::{DVec3, UVec2};
 
-use super::{Counter, Event, Tally, Visited, WeightFactor};
+use super::{Counter, Event, Recorder, Visited, WeightFactor};
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::transport::ReferencePlane;
@@ -65,11 +65,11 @@ impl Counter for FluxCounter {
         self.levels.len() * 2 * (self.pixels() + 1)
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, stage: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         for (index, &level) in self.levels.iter().enumerate() {
             let mut add = |point, is_up, factor, scale| {
                 for cell in self.cells_at(point, index, is_up).into_iter().flatten() {
-                    tally.add(cell, factor, scale);
+                    recorder.add(cell, factor, scale);
                 }
             };
             match (level, event) {
@@ -111,7 +111,6 @@ impl Counter for FluxCounter {
                 _ => {}
             }
         }
-        0
     }
 }
 

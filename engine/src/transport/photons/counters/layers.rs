@@ -1,4 +1,4 @@
-use super::{Counter, Event, Tally, WeightFactor};
+use super::{Counter, Event, Recorder, WeightFactor};
 use crate::components::Layers;
 use crate::extract::Stage;
 use crate::transport::ReferencePlane;
@@ -100,19 +100,19 @@ impl Counter for LayerCounter {
         self.vegetation() + 1 + GROUND_TERMS.len()
     }
 
-    fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
+    fn count(&self, stage: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         let Event::Arrival { hit, surface, visited, scattered, .. } = event else {
-            return 0;
+            return;
         };
         if !self.plane.is_above(hit.point) {
-            return 0;
+            return;
         }
         let material = hit.surface as usize;
         let is_ground = stage.is_ground(hit);
         let layer = self.layer(hit.point.z).map(|layer| layer * self.surfaces + material);
         let canopy = (!is_ground).then(|| self.vegetation());
         for cell in [layer, Some(self.totals() + material), canopy].into_iter().flatten() {
-            tally.add(cell, WeightFactor::Complement(*scattered), 1.0);
+            recorder.add(cell, WeightFactor::Complement(*scattered), 1.0);
         }
         if is_ground && hit.normal.dot(surface.wo()) > 0.0 {
             let term = match (visited.order, visited.has_met_ground) {
@@ -121,9 +121,8 @@ impl Counter for LayerCounter {
                 (_, true) => 3,
             };
             for term in [0, term] {
-                tally.add(self.vegetation() + 1 + term, WeightFactor::One, 1.0);
+                recorder.add(self.vegetation() + 1 + term, WeightFactor::One, 1.0);
             }
         }
-        0
     }
 }

@@ -10,7 +10,8 @@ mod layers;
 mod views;
 mod virtual_photon_roulette;
 
-use super::tally::{Tally, WeightFactor};
+use super::record::Recorder;
+use super::tally::WeightFactor;
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
 use crate::sampling::Sampler;
@@ -42,7 +43,7 @@ impl Visited {
     }
 }
 
-/// An event in the life of a packet, whose weight the [`Tally`] holds: in units of the power that falls on
+/// An event in the life of a packet, whose weight the [`Recorder`] knows: in units of the power that falls on
 /// the scene's rectangle over the number of packets; for emitted light, in W m⁻² nm⁻¹ times the area of the
 /// rectangle over the number of lines.
 #[derive(Clone, Copy, Debug)]
@@ -118,6 +119,6 @@ pub trait Counter: Sync {
     /// Prepares for counting, once, before any packet is traced.
     fn prepare(&self, _: &Stage) {}
 
-    /// Counts an event; returns the number of rays that it traced.
-    fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64;
+    /// Counts an event. Contributions that depend on a shadow ray are recorded with it, before it is traced.
+    fn count(&self, stage: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>);
 }

@@ -4,8 +4,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 
 use super::virtual_photon_roulette::VirtualPhotonRoulette;
-use super::{Counter, Event, Tally, WeightFactor};
-use crate::accel::{Ray, RayBatch};
+use super::{Counter, Event, Recorder, WeightFactor};
 use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::scattering::Lobe;
@@ -32,14 +31,6 @@ struct PendingRoulette {
     source: LightSource,
     key: Key,
     roulette: OnceLock<VirtualPhotonRoulette>,
-}
-
-/// A virtual photon whose shadow ray is traced.
-struct VirtualPhoton<'c> {
-    camera: &'c OrthographicCamera,
-    first_cell: usize,
-    factor: WeightFactor,
-    scale: f64,
 }
 
 impl ViewCounter {
@@ -133,16 +124,26 @@ impl ViewCounter {
         };
         Some(SentTowards { factor, ratio: self.roulette().map_or(f64::INFINITY, ratio) })
     }
+}
 
-    /// Virtual photons of an event that are traced, with their shadow rays.
-    fn sample(&self, stage: &Stage, event: &Event<'_>) -> (Vec<VirtualPhoton<'_>>, Vec<Ray>) {
+impl Counter for ViewCounter {
+    fn prepare(&self, stage: &Stage) {
+        if let Some(PendingRoulette { source, key, roulette }) = self.roulette.as_deref() {
+            let pilot_run = || VirtualPhotonRoulette::from_pilot_run(stage, *source, *key);
+            roulette.get_or_init(pilot_run);
+        }
+    }
+
+    fn cells(&self) -> usize {
+        self.cells
+    }
+
+    fn count(&self, stage: &Stage, event: &Event<'_>, recorder: &mut Recorder<'_>) {
         let (hit, throughput, sampler) = match event {
             Event::Arrival { is_last: false, hit, throughput, sampler, .. }
             | Event::Emission { hit, throughput, sampler, .. } => (*hit, *throughput, *sampler),
-            _ => return (Vec::new(), Vec::new()),
+            _ => return,
         };
-        let mut photons = Vec::with_capacity(self.cameras.len());
-        let mut rays = Vec::with_capacity(self.cameras.len());
         let is_diffuse = stage.interaction(hit, hit.normal).is_diffuse();
         // A diffuse surface sends the same towards all views on a side.
         let mut by_side: [Option<Option<SentTowards>>; 2] = [None; 2];
@@ -164,47 +165,16 @@ impl ViewCounter {
                 continue;
             }
             u -= 1.0;
-            if camera.shows(hit.point, stage) {
-                let scale = cosine / (probability * PI);
-                photons.push(VirtualPhoton { camera, first_cell, factor, scale });
-                rays.push(hit.leave(camera.towards));
-            }
-        }
-        (photons, rays)
-    }
-}
-
-impl Counter for ViewCounter {
-    fn prepare(&self, stage: &Stage) {
-        if let Some(PendingRoulette { source, key, roulette }) = self.roulette.as_deref() {
-            let pilot_run = || VirtualPhotonRoulette::from_pilot_run(stage, *source, *key);
-            roulette.get_or_init(pilot_run);
-        }
-    }
-
-    fn cells(&self) -> usize {
-        self.cells
-    }
-
-    fn count(&self, stage: &Stage, event: &Event<'_>, tally: &mut Tally<'_>) -> u64 {
-        let (photons, rays) = self.sample(stage, event);
-        let (Event::Arrival { hit, .. } | Event::Emission { hit, .. }) = event else { return 0 };
-        let mut occluded = vec![false; rays.len()];
-        stage.geometry.trace_each(RayBatch {
-            shadow_rays: &rays,
-            occluded: &mut occluded,
-            closest_rays: &[],
-            hits: &mut [],
-        });
-        let visible = photons.into_iter().zip(&occluded).filter(|(_, is_occluded)| !**is_occluded);
-        for (VirtualPhoton { camera, first_cell, factor, scale }, _) in visible {
+            let scale = cosine / (probability * PI);
+            let mut shadow_ray = None;
             camera.for_each_pixel(hit.point, stage, |pixel| {
-                tally.add(first_cell + pixel, factor, scale);
-                if camera.pixels() > 1 {
-                    tally.add(first_cell + camera.pixels(), factor, scale);
+                let push = || recorder.push_shadow(hit.leave(camera.towards));
+                let shadow_ray = *shadow_ray.get_or_insert_with(push);
+                let total = (camera.pixels() > 1).then_some(camera.pixels());
+                for cell in [Some(pixel), total].into_iter().flatten() {
+                    recorder.add_unless_occluded(shadow_ray, first_cell + cell, factor, scale);
                 }
             });
         }
-        rays.len() as u64
     }
 }
