@@ -200,15 +200,14 @@ fn groups(points: &[usize], likeness: &[Likeness], bands: usize) -> Vec<Vec<usiz
         let one = likeness[index];
         let groups = of_geometry.entry(one.geometry).or_default();
         let place = one.paths.and_then(|paths| open.get(&(one.geometry, paths)).copied());
-        match place.filter(|&place| groups[place].len() < most) {
-            Some(place) => groups[place].push(index),
-            None => {
-                if let Some(paths) = one.paths {
-                    open.insert((one.geometry, paths), groups.len());
-                }
-                groups.push(vec![index]);
-            }
+        if let Some(place) = place.filter(|&place| groups[place].len() < most) {
+            groups[place].push(index);
+            continue;
         }
+        if let Some(paths) = one.paths {
+            open.insert((one.geometry, paths), groups.len());
+        }
+        groups.push(vec![index]);
     }
     of_geometry.into_values().flatten().collect()
 }

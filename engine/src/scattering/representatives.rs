@@ -57,10 +57,10 @@ impl RepresentativeBands {
         while let Some(band) = next {
             let index = chosen.bands.len() as u32;
             chosen.bands.push(band as u32);
-            for other in 0..bands {
+            for (other, distance) in distances.iter_mut().enumerate() {
                 let difference = Difference::between(&logarithms, other, band);
-                if difference.distance() < distances[other] {
-                    distances[other] = difference.distance();
+                if difference.distance() < *distance {
+                    *distance = difference.distance();
                     (chosen.of[other], chosen.excess[other]) = (index, difference.above.exp());
                 }
             }

@@ -155,12 +155,11 @@ fn prospect_means(
         carbon: leaf.carbon_g_cm2,
     };
     let known = resources.leaf.take().filter(|(known, _)| *known == chemistry);
-    let (_, leaf) = match known {
-        Some(known) => known,
-        None => {
-            let leaf = leaf_spectrum(&chemistry);
-            (chemistry, leaf.map_err(|error| Box::new(problem(path, &error)))?)
-        }
+    let (_, leaf) = if let Some(known) = known {
+        known
+    } else {
+        let leaf = leaf_spectrum(&chemistry);
+        (chemistry, leaf.map_err(|error| Box::new(problem(path, &error)))?)
     };
     let means = match quantity {
         Quantity::Reflectance => mean_over_bands(&leaf.reflectance, quantity, path, resources),
