@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::accel::layout::{Bounds32, ChildRef, WideNode};
+use crate::accel::layout::{Bounds32, ChildRef, WideBvh, WideNode};
 
-use super::{binary::BinaryBvh, wide::BuildSettings};
+use super::{binary::BinaryBvh, leaves::Leaves, wide::BuildSettings};
 
 /// Lowest cost of a subtree as a forest of at most 1 to 8 trees.
 #[derive(Clone, Copy)]
@@ -27,15 +27,6 @@ enum LeafKind {
 
 impl ForestCost {
     pub(super) const UNKNOWN: Self = Self { forest: [0.0; 8], leaf: 0.0, kind: LeafKind::Unknown };
-
-    pub(super) fn is_known(&self) -> bool {
-        self.kind != LeafKind::Unknown
-    }
-
-    /// Cost as one tree.
-    pub(super) fn as_one_tree(&self) -> f32 {
-        self.forest[0]
-    }
 }
 
 /// Cost of a node by the surface-area heuristic; the costs of its children must be known.
@@ -80,14 +71,11 @@ fn split(left: &ForestCost, right: &ForestCost, trees: usize) -> (usize, f32) {
         .unwrap_or((0, f32::INFINITY))
 }
 
-/// Eight-wide hierarchy whose leaves are ranges of primitives.
+/// Eight-wide hierarchy whose leaves are numbered in depth-first order; the order of the children of its nodes is
+/// not set.
 pub(super) struct CollapsedBvh {
-    pub root: ChildRef,
-    pub nodes: Vec<WideNode>,
-    /// Range of `order` of each leaf.
-    pub leaves: Vec<Range<usize>>,
-    /// Primitives.
-    pub order: Vec<u32>,
+    pub tree: WideBvh,
+    pub leaves: Leaves,
 }
 
 /// Number of levels that follow the binary hierarchy; below them a subtree is divided evenly. Thus for any input
@@ -101,23 +89,21 @@ pub(super) fn collapse(
     settings: BuildSettings,
     is_second_kind: &impl Fn(u32) -> bool,
 ) -> CollapsedBvh {
-    let order = std::mem::take(&mut tree.order);
-    let (nodes, leaves) = (Vec::new(), Vec::new());
+    let leaves = Leaves { order: std::mem::take(&mut tree.order), ends: Vec::new() };
     let mut collapse =
-        Collapse { boxes, tree: &tree, order, settings, is_second_kind, nodes, leaves };
+        Collapse { boxes, tree: &tree, settings, is_second_kind, nodes: Vec::new(), leaves };
     let root = collapse.subtree(0, 0);
-    let Collapse { nodes, leaves, order, .. } = collapse;
-    CollapsedBvh { root, nodes, leaves, order }
+    let Collapse { nodes, leaves, .. } = collapse;
+    CollapsedBvh { tree: WideBvh { root, nodes }, leaves }
 }
 
 struct Collapse<'a, K> {
     boxes: &'a [Bounds32],
     tree: &'a BinaryBvh,
-    order: Vec<u32>,
     settings: BuildSettings,
     is_second_kind: &'a K,
     nodes: Vec<WideNode>,
-    leaves: Vec<Range<usize>>,
+    leaves: Leaves,
 }
 
 impl<K: Fn(u32) -> bool> Collapse<'_, K> {
@@ -131,7 +117,7 @@ impl<K: Fn(u32) -> bool> Collapse<'_, K> {
         }
         if depth >= MAX_LEVELS {
             let is_second_kind = self.is_second_kind;
-            self.order[range.clone()].sort_by_key(|&primitive| is_second_kind(primitive));
+            self.leaves.order[range.clone()].sort_by_key(|&primitive| is_second_kind(primitive));
             return self.divide_evenly(range);
         }
         let mut children = Vec::with_capacity(8);
@@ -143,13 +129,13 @@ impl<K: Fn(u32) -> bool> Collapse<'_, K> {
             let reference = self.subtree(child, depth + 1);
             self.nodes[index].set(slot, bounds, reference);
         }
-        self.nodes[index].sort_children();
         ChildRef(index as u32)
     }
 
+    /// Adds a leaf, which starts where the one before ends.
     fn leaf(&mut self, range: Range<usize>) -> ChildRef {
-        self.leaves.push(range);
-        ChildRef(ChildRef::LEAF | (self.leaves.len() as u32 - 1))
+        self.leaves.ends.push(range.end as u32);
+        ChildRef(ChildRef::LEAF | (self.leaves.ends.len() as u32 - 1))
     }
 
     /// Appends the roots of the cheapest forest of at most `trees + 1` trees; if `must_split`, the node itself
@@ -174,7 +160,7 @@ impl<K: Fn(u32) -> bool> Collapse<'_, K> {
 
     /// Writes a tree of minimum depth, whatever its cost; the primitives are sorted by kind.
     fn divide_evenly(&mut self, range: Range<usize>) -> ChildRef {
-        let primitives = &self.order[range.clone()];
+        let primitives = &self.leaves.order[range.clone()];
         let kind = |index: usize| (self.is_second_kind)(primitives[index]);
         let is_one_kind = kind(0) == kind(primitives.len() - 1);
         if primitives.len() <= self.settings.leaf_size as usize && is_one_kind {
@@ -185,13 +171,12 @@ impl<K: Fn(u32) -> bool> Collapse<'_, K> {
         let step = range.len().div_ceil(8);
         for (slot, start) in range.clone().step_by(step).enumerate() {
             let part = start..(start + step).min(range.end);
-            let members = self.order[part.clone()].iter();
+            let members = self.leaves.order[part.clone()].iter();
             let bounds =
                 members.map(|&p| self.boxes[p as usize]).fold(Bounds32::EMPTY, Bounds32::union);
             let reference = self.divide_evenly(part);
             self.nodes[index].set(slot, bounds.padded(self.settings.padding), reference);
         }
-        self.nodes[index].sort_children();
         ChildRef(index as u32)
     }
 }

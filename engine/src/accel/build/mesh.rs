@@ -20,6 +20,8 @@ use crate::accel::{
 
 use super::{
     BuildError, MeshInput,
+    collapse::CollapsedBvh,
+    leaves::Leaves,
     parallelogram::{self, PlanarPrimitive},
     wide::{self, BuildSettings},
 };
@@ -29,10 +31,6 @@ const MAX_COORDINATE: f32 = 1e9;
 
 /// Maximum number of primitives of a mesh.
 const MAX_PRIMITIVES: usize = 1 << 29;
-
-/// Number of primitives above which reinsertion tries half of the nodes: it takes most of the time of a
-/// build, and the other half saves one visit in a hundred.
-const LARGE: usize = 1 << 20;
 
 /// Builds the hierarchy of the mesh with this number.
 ///
@@ -47,28 +45,15 @@ pub(super) fn build(number: usize, input: &MeshInput<'_>) -> Result<MeshBvh, Bui
         (0..primitives.len()).into_par_iter().map(|p| primitives.get(p).bounds()).collect();
     let bounds = boxes.par_iter().copied().reduce(|| Bounds32::EMPTY, Bounds32::union);
     let max_coordinate = if boxes.is_empty() { 0.0 } else { bounds.max_coordinate() };
-    let settings = BuildSettings {
-        leaf_size: 8,
-        leaf_cost: 0.6,
-        padding: slab_padding(max_coordinate),
-        reinsertion: if boxes.len() > LARGE { 0.5 } else { 1.0 },
-    };
-    let mut blocks = Blocks::new(&primitives);
-    let tree = wide::build(
-        boxes,
-        settings,
-        |p| primitives.is_disc(p),
-        |leaves| {
-            blocks.reserve(leaves);
-            let blocks = &mut blocks;
-            move |leaf: &[u32]| blocks.push(leaf)
-        },
-    );
+    let settings =
+        BuildSettings { leaf_size: 8, leaf_cost: 0.6, padding: slab_padding(max_coordinate) };
+    let CollapsedBvh { mut tree, leaves } = wide::build(boxes, settings, |p| primitives.is_disc(p));
+    let Blocks { references, planar, discs, second_triangles } = Blocks::new(&primitives, &leaves);
+    wide::link_leaves(&mut tree, |leaf| references[leaf]);
     let ranges = |end: fn(&MeshPart) -> u32| {
         let parts = mesh.parts.iter().zip(surfaces);
         parts.map(|(part, &surface)| SurfaceRange { end: end(part), surface }).collect()
     };
-    let Blocks { planar, discs, second_triangles, .. } = blocks;
     Ok(MeshBvh {
         tree,
         planar,
@@ -130,48 +115,41 @@ fn check_parts(number: usize, mesh: &Mesh, surfaces: &[u32]) -> Result<(), Build
     Ok(())
 }
 
-/// Leaves of a mesh, filled in the order of the hierarchy.
-struct Blocks<'a> {
-    primitives: &'a Primitives<'a>,
-    has_parallelograms: bool,
+/// Leaves of a mesh, in the order of the hierarchy.
+struct Blocks {
+    /// Block of each leaf.
+    references: Vec<ChildRef>,
     planar: Vec<PlanarBlock>,
     discs: Vec<DiscBlock>,
     second_triangles: Vec<[u32; 8]>,
 }
 
-impl<'a> Blocks<'a> {
-    fn new(primitives: &'a Primitives<'a>) -> Self {
-        let has_parallelograms = primitives.planar.iter().any(|planar| planar.second.is_some());
-        let (planar, discs, second_triangles) = (Vec::new(), Vec::new(), Vec::new());
-        Self { primitives, has_parallelograms, planar, discs, second_triangles }
-    }
-
-    /// Reserves memory for this number of leaves.
-    fn reserve(&mut self, leaves: usize) {
-        if self.primitives.discs.is_empty() {
-            self.planar.reserve_exact(leaves);
-        }
-    }
-
-    /// Adds a block of primitives of one kind.
-    fn push(&mut self, leaf: &[u32]) -> ChildRef {
-        let primitives = self.primitives;
-        let members = leaf.iter().map(|&p| primitives.get(p));
-        if primitives.is_disc(leaf[0]) {
-            self.discs.push(disc_block(members));
-            return ChildRef(ChildRef::LEAF | ChildRef::DISCS | (self.discs.len() as u32 - 1));
-        }
-        if self.has_parallelograms {
-            let mut lanes = [0; 8];
-            for (lane, member) in lanes.iter_mut().zip(members.clone()) {
-                if let Primitive::Planar { second: Some(second), .. } = member {
-                    *lane = second;
+impl Blocks {
+    fn new(primitives: &Primitives<'_>, leaves: &Leaves) -> Self {
+        let (mut planar_leaves, mut disc_leaves) = (Vec::new(), Vec::new());
+        let number = |leaves: &mut Vec<usize>, leaf, tag| {
+            leaves.push(leaf);
+            ChildRef(tag | (leaves.len() as u32 - 1))
+        };
+        let references = (0..leaves.ends.len())
+            .map(|leaf| {
+                if primitives.is_disc(leaves.get(leaf)[0]) {
+                    number(&mut disc_leaves, leaf, ChildRef::LEAF | ChildRef::DISCS)
+                } else {
+                    number(&mut planar_leaves, leaf, ChildRef::LEAF)
                 }
-            }
-            self.second_triangles.push(lanes);
-        }
-        self.planar.push(planar_block(members));
-        ChildRef(ChildRef::LEAF | (self.planar.len() as u32 - 1))
+            })
+            .collect();
+        let members = |&leaf: &usize| leaves.get(leaf).iter().map(|&p| primitives.get(p));
+        let planar = planar_leaves.par_iter().map(|leaf| planar_block(members(leaf))).collect();
+        let discs = disc_leaves.par_iter().map(|leaf| disc_block(members(leaf))).collect();
+        let has_parallelograms = primitives.planar.par_iter().any(|planar| planar.second.is_some());
+        let second_triangles = if has_parallelograms {
+            planar_leaves.par_iter().map(|&leaf| primitives.seconds(leaves.get(leaf))).collect()
+        } else {
+            Vec::new()
+        };
+        Self { references, planar, discs, second_triangles }
     }
 }
 
@@ -237,6 +215,15 @@ impl<'a> Primitives<'a> {
 
     fn is_disc(&self, index: u32) -> bool {
         index >= self.planar.len() as u32
+    }
+
+    /// Second triangles of the planar primitives of a leaf; 0 if there is none.
+    fn seconds(&self, leaf: &[u32]) -> [u32; 8] {
+        let mut lanes = [0; 8];
+        for (lane, &primitive) in lanes.iter_mut().zip(leaf) {
+            *lane = self.planar[primitive as usize].second.map_or(0, NonZeroU32::get);
+        }
+        lanes
     }
 
     fn get(&self, index: u32) -> Primitive {

@@ -8,8 +8,10 @@ mod collapse;
 mod error;
 mod input;
 mod instances;
+mod leaves;
 mod mesh;
 mod parallelogram;
+mod subtree;
 mod wide;
 
 use glam::DVec3;
@@ -21,6 +23,7 @@ use crate::accel::{
     layout::{Bounds32, ChildRef, Domain, PeriodicCopies, TwoLevelBvh, WideBvh, slab_padding},
     simd::SimdLevel,
 };
+use collapse::CollapsedBvh;
 use wide::BuildSettings;
 
 pub use error::BuildError;
@@ -88,12 +91,10 @@ fn build_top_level(boxes: &[Bounds], center: DVec3) -> (WideBvh, f32) {
         .collect();
     let max_coordinate = boxes.par_iter().map(|b| b.max_coordinate()).reduce(|| 0.0, f32::max);
     let padding = slab_padding(max_coordinate);
-    let settings = BuildSettings { leaf_size: 1, leaf_cost: 1.0, padding, reinsertion: 0.5 };
-    let tree = wide::build(
-        boxes,
-        settings,
-        |_| false,
-        |_| |leaf: &[u32]| ChildRef(ChildRef::LEAF | present[leaf[0] as usize]),
-    );
+    let settings = BuildSettings { leaf_size: 1, leaf_cost: 1.0, padding };
+    let CollapsedBvh { mut tree, leaves } = wide::build(boxes, settings, |_| false);
+    wide::link_leaves(&mut tree, |leaf| {
+        ChildRef(ChildRef::LEAF | present[leaves.order[leaf] as usize])
+    });
     (tree, max_coordinate)
 }

@@ -11,6 +11,7 @@ use crate::accel::{
 use super::{
     binary,
     collapse::{self, CollapsedBvh},
+    leaves::Leaves,
 };
 
 impl Boundable for Bounds32 {
@@ -28,29 +29,24 @@ pub(super) struct BuildSettings {
     pub leaf_cost: f32,
     /// Padding of boxes, which covers the rounding of the traversal.
     pub padding: f32,
-    /// Fraction of nodes that reinsertion tries to move.
-    pub reinsertion: f32,
 }
 
 /// Maximum number of primitives that one binary hierarchy is built over: it bounds the memory of a build, and
 /// subsets are built in parallel.
 const MAX_SUBSET: usize = 1 << 18;
 
-/// Builds the hierarchy over `boxes`.
+/// Builds the hierarchy over `boxes`, whose leaves are numbered; [`link_leaves`] completes it.
 ///
-/// - `is_second_kind`: kind of a primitive; primitives of both kinds may not share a leaf
-/// - `make_leaves`: takes the number of leaves and returns a function that stores the primitives of one leaf, all
-///   of one kind, and returns the reference to it
-///
-/// Leaves and nodes are in depth-first order.
-pub(super) fn build<L: FnMut(&[u32]) -> ChildRef>(
+/// `is_second_kind` is the kind of a primitive: primitives of both kinds may not share a leaf. Leaves and nodes are in
+/// depth-first order.
+pub(super) fn build(
     boxes: Vec<Bounds32>,
     settings: BuildSettings,
     is_second_kind: impl Fn(u32) -> bool + Sync,
-    make_leaves: impl FnOnce(usize) -> L,
-) -> WideBvh {
+) -> CollapsedBvh {
     if boxes.is_empty() {
-        return WideBvh { root: ChildRef::NONE, nodes: Vec::new() };
+        let tree = WideBvh { root: ChildRef::NONE, nodes: Vec::new() };
+        return CollapsedBvh { tree, leaves: Leaves::default() };
     }
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut subsets = Vec::new();
@@ -64,16 +60,23 @@ pub(super) fn build<L: FnMut(&[u32]) -> ChildRef>(
         .collect();
     drop(boxes);
     drop(order);
-    let leaves = subsets.iter().map(|(_, subset)| subset.leaves.len()).sum();
-    let inner: usize = subsets.iter().map(|(_, subset)| subset.nodes.len()).sum();
-    let mut merge = Merge {
-        make_leaf: make_leaves(leaves),
-        nodes: Vec::with_capacity(inner + subsets.len()),
-        padding: settings.padding,
-        subsets: subsets.into_iter().map(Some).collect(),
-    };
+    let mut merge = Merge::new(subsets, settings.padding);
     let root = merge.append_split(&splits).1;
-    WideBvh { root, nodes: merge.nodes }
+    CollapsedBvh { tree: WideBvh { root, nodes: merge.nodes }, leaves: merge.leaves }
+}
+
+/// Replaces the numbers of leaves by references to them, and sets the order of the children of all nodes.
+pub(super) fn link_leaves(tree: &mut WideBvh, leaf: impl Fn(usize) -> ChildRef + Sync) {
+    let link = |child: u32| match ChildRef(child) {
+        ChildRef::NONE => child,
+        inner if inner.is_inner() => child,
+        number => leaf(number.index()).0,
+    };
+    tree.root.0 = link(tree.root.0);
+    tree.nodes.par_iter_mut().for_each(|node| {
+        node.child.0 = node.child.0.map(link);
+        node.sort_children();
+    });
 }
 
 /// Division of the primitives at medians: the index of a subset, or two halves.
@@ -110,14 +113,28 @@ fn split_at_medians<'a>(
 }
 
 /// Merges the hierarchies of all subsets into one.
-struct Merge<L> {
-    make_leaf: L,
+struct Merge {
     nodes: Vec<WideNode>,
+    leaves: Leaves,
     padding: f32,
     subsets: Vec<Option<(Bounds32, CollapsedBvh)>>,
 }
 
-impl<L: FnMut(&[u32]) -> ChildRef> Merge<L> {
+impl Merge {
+    /// Reserves memory for the hierarchies of all subsets.
+    fn new(subsets: Vec<(Bounds32, CollapsedBvh)>, padding: f32) -> Self {
+        let sum = |length: fn(&CollapsedBvh) -> usize| {
+            subsets.iter().map(|(_, subset)| length(subset)).sum::<usize>()
+        };
+        let inner = sum(|subset| subset.tree.nodes.len()) + subsets.len();
+        let leaves = Leaves::with_capacity(
+            sum(|subset| subset.leaves.order.len()),
+            sum(|subset| subset.leaves.ends.len()),
+        );
+        let nodes = Vec::with_capacity(inner);
+        Self { nodes, leaves, padding, subsets: subsets.into_iter().map(Some).collect() }
+    }
+
     /// Appends the hierarchy of a split; returns its box and the reference to it.
     fn append_split(&mut self, split: &MedianSplit) -> (Bounds32, ChildRef) {
         let mut children = vec![split];
@@ -146,27 +163,22 @@ impl<L: FnMut(&[u32]) -> ChildRef> Merge<L> {
             union = union.union(bounds);
             self.nodes[index].set(slot, bounds.padded(self.padding), child);
         }
-        self.nodes[index].sort_children();
         (union, ChildRef(index as u32))
     }
 
-    /// Appends the hierarchy of a subset, stores its leaves and returns the reference to its root.
-    fn append_subset(&mut self, subset: CollapsedBvh) -> ChildRef {
-        let first = self.nodes.len() as u32;
-        let leaves: Vec<ChildRef> = subset
-            .leaves
-            .iter()
-            .map(|leaf| (self.make_leaf)(&subset.order[leaf.clone()]))
-            .collect();
-        let moved = |child: ChildRef| match child {
-            ChildRef::NONE => ChildRef::NONE,
-            child if child.is_inner() => ChildRef(child.0 + first),
-            child => leaves[child.index()],
+    /// Appends the hierarchy of a subset; returns the reference to its root.
+    fn append_subset(&mut self, CollapsedBvh { tree, leaves }: CollapsedBvh) -> ChildRef {
+        let first_node = self.nodes.len() as u32;
+        let first_leaf = self.leaves.append(leaves);
+        let moved = |child: u32| match ChildRef(child) {
+            ChildRef::NONE => child,
+            inner if inner.is_inner() => child + first_node,
+            _ => child + first_leaf,
         };
-        self.nodes.extend(subset.nodes.into_iter().map(|mut node| {
-            node.child = Words(node.child.0.map(|child| moved(ChildRef(child)).0));
+        self.nodes.extend(tree.nodes.into_iter().map(|mut node| {
+            node.child = Words(node.child.0.map(moved));
             node
         }));
-        moved(subset.root)
+        ChildRef(moved(tree.root.0))
     }
 }

@@ -54,18 +54,31 @@ impl WideNode {
 
     /// Sets the order of the children, once all of them are set.
     pub(in crate::accel) fn sort_children(&mut self) {
-        for octant in 0..8 {
-            let distance = |slot: usize| -> f32 {
-                let along = |axis: usize| {
-                    let [low, high] = self.bounds[axis].map(|bounds| bounds.0[slot]);
-                    if octant >> axis & 1 == 0 { low + high } else { -low - high }
-                };
-                along(0) + along(1) + along(2)
+        // Twice the centres; 0 for a slot without a child.
+        let centers = self.bounds.each_ref().map(|[low, high]| {
+            let center = |slot: usize| {
+                if low.0[slot] <= high.0[slot] { low.0[slot] + high.0[slot] } else { 0.0 }
             };
-            let mut slots = [0, 1, 2, 3, 4, 5, 6, 7];
-            slots.sort_by(|&a, &b| distance(b).total_cmp(&distance(a)));
-            self.order.0[octant] =
-                slots.iter().rev().fold(0, |packed, &slot| packed << 3 | slot as u32);
+            std::array::from_fn::<f32, 8, _>(center)
+        });
+        for octant in 0..8 {
+            let sign = [0, 1, 2].map(|axis| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 });
+            let distance: [f32; 8] = std::array::from_fn(|slot| {
+                sign[0] * centers[0][slot] + sign[1] * centers[1][slot] + sign[2] * centers[2][slot]
+            });
+            // Number of children that are farther; of equal ones, the first counts as farther.
+            let mut order = 0;
+            for slot in 0..8 {
+                let rank: u32 = (0..8)
+                    .map(|other| {
+                        let is_farther = distance[other] > distance[slot];
+                        let is_before = distance[other] == distance[slot] && other < slot;
+                        u32::from(is_farther | is_before)
+                    })
+                    .sum();
+                order |= (slot as u32) << (3 * rank);
+            }
+            self.order.0[octant] = order;
         }
     }
 

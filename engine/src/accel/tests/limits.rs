@@ -136,6 +136,11 @@ fn threads_do_not_change_a_bit() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| scene(std::slice::from_ref(&cloud), &instances, periodic(9.0)))
     });
+    let trees = scenes.each_ref().map(|scene| {
+        let mesh = &scene.meshes[0];
+        format!("{:?} {:?} {:?}", scene.instances, mesh.tree, mesh.planar)
+    });
+    assert!(trees[0] == trees[1], "the same nodes and blocks");
     for _ in 0..3_000 {
         let ray = Ray { origin: random.vector(20.0), direction: random.direction(), from: None };
         let hits = scenes.each_ref().map(|scene| scene.closest(&ray));
