@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(side), is_periodic: false };
     let start = Instant::now();
-    let scene = TwoLevelBvh::build(&meshes, &instances, domain)?;
+    let scene = TwoLevelBvh::build(&meshes, instances.par_iter().copied(), domain)?;
     println!("build {:.3} s, {} instances", start.elapsed().as_secs_f64(), instances.len());
 
     let corner = DVec2::splat((side / 200.0).floor() * 100.0 + 25.0);

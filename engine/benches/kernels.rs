@@ -6,6 +6,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 use sunfleck::accel::{Domain, InstanceInput, MeshInput, Ray, TwoLevelBvh};
 use sunfleck::assets::grow_crown;
 use sunfleck::components::Mesh;
@@ -33,8 +34,12 @@ fn scene(mesh: &Mesh) -> TwoLevelBvh {
         .collect();
     let domain = Domain { min: DVec2::ZERO, max: DVec2::splat(20.0), is_periodic: true };
     let surfaces = vec![0; mesh.parts.len()];
-    TwoLevelBvh::build(&[MeshInput { mesh, surfaces: &surfaces }], &instances, domain)
-        .expect("a lawful scene")
+    TwoLevelBvh::build(
+        &[MeshInput { mesh, surfaces: &surfaces }],
+        instances.into_par_iter(),
+        domain,
+    )
+    .expect("a lawful scene")
 }
 
 /// Rays from random points of the canopy in random directions.

@@ -6,11 +6,11 @@ mod optics;
 mod stage;
 mod thermal;
 
-use std::cell::LazyCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use hecs::World;
+use rayon::prelude::*;
 
 use crate::accel::{BuildError, Domain, InstanceInput, MeshInput, TwoLevelBvh};
 use crate::components::{Instance, MaterialId, Mesh, PartMaterials, SceneId, TerrainPatch};
@@ -67,8 +67,6 @@ pub fn extract(
     let ground_surfaces = surfaces.of_parts(&terrain.materials);
     let part_surfaces: Vec<Vec<u32>> =
         prototypes.iter().map(|(_, _, materials)| surfaces.of_parts(materials)).collect();
-    // A matrix per instance: computed only to build the ray engine and for reports of each instance.
-    let instances = LazyCell::new(|| instance_inputs(terrain, &placed, &mesh_of));
     let geometry = if let Some(geometry) = built {
         geometry
     } else {
@@ -79,10 +77,14 @@ pub fn extract(
             .collect();
         let (min, max) = (terrain.corner, terrain.corner + terrain.size);
         let domain = Domain { min, max, is_periodic: setting.is_periodic };
-        Arc::new(TwoLevelBvh::build(&meshes, &instances, domain)?)
+        // Takes the placements, so that their memory is free before the hierarchy is built.
+        let instances = instance_inputs(terrain, placed, &mesh_of);
+        Arc::new(TwoLevelBvh::build(&meshes, instances, domain)?)
     };
     let inventory = reported_absorption(world).map(|per| {
         let meshes: Vec<_> = prototypes.iter().map(|&(_, mesh, _)| mesh).collect();
+        let placed = Instance::in_order(world);
+        let instances: Vec<_> = instance_inputs(terrain, placed.clone(), &mesh_of).collect();
         Arc::new(Inventory::new(world, terrain, &placed, &instances, &meshes, per))
     });
     let (mut models, surface_names) = surfaces.models(optics);
@@ -119,20 +121,20 @@ fn mesh_numbers(placed: &[Instance]) -> BTreeMap<u32, u32> {
 /// Transformations of the ground and of all instances.
 fn instance_inputs(
     terrain: &TerrainPatch,
-    placed: &[Instance],
+    placed: Vec<Instance>,
     mesh_of: &BTreeMap<u32, u32>,
-) -> Vec<InstanceInput> {
+) -> impl IndexedParallelIterator<Item = InstanceInput> {
     let ground = InstanceInput {
         mesh: 0,
         linear: terrain.world_from_object(),
         translation: terrain.origin(),
     };
-    let trees = placed.iter().map(|Instance { placement, .. }| InstanceInput {
+    let trees = placed.into_par_iter().map(|Instance { placement, .. }| InstanceInput {
         mesh: mesh_of[&placement.prototype.0],
         linear: placement.world_from_object(),
         translation: placement.position,
     });
-    std::iter::once(ground).chain(trees).collect()
+    rayon::iter::once(ground).chain(trees)
 }
 
 /// Ids of surfaces: materials, numbered in the order in which parts ask for them.

@@ -231,7 +231,8 @@ fn no_ray_gets_under_a_periodic_ground() {
         linear: patch.world_from_object(),
         translation: patch.origin(),
     };
-    let scene = accel::TwoLevelBvh::build(&[input], &[instance], domain).expect("a scene");
+    let scene =
+        accel::TwoLevelBvh::build(&[input], rayon::iter::once(instance), domain).expect("a scene");
     let key = Key::new(7).path("rays");
     let (mut rays, mut walls, mut start) = (0, 0, 0);
     while rays < wanted {

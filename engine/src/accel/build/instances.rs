@@ -1,4 +1,9 @@
-use glam::{DMat3, DVec3};
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::geometry::Bounds;
@@ -10,34 +15,46 @@ use super::{BuildError, InstanceInput};
 /// Maximum number of instances and periodic copies.
 const MAX_RECORDS: usize = 1 << 30;
 
-/// Maximum number of boxes of parts of a mesh; an instance's box is the union of these, transformed.
-const MAX_PART_BOXES: usize = 64;
+/// Maximum number of topmost parts of a mesh from which the boxes of instances follow, eight smaller ones in each:
+/// with the boxes of the topmost alone, a ray enters a tenth more instances.
+const MAX_TOPMOST_PARTS: usize = 64;
 
 /// Records of all instances, and their boxes; the box of an instance without primitives is empty.
 pub(super) fn records(
     meshes: &[MeshBvh],
-    instances: &[InstanceInput],
+    instances: impl IndexedParallelIterator<Item = InstanceInput>,
 ) -> Result<(Vec<InstanceRecord>, Vec<Bounds>), BuildError> {
-    if instances.len() > MAX_RECORDS {
-        return Err(BuildError::TooManyCopies { count: instances.len(), limit: MAX_RECORDS });
+    let count = instances.len();
+    if count > MAX_RECORDS {
+        return Err(BuildError::TooManyCopies { count, limit: MAX_RECORDS });
     }
-    let part_boxes: Vec<_> = meshes.iter().map(part_boxes).collect();
-    let made: Result<Vec<_>, _> = instances
-        .par_iter()
+    let parts: Vec<_> = meshes.iter().map(MeshParts::new).collect();
+    let first_invalid = AtomicUsize::new(usize::MAX);
+    let (mut records, mut boxes) = (Vec::new(), Vec::new());
+    instances
         .enumerate()
-        .map(|(number, input)| {
-            let Some(boxes) = part_boxes.get(input.mesh as usize) else {
-                let (mesh, count) = (input.mesh, meshes.len());
-                return Err(BuildError::Mesh { instance: number, mesh, count });
-            };
-            record(input, boxes).ok_or(BuildError::Transform { instance: number })
+        .map(|(instance, input)| {
+            let parts = parts.get(input.mesh as usize);
+            parts.and_then(|parts| record(&input, parts)).unwrap_or_else(|| {
+                first_invalid.fetch_min(instance, Ordering::Relaxed);
+                let (object_from_world, translation) = ([0.0; 9], input.translation);
+                let mesh = input.mesh;
+                (InstanceRecord { object_from_world, mesh, translation }, Bounds::EMPTY)
+            })
         })
-        .collect();
-    Ok(made?.into_iter().unzip())
+        .unzip_into_vecs(&mut records, &mut boxes);
+    let instance = first_invalid.into_inner();
+    match records.get(instance) {
+        None => Ok((records, boxes)),
+        Some(&InstanceRecord { mesh, .. }) if mesh as usize >= meshes.len() => {
+            Err(BuildError::Mesh { instance, mesh, count: meshes.len() })
+        }
+        Some(_) => Err(BuildError::Transform { instance }),
+    }
 }
 
 /// Record of an instance and its box in the world; `None` if its map is not finite or not invertible.
-fn record(input: &InstanceInput, part_boxes: &[Bounds32]) -> Option<(InstanceRecord, Bounds)> {
+fn record(input: &InstanceInput, parts: &MeshParts) -> Option<(InstanceRecord, Bounds)> {
     let determinant = input.linear.determinant();
     if !determinant.is_finite() || determinant == 0.0 || !input.translation.is_finite() {
         return None;
@@ -49,16 +66,17 @@ fn record(input: &InstanceInput, part_boxes: &[Bounds32]) -> Option<(InstanceRec
     if !determinant.is_finite() || determinant == 0.0 || !linear.is_finite() {
         return None;
     }
-    let absolute = DMat3::from_cols(linear.x_axis.abs(), linear.y_axis.abs(), linear.z_axis.abs());
-    let bounds = part_boxes.iter().fold(Bounds::EMPTY, |all, part| {
-        let (min, max) = (part.min.as_dvec3(), part.max.as_dvec3());
-        let center = linear * (0.5 * (min + max)) + input.translation;
-        let half = absolute * (0.5 * (max - min));
-        all.union(Bounds { min: center - half, max: center + half })
-    });
-    let Bounds { min, max } = bounds;
-    let is_valid = part_boxes.is_empty() || (min.is_finite() && max.is_finite());
-    is_valid.then_some((
+    let (mut min, mut max) = (input.translation, input.translation);
+    let mut bounds = Bounds::EMPTY;
+    if !parts.topmost.is_empty() {
+        for axis in 0..3 {
+            let (low, high) = parts.extent(linear.row(axis));
+            min[axis] += low;
+            max[axis] += high;
+        }
+        bounds = Bounds { min, max };
+    }
+    (min.is_finite() && max.is_finite()).then_some((
         InstanceRecord { object_from_world, mesh: input.mesh, translation: input.translation },
         bounds,
     ))
@@ -66,38 +84,90 @@ fn record(input: &InstanceInput, part_boxes: &[Bounds32]) -> Option<(InstanceRec
 
 /// Boxes around parts of a mesh, from its topmost nodes: their union, when rotated, is tighter than the rotated box
 /// around the whole mesh.
-fn part_boxes(mesh: &MeshBvh) -> Vec<Bounds32> {
-    if mesh.tree.root == ChildRef::NONE {
-        return Vec::new();
-    }
-    let mut parts = vec![(mesh.bounds, mesh.tree.root)];
-    let mut next = 0;
-    while next < parts.len() && parts.len() + 7 <= MAX_PART_BOXES {
-        let (_, node) = parts[next];
-        if !node.is_inner() {
-            next += 1;
-            continue;
+struct MeshParts {
+    /// Boxes of the topmost parts and the ranges of their own parts, those that are farthest from the middle first.
+    topmost: Vec<(PartBox, Range<usize>)>,
+    parts: Vec<PartBox>,
+}
+
+impl MeshParts {
+    fn new(mesh: &MeshBvh) -> Self {
+        let mut topmost = Vec::new();
+        if mesh.tree.root != ChildRef::NONE {
+            topmost.push((mesh.bounds, mesh.tree.root));
         }
-        parts.remove(next);
-        let node = &mesh.tree.nodes[node.index()];
-        for slot in 0..8 {
-            let child = ChildRef(node.child.0[slot]);
-            if child != ChildRef::NONE {
-                let side = |side: usize| {
-                    glam::Vec3::from_array(std::array::from_fn(|axis| {
-                        node.bounds[axis][side].0[slot]
-                    }))
-                };
-                // The mesh's own box is not padded.
-                let part = Bounds32 {
-                    min: side(0).max(mesh.bounds.min),
-                    max: side(1).min(mesh.bounds.max),
-                };
-                parts.push((part, child));
+        let mut next = 0;
+        while next < topmost.len() && topmost.len() + 7 <= MAX_TOPMOST_PARTS {
+            let (_, node) = topmost[next];
+            if node.is_inner() {
+                topmost.remove(next);
+                topmost.extend(children(mesh, node));
+            } else {
+                next += 1;
             }
         }
+        let mut parts = Vec::new();
+        let mut topmost: Vec<_> = topmost
+            .into_iter()
+            .map(|(bounds, node)| {
+                let start = parts.len();
+                if node.is_inner() {
+                    parts.extend(children(mesh, node).map(|(part, _)| PartBox::from(part)));
+                } else {
+                    parts.push(PartBox::from(bounds));
+                }
+                (PartBox::from(bounds), start..parts.len())
+            })
+            .collect();
+        let middle = PartBox::from(mesh.bounds).center;
+        let distance = |part: &PartBox| part.center.distance_squared(middle);
+        topmost.sort_by(|(a, _), (b, _)| distance(b).total_cmp(&distance(a)));
+        Self { topmost, parts }
     }
-    parts.into_iter().map(|(part, _)| part).collect()
+
+    /// Lowest and highest scalar product of `direction` and a point of the parts.
+    fn extent(&self, direction: DVec3) -> (f64, f64) {
+        let absolute = direction.abs();
+        let project = |part: &PartBox| {
+            let (center, half) = (direction.dot(part.center), absolute.dot(part.half));
+            (center - half, center + half)
+        };
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (part, parts) in &self.topmost {
+            let (part_low, part_high) = project(part);
+            if part_low < low || part_high > high {
+                for (part_low, part_high) in self.parts[parts.clone()].iter().map(project) {
+                    low = low.min(part_low);
+                    high = high.max(part_high);
+                }
+            }
+        }
+        (low, high)
+    }
+}
+
+struct PartBox {
+    center: DVec3,
+    half: DVec3,
+}
+
+impl From<Bounds32> for PartBox {
+    fn from(bounds: Bounds32) -> Self {
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        Self { center: 0.5 * (min + max), half: 0.5 * (max - min) }
+    }
+}
+
+/// Children of a node, with boxes that are not padded beyond the mesh's own.
+fn children(mesh: &MeshBvh, node: ChildRef) -> impl Iterator<Item = (Bounds32, ChildRef)> {
+    let node = &mesh.tree.nodes[node.index()];
+    let present = (0..8).filter(|&slot| node.child.0[slot] != ChildRef::NONE.0);
+    present.map(|slot| {
+        let side =
+            |side: usize| Vec3::from_array([0, 1, 2].map(|axis| node.bounds[axis][side].0[slot]));
+        let (min, max) = (side(0).max(mesh.bounds.min), side(1).min(mesh.bounds.max));
+        (Bounds32 { min, max }, ChildRef(node.child.0[slot]))
+    })
 }
 
 /// Adds records of the periodic copies that reach into the tile, and clips every box to the tile: a ray that has

@@ -38,7 +38,7 @@ impl TwoLevelBvh {
     /// without any are valid, and never hit.
     pub fn build(
         meshes: &[MeshInput<'_>],
-        instances: &[InstanceInput],
+        instances: impl IndexedParallelIterator<Item = InstanceInput>,
         domain: Domain,
     ) -> Result<Self, BuildError> {
         check_domain(&domain)?;
@@ -57,7 +57,7 @@ impl TwoLevelBvh {
         let covered = union(&boxes);
         let center =
             if covered.is_empty() { DVec3::ZERO } else { 0.5 * (covered.min + covered.max) };
-        let (instances, max_coordinate) = build_top_level(&boxes, center);
+        let (instances, max_coordinate) = build_top_level(boxes, center);
         // The boxes of the nodes are padded for f32; this is padded for f64.
         let room = DVec3::splat(f64::from(max_coordinate) * (-40_f64).exp2());
         let covered = Bounds { min: covered.min - room, max: covered.max + room };
@@ -81,18 +81,20 @@ fn union(boxes: &[Bounds]) -> Bounds {
 
 /// Hierarchy over the boxes of records that are not empty, in coordinates from `center`, and its largest
 /// absolute coordinate.
-fn build_top_level(boxes: &[Bounds], center: DVec3) -> (WideBvh, f32) {
+fn build_top_level(boxes: Vec<Bounds>, center: DVec3) -> (WideBvh, f32) {
     let present: Vec<u32> =
         (0..boxes.len() as u32).filter(|&i| !boxes[i as usize].is_empty()).collect();
-    let boxes: Vec<Bounds32> = present
+    let present_boxes: Vec<Bounds32> = present
         .par_iter()
         .map(|&i| boxes[i as usize])
         .map(|b| Bounds32::from_f64(b.min - center, b.max - center))
         .collect();
-    let max_coordinate = boxes.par_iter().map(|b| b.max_coordinate()).reduce(|| 0.0, f32::max);
+    drop(boxes);
+    let max_coordinate =
+        present_boxes.par_iter().map(|b| b.max_coordinate()).reduce(|| 0.0, f32::max);
     let padding = slab_padding(max_coordinate);
     let settings = BuildSettings { leaf_size: 1, leaf_cost: 1.0, padding };
-    let CollapsedBvh { mut tree, leaves } = wide::build(boxes, settings, |_| false);
+    let CollapsedBvh { mut tree, leaves } = wide::build(present_boxes, settings, |_| false);
     wide::link_leaves(&mut tree, |leaf| {
         ChildRef(ChildRef::LEAF | present[leaves.order[leaf] as usize])
     });

@@ -72,11 +72,11 @@ pub(super) fn link_leaves(tree: &mut WideBvh, leaf: impl Fn(usize) -> ChildRef +
         inner if inner.is_inner() => child,
         number => leaf(number.index()).0,
     };
-    tree.root.0 = link(tree.root.0);
     tree.nodes.par_iter_mut().for_each(|node| {
         node.child.0 = node.child.0.map(link);
         node.sort_children();
     });
+    tree.root.0 = link(tree.root.0);
 }
 
 /// Division of the primitives at medians: the index of a subset, or two halves.

@@ -69,13 +69,14 @@ impl WideNode {
             // Number of children that are farther; of equal ones, the first counts as farther.
             let mut order = 0;
             for slot in 0..8 {
-                let rank: u32 = (0..8)
-                    .map(|other| {
-                        let is_farther = distance[other] > distance[slot];
-                        let is_before = distance[other] == distance[slot] && other < slot;
-                        u32::from(is_farther | is_before)
-                    })
-                    .sum();
+                let is_farther = |other: usize| {
+                    if other < slot {
+                        distance[other] >= distance[slot]
+                    } else {
+                        distance[other] > distance[slot]
+                    }
+                };
+                let rank: u32 = (0..8).map(|other| u32::from(is_farther(other))).sum();
                 order |= (slot as u32) << (3 * rank);
             }
             self.order.0[octant] = order;

@@ -1,5 +1,7 @@
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
+use rayon::prelude::*;
+
 use super::random::{Random, at, isolated, mesh, periodic, scene, square};
 use crate::{
     accel::{BuildError, Domain, InstanceInput, MeshInput, Ray, TwoLevelBvh},
@@ -9,7 +11,7 @@ use crate::{
 fn build(mesh: &Mesh) -> Result<TwoLevelBvh, BuildError> {
     let fine = square(1.0);
     let inputs = [MeshInput { mesh: &fine, surfaces: &[0] }, MeshInput { mesh, surfaces: &[0] }];
-    TwoLevelBvh::build(&inputs, &[at(1, DVec3::ZERO)], isolated(1.0))
+    TwoLevelBvh::build(&inputs, rayon::iter::once(at(1, DVec3::ZERO)), isolated(1.0))
 }
 
 #[test]
@@ -36,8 +38,9 @@ fn what_is_not_a_scene_is_named() {
 
     let mesh = square(1.0);
     let inputs = [MeshInput { mesh: &mesh, surfaces: &[0] }];
-    let place =
-        |instance, domain| TwoLevelBvh::build(&inputs, &[at(0, DVec3::ZERO), instance], domain);
+    let place = |instance, domain| {
+        TwoLevelBvh::build(&inputs, [at(0, DVec3::ZERO), instance].into_par_iter(), domain)
+    };
     let fine = isolated(1.0);
     let named = BuildError::Mesh { instance: 1, mesh: 3, count: 1 };
     assert_eq!(place(at(3, DVec3::ZERO), fine).unwrap_err(), named);
@@ -64,7 +67,7 @@ fn nothing_is_never_hit() {
         [MeshInput { mesh: &empty, surfaces: none }, MeshInput { mesh: &flat, surfaces: &[0] }];
     for domain in [isolated(1.0), periodic(1.0)] {
         for instances in [vec![], vec![at(0, DVec3::ZERO), at(1, DVec3::ZERO)]] {
-            let scene = TwoLevelBvh::build(&inputs, &instances, domain).unwrap();
+            let scene = TwoLevelBvh::build(&inputs, instances.into_par_iter(), domain).unwrap();
             let ray = Ray { origin: DVec3::Z, direction: -DVec3::Z, from: None };
             assert!(scene.closest(&ray).is_none() && !scene.occluded(&ray));
             assert_eq!((scene.bottom(), scene.top()), (0.0, 0.0));
@@ -112,6 +115,24 @@ fn bounds_hold_all_geometry_and_are_exact_in_height() {
     let (min, max) = scene.bounds();
     assert!((min.truncate() - DVec2::new(8.0, 18.0)).length() < 1.2, "{min}");
     assert!((max.truncate() - DVec2::new(12.0, 22.0)).length() < 1.2, "{max}");
+}
+
+/// Small triangles along a diagonal that is turned to the x axis: the box of the instance is as narrow as the boxes of
+/// 512 parts of the mesh.
+#[test]
+fn turned_instances_have_narrow_boxes() {
+    let count = 8_000;
+    let vertices = (0..count).flat_map(|i| {
+        let a = Vec3::splat(i as f32 / count as f32) * Vec3::new(1.0, 1.0, 0.0);
+        [a, a + 1e-4 * Vec3::X, a + 1e-4 * Vec3::Y]
+    });
+    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let diagonal = mesh(vertices.collect(), triangles, vec![]);
+    let linear = DMat3::from_rotation_z(-std::f64::consts::FRAC_PI_4);
+    let turned = InstanceInput { mesh: 0, linear, translation: DVec3::ZERO };
+    let (min, max) = scene(&[diagonal], &[turned], isolated(1.0)).bounds();
+    assert!((max.x - min.x - 2_f64.sqrt()).abs() < 0.01, "{min} {max}");
+    assert!(max.y - min.y > 1e-4 && max.y - min.y < 0.01, "{min} {max}");
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
 
 use crate::{
     accel::{Domain, InstanceInput, MeshInput, TwoLevelBvh},
@@ -102,5 +103,5 @@ pub(super) fn scene(meshes: &[Mesh], instances: &[InstanceInput], domain: Domain
         .zip(surfaces.chunks(1))
         .map(|(mesh, surfaces)| MeshInput { mesh, surfaces })
         .collect();
-    TwoLevelBvh::build(&inputs, instances, domain).unwrap()
+    TwoLevelBvh::build(&inputs, instances.par_iter().copied(), domain).unwrap()
 }

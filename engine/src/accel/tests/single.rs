@@ -71,7 +71,7 @@ fn a_hit_names_its_surface_primitive_and_front() {
             translation: DVec3::ZERO,
         };
         let input = [MeshInput { mesh: &leaf, surfaces: &[7, 9] }];
-        let scene = TwoLevelBvh::build(&input, &[one], isolated(1.0)).unwrap();
+        let scene = TwoLevelBvh::build(&input, rayon::iter::once(one), isolated(1.0)).unwrap();
         let disc = scene.closest(&down(DVec3::new(0.1, 0.2, 9.0))).unwrap();
         assert_eq!((disc.surface, disc.primitive, disc.instance), (9, 4, 0));
         assert_eq!((disc.normal, disc.distance), (-DVec3::Z, 7.0));
@@ -105,7 +105,8 @@ fn a_quadrilateral_is_a_parallelogram_only_if_it_is_one() {
     let part = |triangles| MeshPart { name: "half".into(), triangles, discs: 0..0 };
     two_parts.parts = vec![part(0..1), part(1..2)];
     let input = [MeshInput { mesh: &two_parts, surfaces: &[0, 1] }];
-    let scene = TwoLevelBvh::build(&input, &[at(0, DVec3::ZERO)], isolated(1.0)).unwrap();
+    let scene =
+        TwoLevelBvh::build(&input, rayon::iter::once(at(0, DVec3::ZERO)), isolated(1.0)).unwrap();
     let surface = |x, y| scene.closest(&down(DVec3::new(x, y, 1.0))).unwrap().surface;
     assert_eq!((surface(0.9, 0.1), surface(0.1, 0.9)), (0, 1), "two materials are two primitives");
 }
