@@ -152,7 +152,7 @@ pub fn energy(spread: &Spread, stage: &Stage, context: &Context) -> Product {
 pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<Product> {
     let bands = context.bands.len();
     let gain = counter.plane.gain;
-    let (values, errors) = scaled(spread, bands, |_| gain);
+    let scaled = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| value * gain).collect() };
     let pixels = counter.pixels();
     let plane = &counter.plane;
     let pixel = plane.size / counter.size.as_dvec2();
@@ -166,11 +166,14 @@ pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<
         };
         for (is_up, direction) in [(false, "downwelling"), (true, "upwelling")] {
             let first = counter.first_cell(index, is_up);
-            let raster = first * bands..(first + pixels) * bands;
-            let total = (first + pixels) * bands..(first + pixels + 1) * bands;
+            // The pixels, and their total last.
+            let cells = first * bands..(first + pixels + 1) * bands;
+            let values = scaled(&spread.mean()[cells.clone()]);
+            let errors = scaled(&spread.standard_error_of(cells));
+            let total = pixels * bands..;
             // Each pixel holds a share of the power on the whole plane.
             let per_pixel = |values: &[f64]| -> Vec<f32> {
-                reflectance::flux_density(&values[raster.clone()], &context.irradiance)
+                reflectance::flux_density(&values[..pixels * bands], &context.irradiance)
                     .iter()
                     .map(|value| (value * pixels as f64) as f32)
                     .collect()

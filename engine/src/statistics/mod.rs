@@ -5,6 +5,7 @@
 //! randomisations, and [`Spread`] over these gives the standard error, whatever correlations the
 //! points within one of them have.
 
+mod cell_index;
 mod ratio;
 mod replicates;
 mod spread;
@@ -13,5 +14,5 @@ mod sums;
 pub use ratio::ratio;
 pub use replicates::Replicates;
 pub use spread::Spread;
-pub use sums::Sums;
 pub(crate) use sums::zeroed;
+pub use sums::{OrderedSums, Sums};

@@ -1,4 +1,11 @@
-use super::zeroed;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{Sums, zeroed};
+
+/// Number of values that all randomisations are added to before the next ones: few enough to stay in the cache.
+const TILE: usize = 1 << 12;
 
 /// Mean and standard error over independent randomisations of the same values.
 ///
@@ -38,13 +45,34 @@ impl Spread {
     pub fn push(&mut self, randomisation: &[f64]) {
         assert_eq!(randomisation.len(), self.mean.len(), "one value each");
         self.count += 1;
-        let count = f64::from(self.count);
-        for ((mean, squares), &x) in self.mean.iter_mut().zip(&mut self.squares).zip(randomisation)
-        {
-            let before = x - *mean;
-            *mean += before / count;
-            *squares += before * (x - *mean);
-        }
+        add(&mut self.mean, &mut self.squares, self.count, randomisation.iter().copied());
+    }
+
+    /// Adds the means of randomisations per sample: their sums over the number of samples.
+    ///
+    /// # Panics
+    /// If the number of values of one differs.
+    pub fn push_sums(&mut self, randomisations: &[&Sums], samples: u64) {
+        let Some(first) = randomisations.first() else { return };
+        let (cells, bands) = (first.cells(), first.bands());
+        let values = |sums: &&Sums| sums.cells() * sums.bands();
+        assert!(
+            randomisations.iter().all(|sums| values(sums) == self.mean.len()),
+            "one value each"
+        );
+        let rows: Vec<_> = randomisations.par_iter().map(|sums| sums.ordered()).collect();
+        let tile = (TILE / bands.max(1)).max(1);
+        let (before, samples) = (self.count, samples as f64);
+        let means = self.mean.par_chunks_mut((tile * bands).max(1));
+        let tiles = means.zip(self.squares.par_chunks_mut((tile * bands).max(1))).enumerate();
+        tiles.for_each_init(Vec::new, |buffer, (index, (mean, squares))| {
+            let range = index * tile..((index + 1) * tile).min(cells);
+            for (count, row) in (before + 1..).zip(&rows) {
+                let values = row.values(range.clone(), buffer).iter();
+                add(mean, squares, count, values.map(|sum| sum / samples));
+            }
+        });
+        self.count += rows.len() as u32;
     }
 
     /// Spread of the values at these indices, each multiplied by a factor.
@@ -70,11 +98,20 @@ impl Spread {
     /// randomisations.
     #[must_use]
     pub fn standard_error(&self) -> Vec<f64> {
+        self.standard_error_of(0..self.mean.len())
+    }
+
+    /// Standard error of a range of means.
+    ///
+    /// # Panics
+    /// If the range is longer.
+    #[must_use]
+    pub fn standard_error_of(&self, range: Range<usize>) -> Vec<f64> {
         if self.count < 2 {
-            return vec![f64::NAN; self.mean.len()];
+            return vec![f64::NAN; range.len()];
         }
         let count = f64::from(self.count);
-        self.squares.iter().map(|s| (s / (count * (count - 1.0))).sqrt()).collect()
+        self.squares[range].iter().map(|s| (s / (count * (count - 1.0))).sqrt()).collect()
     }
 
     /// Median over all values with a mean other than 0 of `standard error / |mean|`; infinite where
@@ -97,9 +134,48 @@ impl Spread {
     }
 }
 
+/// Adds the values of the randomisation of this number to the means and squares of those before it.
+fn add(mean: &mut [f64], squares: &mut [f64], count: u32, values: impl Iterator<Item = f64>) {
+    let count = f64::from(count);
+    for ((mean, squares), x) in mean.iter_mut().zip(squares).zip(values) {
+        let before = x - *mean;
+        *mean += before / count;
+        *squares += before * (x - *mean);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Spread;
+    use super::{Spread, TILE};
+    use crate::statistics::Sums;
+
+    #[test]
+    fn sums_are_added_as_their_means_whether_they_are_sparse_or_not() {
+        let cells = 20 * TILE;
+        let rows: Vec<Sums> = (0..5)
+            .map(|row| {
+                let mut sums = Sums::new_sparse(cells, 3);
+                for step in 0..500 {
+                    let cell = (step * step * 31 + row * 7) % cells;
+                    sums.add_at(cell, step % 3, 1.0 / (step + row + 1) as f64);
+                }
+                sums
+            })
+            .collect();
+        let mut expected = Spread::new(3 * cells);
+        for row in &rows {
+            let ordered = row.ordered();
+            let mut buffer = Vec::new();
+            let sums = ordered.values(0..cells, &mut buffer);
+            expected.push(&sums.iter().map(|sum| sum / 7.0).collect::<Vec<_>>());
+        }
+        let mut spread = Spread::new(3 * cells);
+        let rows: Vec<&Sums> = rows.iter().collect();
+        spread.push_sums(&rows[..2], 7);
+        spread.push_sums(&rows[2..], 7);
+        assert_eq!(spread, expected);
+        assert!(spread.mean().iter().any(|mean| *mean > 0.0));
+    }
 
     #[test]
     fn mean_and_standard_error_are_those_of_the_textbook() {

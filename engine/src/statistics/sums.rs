@@ -1,36 +1,35 @@
-use indexmap::IndexSet;
+use std::ops::Range;
+
+use super::cell_index::CellIndex;
 
 /// Sums over the samples of one block or one randomisation, shape `[cells, bands]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
+    cells: usize,
     bands: usize,
     values: Vec<f64>,
     /// Cells that have values, in the order of `values`; `None` if all have.
-    touched: Option<IndexSet<usize>>,
+    touched: Option<CellIndex>,
 }
 
-/// Number of values from which a block's sums hold only the cells that it touches, 512 KiB.
+/// Number of values from which sums hold only the cells that are touched, 512 KiB.
 const SPARSE_FROM: usize = 1 << 16;
-
-/// Memory of the index of a cell, bytes: a number and its hash in a list that grows by doubling, and an
-/// entry of a hash table that is at least a quarter full.
-const INDEX_BYTES: u64 = 72;
 
 impl Sums {
     /// Sums that are all zero.
     #[must_use]
     pub fn new(cells: usize, bands: usize) -> Self {
-        Self { bands, values: zeroed(cells * bands), touched: None }
+        Self { cells, bands, values: zeroed(cells * bands), touched: None }
     }
 
-    /// Sums of a block, all zero, which will be merged into others: if there are many cells, only those that
-    /// something is added to take memory. The merged sums are the same, bit for bit.
+    /// Sums that are all zero. If there are many cells, only those that something is added to take memory; the sums are
+    /// the same, bit for bit.
     #[must_use]
-    pub fn new_for_block(cells: usize, bands: usize) -> Self {
+    pub fn new_sparse(cells: usize, bands: usize) -> Self {
         if cells.saturating_mul(bands) < SPARSE_FROM {
             return Self::new(cells, bands);
         }
-        Self { bands, values: Vec::new(), touched: Some(IndexSet::new()) }
+        Self { cells, bands, values: Vec::new(), touched: Some(CellIndex::default()) }
     }
 
     /// Memory of the sums that [`Self::new`] returns, bytes; `u64::MAX` if the number does not fit.
@@ -40,15 +39,15 @@ impl Sums {
         bytes.try_into().unwrap_or(u64::MAX)
     }
 
-    /// Maximum memory of the sums that [`Self::new_for_block`] returns once `touched` cells were added to, bytes.
+    /// Maximum memory of the sums that [`Self::new_sparse`] returns once `touched` cells were added to, bytes.
     #[must_use]
-    pub fn block_bytes(cells: usize, bands: usize, touched: u64) -> u64 {
+    pub fn sparse_bytes(cells: usize, bands: usize, touched: u64) -> u64 {
         let all = Self::bytes(cells, bands);
         if all < Self::bytes(SPARSE_FROM, 1) {
             return all;
         }
         // Values grow by doubling; each cell has an index.
-        let values = Self::bytes(2 * bands, 1).saturating_add(INDEX_BYTES);
+        let values = Self::bytes(2 * bands, 1).saturating_add(CellIndex::BYTES);
         let touched = touched.min(cells as u64);
         values.saturating_mul(touched)
     }
@@ -58,14 +57,14 @@ impl Sums {
     /// # Panics
     /// If the cell is out of range.
     pub fn start(&mut self, cell: usize) -> usize {
+        assert!(cell < self.cells, "the cell is in range");
         let row = self.touched.as_mut().map_or(cell, |touched| {
-            let (row, is_new) = touched.insert_full(cell);
-            if is_new {
+            let row = touched.insert(cell);
+            if touched.cells().len() * self.bands > self.values.len() {
                 self.values.resize(self.values.len() + self.bands, 0.0);
             }
             row
         });
-        assert!((row + 1) * self.bands <= self.values.len(), "the cell is in range");
         row * self.bands
     }
 
@@ -91,40 +90,138 @@ impl Sums {
     /// # Panics
     /// If the shapes differ.
     pub fn merge(&mut self, other: &Self) {
-        assert_eq!(self.bands, other.bands, "one shape");
-        if let Some(touched) = &other.touched {
-            for (&cell, values) in touched.iter().zip(other.values.chunks_exact(self.bands)) {
-                for (sum, value) in self.cell_mut(cell).iter_mut().zip(values) {
-                    *sum += value;
-                }
+        assert_eq!((self.cells, self.bands), (other.cells, other.bands), "one shape");
+        let Some(touched) = &other.touched else {
+            self.fill_in();
+            for (sum, value) in self.values.iter_mut().zip(&other.values) {
+                *sum += value;
             }
             return;
+        };
+        let own = self.touched.as_ref().map_or(0, |own| own.cells().len());
+        let both = (own + touched.cells().len()) as u64;
+        if Self::sparse_bytes(self.cells, self.bands, both) > Self::bytes(self.cells, self.bands) {
+            self.fill_in();
         }
-        assert_eq!(self.values.len(), other.values.len(), "one shape");
-        for (sum, value) in self.values.iter_mut().zip(&other.values) {
-            *sum += value;
+        for (&cell, values) in touched.cells().iter().zip(other.values.chunks_exact(self.bands)) {
+            for (sum, value) in self.cell_mut(cell).iter_mut().zip(values) {
+                *sum += value;
+            }
         }
+    }
+
+    /// Gives every cell its values.
+    fn fill_in(&mut self) {
+        if self.touched.is_some() {
+            let mut all = Self::new(self.cells, self.bands);
+            let ordered = self.ordered();
+            all.values.copy_from_slice(ordered.values(0..self.cells, &mut Vec::new()));
+            *self = all;
+        }
+    }
+
+    /// Access to the sums in the order of their cells.
+    #[must_use]
+    pub fn ordered(&self) -> OrderedSums<'_> {
+        let buckets =
+            self.touched.as_ref().map(|touched| Buckets::new(touched.cells(), self.cells));
+        OrderedSums { sums: self, buckets }
     }
 
     /// Sums, shape `[cells, bands]`, bands fastest.
     ///
     /// # Panics
-    /// If these are sums of a block.
+    /// If they hold only the cells that were touched.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        assert!(self.touched.is_none(), "sums of a block are only merged");
+        assert!(self.touched.is_none(), "sparse sums are read by `ordered`");
         &self.values
     }
 
-    /// Mutable sums; those of a block hold only the cells that it touches.
+    /// Mutable sums, from the places that [`Self::start`] returned.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub const fn cells(&self) -> usize {
+        self.cells
     }
 
     /// Number of bands of a cell.
     #[must_use]
     pub const fn bands(&self) -> usize {
         self.bands
+    }
+}
+
+/// Sums in the order of their cells.
+#[derive(Debug)]
+pub struct OrderedSums<'a> {
+    sums: &'a Sums,
+    /// Rows of the cells that were touched; `None` if all have values.
+    buckets: Option<Buckets>,
+}
+
+/// Rows by ranges of their cells.
+#[derive(Debug)]
+struct Buckets {
+    /// First of the rows of each bucket, and the end of the last.
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+/// Number of cells of a bucket.
+const BUCKET: usize = 1 << 10;
+
+impl Buckets {
+    /// Rows of these cells, all below `end`.
+    fn new(cells: &[usize], end: usize) -> Self {
+        let mut starts = vec![0; end.div_ceil(BUCKET) + 1];
+        for cell in cells {
+            starts[cell / BUCKET + 1] += 1;
+        }
+        for bucket in 1..starts.len() {
+            starts[bucket] += starts[bucket - 1];
+        }
+        let (mut next, mut rows) = (starts.clone(), vec![0; cells.len()]);
+        for (row, cell) in cells.iter().enumerate() {
+            let place = &mut next[cell / BUCKET];
+            rows[*place] = row;
+            *place += 1;
+        }
+        Self { starts, rows }
+    }
+
+    /// Rows whose cells may lie in a range.
+    fn rows(&self, cells: &Range<usize>) -> &[usize] {
+        let last = self.starts[cells.end.div_ceil(BUCKET)];
+        &self.rows[self.starts[cells.start / BUCKET].min(last)..last]
+    }
+}
+
+impl OrderedSums<'_> {
+    /// Sums of a range of cells, shape `[cells, bands]`; `buffer` holds them if some were not touched.
+    ///
+    /// # Panics
+    /// If a cell is out of range.
+    pub fn values<'b>(&'b self, cells: Range<usize>, buffer: &'b mut Vec<f64>) -> &'b [f64] {
+        let Sums { bands, values, touched, .. } = self.sums;
+        let (Some(buckets), Some(touched)) = (&self.buckets, touched) else {
+            return &values[cells.start * bands..cells.end * bands];
+        };
+        buffer.clear();
+        buffer.resize(cells.len() * bands, 0.0);
+        for &row in buckets.rows(&cells) {
+            let cell = touched.cells()[row];
+            if cells.contains(&cell) {
+                let start = (cell - cells.start) * bands;
+                let row = &values[row * bands..(row + 1) * bands];
+                buffer[start..start + bands].copy_from_slice(row);
+            }
+        }
+        buffer
     }
 }
 
@@ -140,29 +237,40 @@ pub(crate) fn zeroed(len: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    fn bits(values: &[f64]) -> Vec<u64> {
+        values.iter().map(|sum| sum.to_bits()).collect()
+    }
+
     #[test]
-    fn a_block_that_holds_only_what_it_touches_merges_to_the_same_bits() {
+    fn sums_that_hold_only_what_is_touched_merge_to_the_same_bits() {
         let cells = SPARSE_FROM / 2;
-        let fill = |sums: &mut Sums, seed: usize| {
+        let fill = |sums: &mut Sums, seed: usize, places: usize| {
             for step in 0..1000 {
-                let cell = (step * step * 7919 + seed) % 97 * (cells / 97);
+                let cell = (step * step * 7919 + seed) % places * (cells / places);
                 for (band, sum) in sums.cell_mut(cell).iter_mut().enumerate() {
                     *sum += 1.0 / (1 + step + band) as f64;
                     *sum += [0.1, 0.7][band] * 1e-3 * seed as f64;
                 }
             }
         };
-        let (mut sparse, mut dense) = (Sums::new(cells, 2), Sums::new(cells, 2));
-        for seed in 1..5 {
-            let (mut block, mut all) = (Sums::new_for_block(cells, 2), Sums::new(cells, 2));
-            fill(&mut block, seed);
-            fill(&mut all, seed);
-            assert!(block.values.len() <= 2 * 97 && all.values.len() == 2 * cells);
-            sparse.merge(&block);
-            dense.merge(&all);
+        // Few cells stay sparse; of many all have values at last.
+        for (places, blocks) in [(97, 5), (cells, 40)] {
+            let (mut sparse, mut dense) = (Sums::new_sparse(cells, 2), Sums::new(cells, 2));
+            for seed in 1..blocks {
+                let (mut block, mut all) = (Sums::new_sparse(cells, 2), Sums::new(cells, 2));
+                fill(&mut block, seed, places);
+                fill(&mut all, seed, places);
+                assert!(block.values.len() <= 2 * 1000 && all.values.len() == 2 * cells);
+                sparse.merge(&block);
+                dense.merge(&all);
+            }
+            assert_eq!(sparse.touched.is_some(), places == 97);
+            assert!(dense.values().iter().any(|sum| *sum > 1.0));
+            let ordered = sparse.ordered();
+            for range in [0..cells, 11..9001] {
+                let expected = &dense.values()[2 * range.start..2 * range.end];
+                assert_eq!(bits(ordered.values(range, &mut Vec::new())), bits(expected));
+            }
         }
-        assert!(dense.values().iter().any(|sum| *sum > 1.0));
-        let bits = |sums: &Sums| sums.values().iter().map(|sum| sum.to_bits()).collect::<Vec<_>>();
-        assert_eq!(bits(&sparse), bits(&dense));
     }
 }

@@ -13,6 +13,11 @@ pub(in crate::transport) trait SampleTracer: Sync {
     /// Cells and columns of each of its sums.
     fn shapes(&self) -> Vec<(usize, usize)>;
 
+    /// Its sums, all zero.
+    fn empty_sums(&self) -> Vec<Sums> {
+        self.shapes().into_iter().map(|(cells, columns)| Sums::new(cells, columns)).collect()
+    }
+
     /// Prepares for tracing, once, before any sample is traced.
     fn prepare(&self) {}
 
@@ -62,16 +67,15 @@ impl<'a> ReplicateSums<'a> {
 
     /// Allocates the memory of a partition, as late as possible: films that are never traced need none.
     fn set_up(&mut self, partition: Partition) {
-        let shapes = self.tracer.shapes();
         match &mut self.store {
             Store::All(rows) => {
                 let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
                 let missing = owned.filter(|(_, row)| row.is_empty());
-                missing.for_each(|(_, row)| *row = empty(&shapes));
+                missing.for_each(|(_, row)| *row = self.tracer.empty_sums());
             }
             Store::Folded(spreads, _) => {
                 let empty = |(cells, columns): &(usize, usize)| Spread::new(cells * columns);
-                *spreads = shapes.iter().map(empty).collect();
+                *spreads = self.tracer.shapes().iter().map(empty).collect();
             }
         }
     }
@@ -95,7 +99,7 @@ impl<'a> ReplicateSums<'a> {
             Store::All(_) => {
                 let (cells, columns) = self.tracer.shapes()[index];
                 let mut spread = Spread::new(cells * columns);
-                self.rows(index).for_each(|sums| push(&mut spread, sums, self.done));
+                spread.push_sums(&self.rows(index).collect::<Vec<_>>(), self.done);
                 spread
             }
             Store::Folded(spreads, _) => spreads[index].clone(),
@@ -108,10 +112,6 @@ impl<'a> ReplicateSums<'a> {
     }
 }
 
-fn empty(shapes: &[(usize, usize)]) -> Vec<Sums> {
-    shapes.iter().map(|&(cells, columns)| Sums::new(cells, columns)).collect()
-}
-
 /// Memory of the sums of one randomisation, bytes.
 fn bytes_of_one(shapes: &[(usize, usize)]) -> u64 {
     let bytes = shapes.iter().map(|&(cells, columns)| Sums::bytes(cells, columns));
@@ -121,11 +121,6 @@ fn bytes_of_one(shapes: &[(usize, usize)]) -> u64 {
 /// Memory of the sums of all randomisations, bytes.
 fn bytes_of_all(shapes: &[(usize, usize)]) -> u64 {
     bytes_of_one(shapes).saturating_mul(RANDOMISATIONS.into())
-}
-
-fn push(spread: &mut Spread, sums: &Sums, samples: u64) {
-    let means: Vec<f64> = sums.values().iter().map(|sum| sum / samples as f64).collect();
-    spread.push(&means);
 }
 
 impl Film for ReplicateSums<'_> {
@@ -148,7 +143,7 @@ impl Film for ReplicateSums<'_> {
                 let into = match store {
                     Store::All(rows) => &mut rows[row as usize],
                     Store::Folded(..) if current.is_empty() => {
-                        current = empty(&tracer.shapes());
+                        current = tracer.empty_sums();
                         &mut current
                     }
                     Store::Folded(..) => &mut current,
@@ -162,7 +157,7 @@ impl Film for ReplicateSums<'_> {
                     let part = tracer.imbalance(&current);
                     *imbalance = max_of(*imbalance, part);
                     for (spread, sums) in spreads.iter_mut().zip(&current) {
-                        push(spread, sums, to);
+                        spread.push_sums(&[sums], to);
                     }
                     current.clear();
                 }
@@ -185,7 +180,10 @@ impl Film for ReplicateSums<'_> {
         save_u64(out, &[self.rays])?;
         let Store::All(rows) = &self.store else { return Ok(()) };
         let owned = rows.iter().enumerate().filter(|(row, _)| self.partition.owns(*row));
-        owned.flat_map(|(_, row)| row).try_for_each(|sums| save_f64(out, sums.values()))
+        owned.flat_map(|(_, row)| row).try_for_each(|sums| {
+            let (ordered, mut buffer) = (sums.ordered(), Vec::new());
+            chunks(sums).try_for_each(|cells| save_f64(out, ordered.values(cells, &mut buffer)))
+        })
     }
 
     fn restore(&mut self, partition: Partition, done: u64, input: &mut dyn Read) -> io::Result<()> {
@@ -193,10 +191,23 @@ impl Film for ReplicateSums<'_> {
         restore_u64(input, &mut rays)?;
         self.rays += rays[0];
         self.done = done;
+        if let Store::All(rows) = &mut self.store {
+            let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
+            owned.for_each(|(_, row)| row.clear());
+        }
         self.set_up(partition);
         let Store::All(rows) = &mut self.store else { return Ok(()) };
         let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
-        owned.flat_map(|(_, row)| row).try_for_each(|sums| restore_f64(input, sums.values_mut()))
+        owned.flat_map(|(_, row)| row).try_for_each(|sums| {
+            let mut values = vec![0.0; sums.bands()];
+            (0..sums.cells()).try_for_each(|cell| {
+                restore_f64(input, &mut values)?;
+                if values.iter().any(|value| value.to_bits() > 0) {
+                    sums.cell_mut(cell).copy_from_slice(&values);
+                }
+                Ok(())
+            })
+        })
     }
 
     fn can_grow(&self) -> Result<(), u64> {
@@ -249,6 +260,15 @@ impl Film for ReplicateSums<'_> {
         }
     }
 }
+
+/// Ranges of cells that are written at a time.
+fn chunks(sums: &Sums) -> impl Iterator<Item = Range<usize>> {
+    let cells = sums.cells();
+    (0..cells).step_by(CHUNK).map(move |first| first..(first + CHUNK).min(cells))
+}
+
+/// Number of cells that are written at a time.
+const CHUNK: usize = 1 << 10;
 
 /// The larger of two values, if there are any.
 fn max_of(a: Option<f64>, b: Option<f64>) -> Option<f64> {

@@ -83,6 +83,10 @@ impl SampleTracer for PacketTracer<'_> {
         counters.iter().map(|counter| (counter.cells(), stage.bands)).collect()
     }
 
+    fn empty_sums(&self) -> Vec<Sums> {
+        self.shapes().into_iter().map(|(cells, bands)| Sums::new_sparse(cells, bands)).collect()
+    }
+
     fn prepare(&self) {
         for counter in &self.settings.counters {
             counter.prepare(self.settings.stage);
@@ -91,9 +95,7 @@ impl SampleTracer for PacketTracer<'_> {
 
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
         let stage = self.settings.stage;
-        let sums = self.shapes().into_iter();
-        let sums = sums.map(|(cells, bands)| Sums::new_for_block(cells, bands)).collect();
-        let mut tally = Tally::new(&stage.models, sums);
+        let mut tally = Tally::new(&stage.models, self.empty_sums());
         let idle = self.idle().pop();
         let new = || PacketBatch::new(self.batch, stage);
         let mut batch = idle.unwrap_or_else(new);
@@ -108,7 +110,7 @@ impl SampleTracer for PacketTracer<'_> {
     fn block_bytes(&self, samples: u64) -> u64 {
         let touched = samples * TOUCHED;
         let shapes = self.shapes().into_iter();
-        let blocks = shapes.map(|(cells, bands)| Sums::block_bytes(cells, bands, touched));
+        let blocks = shapes.map(|(cells, bands)| Sums::sparse_bytes(cells, bands, touched));
         blocks.fold(0, u64::saturating_add)
     }
 

@@ -35,7 +35,9 @@ impl EnergyCounter {
     /// Largest fraction over all bands of the incident power that the other terms do not account for.
     #[must_use]
     pub fn imbalance(sums: &Sums) -> f64 {
-        let (incident, others) = sums.values().split_at(sums.bands());
+        let (ordered, mut buffer) = (sums.ordered(), Vec::new());
+        let values = ordered.values(0..sums.cells(), &mut buffer);
+        let (incident, others) = values.split_at(sums.bands());
         let fractions = incident.iter().enumerate().map(|(band, &incident)| {
             let accounted: f64 = others.iter().skip(band).step_by(sums.bands()).sum();
             let fraction = (incident - accounted).abs() / incident.max(f64::MIN_POSITIVE);
