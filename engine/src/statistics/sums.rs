@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use super::cell_index::CellIndex;
+use super::cell_index::{CellIndex, reserve};
 
 /// Sums over the samples of one block or one randomisation, shape `[cells, bands]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl Sums {
     /// the same, bit for bit.
     #[must_use]
     pub fn new_sparse(cells: usize, bands: usize) -> Self {
-        if cells.saturating_mul(bands) < SPARSE_FROM {
+        if cells.saturating_mul(bands) < SPARSE_FROM || cells > CellIndex::MOST {
             return Self::new(cells, bands);
         }
         Self { cells, bands, values: Vec::new(), touched: Some(CellIndex::default()) }
@@ -46,7 +46,7 @@ impl Sums {
         if all < Self::bytes(SPARSE_FROM, 1) {
             return all;
         }
-        // Values grow by doubling; each cell has an index.
+        // Values are there twice while they grow; each cell has an index.
         let values = Self::bytes(2 * bands, 1).saturating_add(CellIndex::BYTES);
         let touched = touched.min(cells as u64);
         values.saturating_mul(touched)
@@ -60,7 +60,8 @@ impl Sums {
         assert!(cell < self.cells, "the cell is in range");
         let row = self.touched.as_mut().map_or(cell, |touched| {
             let row = touched.insert(cell);
-            if touched.cells().len() * self.bands > self.values.len() {
+            if touched.len() * self.bands > self.values.len() {
+                reserve(&mut self.values, self.bands);
                 self.values.resize(self.values.len() + self.bands, 0.0);
             }
             row
@@ -98,12 +99,12 @@ impl Sums {
             }
             return;
         };
-        let own = self.touched.as_ref().map_or(0, |own| own.cells().len());
-        let both = (own + touched.cells().len()) as u64;
+        let own = self.touched.as_ref().map_or(0, CellIndex::len);
+        let both = (own + touched.len()) as u64;
         if Self::sparse_bytes(self.cells, self.bands, both) > Self::bytes(self.cells, self.bands) {
             self.fill_in();
         }
-        for (&cell, values) in touched.cells().iter().zip(other.values.chunks_exact(self.bands)) {
+        for (cell, values) in touched.cells().zip(other.values.chunks_exact(self.bands)) {
             for (sum, value) in self.cell_mut(cell).iter_mut().zip(values) {
                 *sum += value;
             }
@@ -123,8 +124,7 @@ impl Sums {
     /// Access to the sums in the order of their cells.
     #[must_use]
     pub fn ordered(&self) -> OrderedSums<'_> {
-        let buckets =
-            self.touched.as_ref().map(|touched| Buckets::new(touched.cells(), self.cells));
+        let buckets = self.touched.as_ref().map(|touched| Buckets::new(touched, self.cells));
         OrderedSums { sums: self, buckets }
     }
 
@@ -169,33 +169,33 @@ pub struct OrderedSums<'a> {
 struct Buckets {
     /// First of the rows of each bucket, and the end of the last.
     starts: Vec<usize>,
-    rows: Vec<usize>,
+    rows: Vec<u32>,
 }
 
 /// Number of cells of a bucket.
 const BUCKET: usize = 1 << 10;
 
 impl Buckets {
-    /// Rows of these cells, all below `end`.
-    fn new(cells: &[usize], end: usize) -> Self {
+    /// Rows of the touched cells, all below `end`.
+    fn new(touched: &CellIndex, end: usize) -> Self {
         let mut starts = vec![0; end.div_ceil(BUCKET) + 1];
-        for cell in cells {
+        for cell in touched.cells() {
             starts[cell / BUCKET + 1] += 1;
         }
         for bucket in 1..starts.len() {
             starts[bucket] += starts[bucket - 1];
         }
-        let (mut next, mut rows) = (starts.clone(), vec![0; cells.len()]);
-        for (row, cell) in cells.iter().enumerate() {
+        let (mut next, mut rows) = (starts.clone(), vec![0; touched.len()]);
+        for (row, cell) in touched.cells().enumerate() {
             let place = &mut next[cell / BUCKET];
-            rows[*place] = row;
+            rows[*place] = row as u32;
             *place += 1;
         }
         Self { starts, rows }
     }
 
     /// Rows whose cells may lie in a range.
-    fn rows(&self, cells: &Range<usize>) -> &[usize] {
+    fn rows(&self, cells: &Range<usize>) -> &[u32] {
         let last = self.starts[cells.end.div_ceil(BUCKET)];
         &self.rows[self.starts[cells.start / BUCKET].min(last)..last]
     }
@@ -214,7 +214,8 @@ impl OrderedSums<'_> {
         buffer.clear();
         buffer.resize(cells.len() * bands, 0.0);
         for &row in buckets.rows(&cells) {
-            let cell = touched.cells()[row];
+            let row = row as usize;
+            let cell = touched.cell(row);
             if cells.contains(&cell) {
                 let start = (cell - cells.start) * bands;
                 let row = &values[row * bands..(row + 1) * bands];

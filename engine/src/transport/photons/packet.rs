@@ -113,6 +113,7 @@ impl Packet {
         self.record.take_results(results.occluded);
         self.phase = match self.phase {
             Phase::Flight => {
+                self.line.take_flight(results.hit);
                 let is_flying = self.end_flight(settings, results.hit, queue);
                 self.after_flight(settings, is_flying, queue)
             }
@@ -182,6 +183,7 @@ impl Packet {
         if settings.kind == PhotonKind::Photon && self.band.is_none() {
             return false;
         }
+        self.line.follow_packet(&ray);
         self.first_order = visited.order;
         (self.ray, self.visited) = (ray, visited);
         queue.push_closest(ray);

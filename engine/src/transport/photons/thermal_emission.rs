@@ -1,3 +1,5 @@
+use std::mem::replace;
+
 use glam::DVec3;
 
 use super::counters::{Event, Visited};
@@ -18,6 +20,8 @@ use crate::transport::ray_queue::RayQueue;
 /// crosses a surface, either side sends `(1 - ρ - τ) B(T)` away from it along the line. A line of
 /// uniform measure meets an element of area in proportion to its cosine: so the density of points
 /// of emission is even over area, directions follow Lambert's law, and no surface's area need be known.
+///
+/// The packet that is emitted along the line meets the next surface of the line: one ray finds both.
 ///
 /// Weights are radiance times `π g`: their sum over the number of lines is a flux density over the
 /// rectangle, W m⁻² nm⁻¹.
@@ -69,12 +73,43 @@ pub(super) struct EmissionLine {
     black_body: SpectrumId,
     /// Number of directions in which the surface has still to emit a packet.
     directions_left: u32,
+    /// Next surface on the line.
+    next: NextCrossing,
+}
+
+/// Next surface on a line of emission, which the packet that is emitted along the line meets first.
+#[derive(Clone, Copy, Debug)]
+enum NextCrossing {
+    Unknown,
+    /// The packet that flies is on the line.
+    Pending,
+    Known(Option<Hit>),
 }
 
 impl EmissionLine {
     /// A line that starts along a ray.
     pub(super) const fn new(ray: Ray) -> Self {
-        Self { ray, crossing: None, black_body: SpectrumId::ZERO, directions_left: 0 }
+        Self {
+            ray,
+            crossing: None,
+            black_body: SpectrumId::ZERO,
+            directions_left: 0,
+            next: NextCrossing::Unknown,
+        }
+    }
+
+    /// Expects the next surface where a packet ends its first flight, if that is along the line.
+    pub(super) fn follow_packet(&mut self, flight: &Ray) {
+        if *flight == self.ray {
+            self.next = NextCrossing::Pending;
+        }
+    }
+
+    /// Takes the end of a packet's flight, if it was on the line.
+    pub(super) fn take_flight(&mut self, hit: Option<&Hit>) {
+        if matches!(self.next, NextCrossing::Pending) {
+            self.next = NextCrossing::Known(hit.copied());
+        }
     }
 
     /// Point and direction of the next packet that the last surface emits: against the line, then along it.
@@ -143,6 +178,9 @@ impl Packet {
                 return Phase::Flight;
             }
             self.end(settings);
+        }
+        if let NextCrossing::Known(hit) = replace(&mut self.line.next, NextCrossing::Unknown) {
+            return self.cross_surface(settings, hit.as_ref(), queue);
         }
         queue.push_closest(self.line.ray);
         Phase::Line
