@@ -8,7 +8,10 @@ use rayon::prelude::*;
 
 use crate::geometry::Bounds;
 
-use crate::accel::layout::{Bounds32, ChildRef, Domain, InstanceRecord, MeshBvh, PeriodicCopies};
+use crate::accel::{
+    layout::{Bounds32, ChildRef, Domain, InstanceRecord, MeshBvh, PeriodicCopies},
+    simd::with_huge_pages,
+};
 
 use super::{BuildError, InstanceInput};
 
@@ -30,7 +33,7 @@ pub(super) fn records(
     }
     let parts: Vec<_> = meshes.iter().map(MeshParts::new).collect();
     let first_invalid = AtomicUsize::new(usize::MAX);
-    let (mut records, mut boxes) = (Vec::new(), Vec::new());
+    let (mut records, mut boxes) = (with_huge_pages(count), Vec::new());
     instances
         .enumerate()
         .map(|(instance, input)| {

@@ -15,7 +15,7 @@ use crate::accel::{
         Bounds32, ChildRef, DiscBlock, MeshBvh, PARALLELOGRAM, PlanarBlock, SurfaceRange,
         slab_padding,
     },
-    simd::{Lanes, Words},
+    simd::{Lanes, Words, with_huge_pages},
 };
 
 use super::{
@@ -141,8 +141,12 @@ impl Blocks {
             })
             .collect();
         let members = |&leaf: &usize| leaves.get(leaf).iter().map(|&p| primitives.get(p));
-        let planar = planar_leaves.par_iter().map(|leaf| planar_block(members(leaf))).collect();
-        let discs = disc_leaves.par_iter().map(|leaf| disc_block(members(leaf))).collect();
+        let mut planar = with_huge_pages(planar_leaves.len());
+        let blocks = planar_leaves.par_iter().map(|leaf| planar_block(members(leaf)));
+        blocks.collect_into_vec(&mut planar);
+        let mut discs = with_huge_pages(disc_leaves.len());
+        let blocks = disc_leaves.par_iter().map(|leaf| disc_block(members(leaf)));
+        blocks.collect_into_vec(&mut discs);
         let has_parallelograms = primitives.planar.par_iter().any(|planar| planar.second.is_some());
         let second_triangles = if has_parallelograms {
             planar_leaves.par_iter().map(|&leaf| primitives.seconds(leaves.get(leaf))).collect()

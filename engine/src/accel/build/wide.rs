@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::accel::{
     layout::{Bounds32, ChildRef, WideBvh, WideNode},
-    simd::Words,
+    simd::{Words, with_huge_pages},
 };
 
 use super::{
@@ -131,7 +131,7 @@ impl Merge {
             sum(|subset| subset.leaves.order.len()),
             sum(|subset| subset.leaves.ends.len()),
         );
-        let nodes = Vec::with_capacity(inner);
+        let nodes = with_huge_pages(inner);
         Self { nodes, leaves, padding, subsets: subsets.into_iter().map(Some).collect() }
     }
 
