@@ -49,7 +49,7 @@ pub struct PacketOptions {
 
 /// Samples of a batch: enough that the ray engine is seldom short of work when some have ended, few enough that
 /// their records stay in the cache.
-const BATCH: usize = 256;
+const BATCH: usize = 128;
 
 impl<'a> PacketTracer<'a> {
     fn new(
