@@ -113,6 +113,15 @@ impl SurfaceModels {
         }
     }
 
+    /// Returns whether all surfaces are diffuse: paths are then multiplied by spectra of the table alone.
+    #[must_use]
+    pub fn are_diffuse(&self) -> bool {
+        self.bsdfs.iter().all(|bsdf| match bsdf {
+            Bsdf::BiLambertian(_) => true,
+            Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) => false,
+        })
+    }
+
     /// Number of surfaces.
     #[must_use]
     pub const fn surface_count(&self) -> usize {

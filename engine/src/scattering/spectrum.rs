@@ -13,6 +13,18 @@ impl SpectrumId {
     /// One in every band; in every table.
     pub const ONE: Self = Self(1);
 
+    /// Its number in the table, for files.
+    #[must_use]
+    pub const fn number(self) -> u32 {
+        self.0
+    }
+
+    /// The spectrum of a number that [`Self::number`] gave.
+    #[must_use]
+    pub const fn from_number(number: u32) -> Self {
+        Self(number)
+    }
+
     const fn index(self) -> usize {
         self.0 as usize
     }

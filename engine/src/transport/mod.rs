@@ -10,6 +10,7 @@
 //! | `sensors` | the system and the film of each kind of sensor |
 //! | `ray_queue.rs` | rays of many paths or packets, traced together |
 //! | `roulette.rs`, `plane.rs` | Russian roulette; the plane that reflected light leaves through |
+//! | `spectrum_products.rs`, `coefficients.rs` | products of spectra that many packets share; sums of them that are evaluated later |
 //! | `scattering_order.rs`, `band_blocks.rs` | parts of the light by order; bands that are evaluated at a time |
 //!
 //! Reflected light is computed for a total horizontal irradiance of 1 in each band (see
@@ -17,6 +18,7 @@
 
 mod band_blocks;
 mod camera;
+mod coefficients;
 mod films;
 mod paths;
 mod photons;
@@ -26,6 +28,7 @@ mod reference;
 mod roulette;
 mod scattering_order;
 mod sensors;
+mod spectrum_products;
 
 pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,

@@ -24,7 +24,7 @@ impl Partition {
 }
 
 /// Writes numbers, little-endian.
-pub(super) fn save_u64(out: &mut dyn Write, numbers: &[u64]) -> io::Result<()> {
+pub(in crate::transport) fn save_u64(out: &mut dyn Write, numbers: &[u64]) -> io::Result<()> {
     numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
 }
 
@@ -33,7 +33,10 @@ pub(super) fn save_f64(out: &mut dyn Write, numbers: &[f64]) -> io::Result<()> {
 }
 
 /// Reads numbers over the given ones.
-pub(super) fn restore_u64(input: &mut dyn Read, numbers: &mut [u64]) -> io::Result<()> {
+pub(in crate::transport) fn restore_u64(
+    input: &mut dyn Read,
+    numbers: &mut [u64],
+) -> io::Result<()> {
     for number in numbers {
         *number = u64::from_le_bytes(word(input)?);
     }

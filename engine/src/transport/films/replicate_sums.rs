@@ -4,7 +4,8 @@ use std::io::{self, Read, Write};
 use std::ops::Range;
 
 use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
-use super::{Film, Partition, blocks};
+use super::{Film, Partition, ReplicateRow, blocks};
+use crate::scattering::SurfaceModels;
 use crate::statistics::{Spread, Sums};
 use crate::transport::{ProgressFn, RANDOMISATIONS};
 
@@ -13,22 +14,29 @@ pub(in crate::transport) trait SampleTracer: Sync {
     /// Cells and columns of each of its sums.
     fn shapes(&self) -> Vec<(usize, usize)>;
 
-    /// Its sums, all zero.
-    fn empty_sums(&self) -> Vec<Sums> {
-        self.shapes().into_iter().map(|(cells, columns)| Sums::new(cells, columns)).collect()
+    /// Sums of a randomisation without samples.
+    fn empty_row(&self) -> ReplicateRow {
+        let shapes = self.shapes().into_iter();
+        let sums = shapes.map(|(cells, columns)| Sums::new(cells, columns)).collect();
+        ReplicateRow { sums, coefficients: None }
+    }
+
+    /// Models that coefficients are evaluated with, if there are any.
+    fn models(&self) -> Option<&SurfaceModels> {
+        None
     }
 
     /// Prepares for tracing, once, before any sample is traced.
     fn prepare(&self) {}
 
     /// Traces these samples of a randomisation; returns its sums and the number of rays.
-    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64);
+    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (ReplicateRow, u64);
 
     /// Maximum memory of the sums of this number of samples, bytes.
     fn block_bytes(&self, samples: u64) -> u64;
 
-    /// Fraction of the energy that the sums of a whole randomisation do not account for.
-    fn imbalance(&self, _: &[Sums]) -> Option<f64> {
+    /// Fraction of the energy that the first of the sums of a whole randomisation does not account for.
+    fn imbalance(&self, _: &Sums) -> Option<f64> {
         None
     }
 }
@@ -49,7 +57,7 @@ pub struct ReplicateSums<'a> {
 
 enum Store {
     /// All, shape `[randomisations, sums]`, those of other partitions empty: these can grow.
-    All(Vec<Vec<Sums>>),
+    All(Vec<ReplicateRow>),
     /// The spread of each of the sums over complete randomisations, and the largest imbalance.
     Folded(Vec<Spread>, Option<f64>),
 }
@@ -60,7 +68,7 @@ impl<'a> ReplicateSums<'a> {
         let store = if bytes_of_all(&tracer.shapes()) > MAX_BYTES {
             Store::Folded(Vec::new(), None)
         } else {
-            Store::All((0..RANDOMISATIONS).map(|_| Vec::new()).collect())
+            Store::All((0..RANDOMISATIONS).map(|_| ReplicateRow::default()).collect())
         };
         Self { tracer: Box::new(tracer), store, done: 0, rays: 0, partition: Partition::ALL }
     }
@@ -70,8 +78,8 @@ impl<'a> ReplicateSums<'a> {
         match &mut self.store {
             Store::All(rows) => {
                 let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
-                let missing = owned.filter(|(_, row)| row.is_empty());
-                missing.for_each(|(_, row)| *row = self.tracer.empty_sums());
+                let missing = owned.filter(|(_, row)| row.sums.is_empty());
+                missing.for_each(|(_, row)| *row = self.tracer.empty_row());
             }
             Store::Folded(spreads, _) => {
                 let empty = |(cells, columns): &(usize, usize)| Spread::new(cells * columns);
@@ -80,13 +88,13 @@ impl<'a> ReplicateSums<'a> {
         }
     }
 
-    /// One of the sums of each randomisation; none if they are folded.
+    /// One of the sums of each randomisation, of a measurement without coefficients; none if they are folded.
     pub(in crate::transport) fn rows(&self, index: usize) -> impl Iterator<Item = &Sums> {
         let rows = match &self.store {
             Store::All(rows) => rows.as_slice(),
             Store::Folded(..) => &[],
         };
-        rows.iter().filter_map(move |row| row.get(index))
+        rows.iter().filter_map(move |row| row.sums.get(index))
     }
 
     /// Spread over the randomisations of one of the sums, per sample.
@@ -96,10 +104,13 @@ impl<'a> ReplicateSums<'a> {
     #[must_use]
     pub fn spread(&self, index: usize) -> Spread {
         match &self.store {
-            Store::All(_) => {
+            Store::All(rows) => {
                 let (cells, columns) = self.tracer.shapes()[index];
                 let mut spread = Spread::new(cells * columns);
-                spread.push_sums(&self.rows(index).collect::<Vec<_>>(), self.done);
+                let rows: Vec<&ReplicateRow> =
+                    rows.iter().filter(|row| !row.sums.is_empty()).collect();
+                let sums = ReplicateRow::evaluated(&rows, index, self.tracer.models());
+                spread.push_sums(&sums.iter().map(AsRef::as_ref).collect::<Vec<_>>(), self.done);
                 spread
             }
             Store::Folded(spreads, _) => spreads[index].clone(),
@@ -134,32 +145,26 @@ impl Film for ReplicateSums<'_> {
         let owned = (0..u64::from(RANDOMISATIONS)).filter(|row| partition.owns(*row as usize));
         let (mut traced, all) = (0, (to - from) * owned.clone().count() as u64);
         let jobs = owned.flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
-        let mut current = Vec::new();
+        let mut current: Option<ReplicateRow> = None;
         blocks::in_order(
             jobs,
             |(row, samples)| (row, samples.clone(), tracer.trace(row, samples)),
-            |(row, samples, (sums, traced_rays))| {
+            |(row, samples, (part, traced_rays))| {
                 *rays += traced_rays;
                 let into = match store {
                     Store::All(rows) => &mut rows[row as usize],
-                    Store::Folded(..) if current.is_empty() => {
-                        current = tracer.empty_sums();
-                        &mut current
-                    }
-                    Store::Folded(..) => &mut current,
+                    Store::Folded(..) => current.get_or_insert_with(|| tracer.empty_row()),
                 };
-                for (total, part) in into.iter_mut().zip(&sums) {
-                    total.merge(part);
-                }
+                into.merge(&part, tracer.models());
                 if let Store::Folded(spreads, imbalance) = store
                     && samples.end == to
+                    && let Some(mut row) = current.take()
                 {
-                    let part = tracer.imbalance(&current);
-                    *imbalance = max_of(*imbalance, part);
-                    for (spread, sums) in spreads.iter_mut().zip(&current) {
+                    row.evaluate(tracer.models());
+                    *imbalance = max_of(*imbalance, tracer.imbalance(&row.sums[0]));
+                    for (spread, sums) in spreads.iter_mut().zip(&row.sums) {
                         spread.push_sums(&[sums], to);
                     }
-                    current.clear();
                 }
                 traced += samples.end - samples.start;
                 progress(traced as f64 / all as f64);
@@ -180,10 +185,16 @@ impl Film for ReplicateSums<'_> {
         save_u64(out, &[self.rays])?;
         let Store::All(rows) = &self.store else { return Ok(()) };
         let owned = rows.iter().enumerate().filter(|(row, _)| self.partition.owns(*row));
-        owned.flat_map(|(_, row)| row).try_for_each(|sums| {
-            let (ordered, mut buffer) = (sums.ordered(), Vec::new());
-            chunks(sums).try_for_each(|cells| save_f64(out, ordered.values(cells, &mut buffer)))
-        })
+        for (_, row) in owned {
+            for sums in &row.sums {
+                let (ordered, mut buffer) = (sums.ordered(), Vec::new());
+                for cells in chunks(sums) {
+                    save_f64(out, ordered.values(cells, &mut buffer))?;
+                }
+            }
+            row.coefficients.iter().try_for_each(|terms| terms.save(out))?;
+        }
+        Ok(())
     }
 
     fn restore(&mut self, partition: Partition, done: u64, input: &mut dyn Read) -> io::Result<()> {
@@ -193,21 +204,24 @@ impl Film for ReplicateSums<'_> {
         self.done = done;
         if let Store::All(rows) = &mut self.store {
             let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
-            owned.for_each(|(_, row)| row.clear());
+            owned.for_each(|(_, row)| row.sums.clear());
         }
         self.set_up(partition);
         let Store::All(rows) = &mut self.store else { return Ok(()) };
         let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
-        owned.flat_map(|(_, row)| row).try_for_each(|sums| {
-            let mut values = vec![0.0; sums.bands()];
-            (0..sums.cells()).try_for_each(|cell| {
-                restore_f64(input, &mut values)?;
-                if values.iter().any(|value| value.to_bits() > 0) {
-                    sums.cell_mut(cell).copy_from_slice(&values);
+        for (_, row) in owned {
+            for sums in &mut row.sums {
+                let mut values = vec![0.0; sums.bands()];
+                for cell in 0..sums.cells() {
+                    restore_f64(input, &mut values)?;
+                    if values.iter().any(|value| value.to_bits() > 0) {
+                        sums.cell_mut(cell).copy_from_slice(&values);
+                    }
                 }
-                Ok(())
-            })
-        })
+            }
+            row.coefficients.iter_mut().try_for_each(|terms| terms.restore(input))?;
+        }
+        Ok(())
     }
 
     fn can_grow(&self) -> Result<(), u64> {
@@ -254,7 +268,10 @@ impl Film for ReplicateSums<'_> {
     fn imbalance(&self) -> Option<f64> {
         match &self.store {
             Store::All(rows) => {
-                rows.iter().map(|row| self.tracer.imbalance(row)).fold(None, max_of)
+                let rows: Vec<&ReplicateRow> =
+                    rows.iter().filter(|row| !row.sums.is_empty()).collect();
+                let energy = ReplicateRow::evaluated(&rows, 0, self.tracer.models());
+                energy.iter().map(|sums| self.tracer.imbalance(sums)).fold(None, max_of)
             }
             Store::Folded(_, imbalance) => *imbalance,
         }

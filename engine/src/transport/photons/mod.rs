@@ -9,7 +9,6 @@ mod packet;
 mod packet_film;
 mod record;
 mod source;
-mod spectrum_products;
 mod tally;
 mod thermal_emission;
 

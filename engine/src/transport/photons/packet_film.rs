@@ -10,8 +10,10 @@ use super::tally::Tally;
 use super::thermal_emission::ThermalEmission;
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
+use crate::scattering::SurfaceModels;
 use crate::statistics::Sums;
-use crate::transport::films::SampleTracer;
+use crate::transport::coefficients::Coefficients;
+use crate::transport::films::{ReplicateRow, SampleTracer};
 use crate::transport::ray_queue::RayRounds;
 use crate::transport::{LightSource, PhotonKind, ReferencePlane, ReplicateSums};
 
@@ -72,6 +74,10 @@ impl<'a> PacketTracer<'a> {
         Self { settings, key, batch: BATCH, idle: Mutex::default() }
     }
 
+    fn empty_sums(&self) -> Vec<Sums> {
+        self.shapes().into_iter().map(|(cells, bands)| Sums::new_sparse(cells, bands)).collect()
+    }
+
     fn idle(&self) -> MutexGuard<'_, Vec<PacketBatch>> {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -83,8 +89,8 @@ impl SampleTracer for PacketTracer<'_> {
         counters.iter().map(|counter| (counter.cells(), stage.bands)).collect()
     }
 
-    fn empty_sums(&self) -> Vec<Sums> {
-        self.shapes().into_iter().map(|(cells, bands)| Sums::new_sparse(cells, bands)).collect()
+    fn empty_row(&self) -> ReplicateRow {
+        ReplicateRow { sums: self.empty_sums(), coefficients: Some(Coefficients::new(true)) }
     }
 
     fn prepare(&self) {
@@ -93,7 +99,7 @@ impl SampleTracer for PacketTracer<'_> {
         }
     }
 
-    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
+    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (ReplicateRow, u64) {
         let stage = self.settings.stage;
         let mut tally = Tally::new(&stage.models, self.empty_sums());
         let idle = self.idle().pop();
@@ -103,8 +109,11 @@ impl SampleTracer for PacketTracer<'_> {
         let samplers = samples.map(|index| Sampler::new(stream, index));
         let rays = batch.trace(&self.settings, samplers, &mut tally);
         self.idle().push(batch);
-        tally.flush(0..stage.bands);
-        (tally.into_sums(), rays)
+        (tally.into_row(), rays)
+    }
+
+    fn models(&self) -> Option<&SurfaceModels> {
+        Some(&self.settings.stage.models)
     }
 
     fn block_bytes(&self, samples: u64) -> u64 {
@@ -114,8 +123,8 @@ impl SampleTracer for PacketTracer<'_> {
         blocks.fold(0, u64::saturating_add)
     }
 
-    fn imbalance(&self, sums: &[Sums]) -> Option<f64> {
-        sums.first().map(EnergyCounter::imbalance)
+    fn imbalance(&self, energy: &Sums) -> Option<f64> {
+        Some(EnergyCounter::imbalance(energy))
     }
 }
 
@@ -199,7 +208,8 @@ mod tests {
         let options = PacketOptions { source, kind, plane };
         let tracer = PacketTracer { batch, ..PacketTracer::new(stage, options, counters, key) };
         tracer.prepare();
-        tracer.trace(3, 0..300)
+        let (row, rays) = tracer.trace(3, 0..300);
+        (row.sums, rays)
     }
 
     /// Scene: the crowns of `products.ron`, whose leaves, bark and soil are warmer in the sun.

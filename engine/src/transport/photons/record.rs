@@ -95,8 +95,7 @@ impl PacketRecord {
                         tally.add(sums as usize, cell, factor, scale);
                     }
                 }
-                RecordEntry::End if tally.is_full() => tally.flush(0..bands),
-                RecordEntry::End => {}
+                RecordEntry::End => tally.make_room(0..bands),
                 RecordEntry::EndPhoton(band) => tally.flush(band..band + 1),
             }
         }

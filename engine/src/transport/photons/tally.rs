@@ -2,21 +2,22 @@
 
 use std::ops::Range;
 
-use super::spectrum_products::{ProductId, SpectrumProducts};
-use crate::scattering::{LANES, Lobe, SurfaceModels, with_simd};
+use crate::scattering::{LANES, Lobe, SurfaceModels};
 use crate::statistics::Sums;
-use crate::transport::band_blocks::blocks;
+use crate::transport::coefficients::Coefficients;
+use crate::transport::films::ReplicateRow;
+use crate::transport::spectrum_products::{ProductId, SpectrumProducts};
 
 /// Contributions of packets to cells. A packet weighs one of `SpectrumProducts` times a number; contributions
-/// of several packets to a cell by the same product are added before any band is evaluated. Bands are then
-/// evaluated block by block, so that a block of the products stays in the cache.
+/// of several packets to a cell by the same product are added before any band is evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Tally<'m> {
     models: &'m SurfaceModels,
-    products: SpectrumProducts,
+    coefficients: Coefficients,
+    /// True if coefficients are kept for the whole randomisation.
+    keeps_coefficients: bool,
     /// The packet's weight: this product times this scale.
     weight: Weight,
-    entries: Vec<Entry>,
     /// The factor that was evaluated last: several cells in a row may get the same.
     last: Option<(WeightFactor, Weight)>,
     sums: Vec<Sums>,
@@ -33,14 +34,6 @@ impl Weight {
     const ONE: Self = Self { product: SpectrumProducts::ONE, scale: 1.0 };
 }
 
-/// A contribution to a cell, which starts at `start` in some of the sums.
-#[derive(Clone, Copy, Debug)]
-struct Entry {
-    weight: Weight,
-    sums: usize,
-    start: usize,
-}
-
 /// Fraction of a packet's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum WeightFactor {
@@ -52,18 +45,28 @@ pub(super) enum WeightFactor {
     Complement(Lobe),
 }
 
-/// Flush beyond this many entries: enough that many share their cells.
-const MAX_ENTRIES: usize = 1 << 15;
+/// Flush beyond this many terms: enough that many share their cells.
+const MOST_TERMS: usize = 1 << 15;
 
 /// Flush beyond this many products: few enough that a block of them fits the cache.
-const MAX_PRODUCTS: usize = 1 << 10;
+const MOST_PRODUCTS: usize = 1 << 10;
+
+/// Number of bands from which coefficients are kept for the whole randomisation: evaluating that many takes longer than
+/// uniting coefficients.
+const MANY_BANDS: usize = 512;
 
 impl<'m> Tally<'m> {
-    /// A tally of these sums, without entries.
+    /// A tally of these sums, without contributions.
     pub(super) fn new(models: &'m SurfaceModels, sums: Vec<Sums>) -> Self {
-        let products = SpectrumProducts::new(sums.iter().any(|sums| sums.bands() > LANES));
-        let (weight, entries) = (Weight::ONE, Vec::new());
-        Self { models, products, weight, entries, last: None, sums }
+        let bands = bands(&sums);
+        Self {
+            models,
+            coefficients: Coefficients::new(bands > LANES),
+            keeps_coefficients: bands >= MANY_BANDS && models.are_diffuse(),
+            weight: Weight::ONE,
+            last: None,
+            sums,
+        }
     }
 
     /// Starts a packet with a weight of 1 in every band.
@@ -82,13 +85,17 @@ impl<'m> Tally<'m> {
     /// # Panics
     /// If there is no such cell.
     pub(super) fn add(&mut self, sums: usize, cell: usize, factor: WeightFactor, scale: f64) {
+        assert!(cell < self.sums[sums].cells(), "the cell is in range");
+        if let (true, WeightFactor::Complement(lobe)) = (self.keeps_coefficients, factor) {
+            // `P (1 - f)` as two terms, which other packets share.
+            self.add(sums, cell, WeightFactor::One, scale);
+            return self.add(sums, cell, WeightFactor::Lobe(lobe), -scale);
+        }
         let weight = match self.last {
             Some((last, weight)) if last == factor => weight,
             _ => self.evaluate(factor),
         };
-        let start = self.sums[sums].start(cell);
-        let weight = Weight { scale: weight.scale * scale, ..weight };
-        self.entries.push(Entry { weight, sums, start });
+        self.coefficients.add(sums, cell, weight.product, weight.scale * scale);
     }
 
     fn evaluate(&mut self, factor: WeightFactor) -> Weight {
@@ -96,7 +103,8 @@ impl<'m> Tally<'m> {
             WeightFactor::One => self.weight,
             WeightFactor::Lobe(lobe) => self.times(lobe),
             WeightFactor::Complement(Lobe { spectrum, scale }) => {
-                let product = self.products.complement(self.weight.product, spectrum, scale);
+                let products = self.coefficients.products();
+                let product = products.complement(self.weight.product, spectrum, scale);
                 Weight { product, ..self.weight }
             }
         };
@@ -107,55 +115,44 @@ impl<'m> Tally<'m> {
     fn times(&mut self, lobe: Lobe) -> Weight {
         let largest = self.models.normalisation(&lobe.spectrum);
         Weight {
-            product: self.products.times(self.weight.product, lobe.spectrum),
+            product: self.coefficients.products().times(self.weight.product, lobe.spectrum),
             scale: self.weight.scale * (f64::from(largest) * f64::from(lobe.scale)),
         }
     }
 
-    /// Returns whether it is time to flush, at the end of a packet.
-    pub(super) const fn is_full(&self) -> bool {
-        self.entries.len() > MAX_ENTRIES || self.products.len() > MAX_PRODUCTS
+    /// Makes room at the end of a packet with power in these bands, if there is little left.
+    pub(super) fn make_room(&mut self, bands: Range<usize>) {
+        if !self.coefficients.exceeds(MOST_TERMS, MOST_PRODUCTS) {
+            return;
+        }
+        if self.keeps_coefficients {
+            self.coefficients.unite();
+            if !self.coefficients.exceeds(MOST_TERMS / 2, ReplicateRow::MOST_PRODUCTS) {
+                return;
+            }
+        }
+        self.flush(bands);
     }
 
-    /// Adds all entries to the sums, of packets with power in these bands alone. The next packet starts anew.
+    /// Adds all contributions to the sums, of packets with power in these bands alone. The next packet starts anew.
     pub(super) fn flush(&mut self, bands: Range<usize>) {
-        let Self { models, products, entries, sums, .. } = self;
-        if bands.len() > LANES {
-            let place = |entry: &Entry| (entry.weight.product, entry.sums, entry.start);
-            entries.sort_by_key(place);
-            entries.dedup_by(|next, last| {
-                let is_same = place(next) == place(last);
-                last.weight.scale += if is_same { next.weight.scale } else { 0.0 };
-                is_same
-            });
-        }
-        let mut values = Vec::new();
-        with_simd(
-            #[inline(always)]
-            || {
-                for block in blocks(bands) {
-                    products.write(models, &block, &mut values);
-                    for &Entry { weight, sums: index, start } in &*entries {
-                        let cell = start + block.start..start + block.end;
-                        let cell = sums[index].values_mut()[cell].iter_mut();
-                        let Weight { product, scale } = weight;
-                        let values = &values[product * block.len()..(product + 1) * block.len()];
-                        for (sum, value) in cell.zip(values) {
-                            *sum += value * scale;
-                        }
-                    }
-                }
-            },
-        );
-        entries.clear();
-        products.clear();
+        self.coefficients.flush(self.models, bands, &mut self.sums);
         self.start();
     }
 
-    /// The sums.
-    pub(super) fn into_sums(self) -> Vec<Sums> {
-        self.sums
+    /// Sums, and coefficients that are still to be evaluated, if they are kept.
+    pub(super) fn into_row(mut self) -> ReplicateRow {
+        if self.keeps_coefficients {
+            self.coefficients.unite();
+        } else {
+            self.flush(0..bands(&self.sums));
+        }
+        ReplicateRow { sums: self.sums, coefficients: Some(self.coefficients) }
     }
+}
+
+fn bands(sums: &[Sums]) -> usize {
+    sums.iter().map(Sums::bands).max().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -187,8 +184,7 @@ mod tests {
                 tally.flush(0..bands);
             }
         }
-        assert!(tally.entries.is_empty());
-        let sums = tally.into_sums();
+        let sums = tally.into_row().sums;
         for band in 0..bands {
             let [a, b, c] = [a, b, c].map(|id| f64::from(models.spectra.lanes(id)[band]));
             let n = f64::from(rounds);
@@ -211,6 +207,6 @@ mod tests {
         tally.add(0, 0, WeightFactor::One, 1.0);
         tally.flush(17..18);
         let expected: Vec<f64> = (0..20).map(|band| if band == 17 { 3.0 } else { 0.0 }).collect();
-        assert_eq!(tally.into_sums()[0].values(), expected);
+        assert_eq!(tally.into_row().sums[0].values(), expected);
     }
 }

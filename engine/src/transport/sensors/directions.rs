@@ -6,7 +6,7 @@ use crate::components::{System, View};
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
 use crate::statistics::{Replicates, Spread, Sums, ratio};
-use crate::transport::films::{ReplicateSums, SampleTracer};
+use crate::transport::films::{ReplicateRow, ReplicateSums, SampleTracer};
 use crate::transport::paths::{
     BackwardPath, FirstOrderPath, PathBatch, PathTracer, ThermalPath, write_each,
 };
@@ -219,7 +219,7 @@ impl<P: PathTracer, F: Fn() -> P + Sync> SampleTracer for PathsOfViews<'_, F> {
         Sums::bytes(self.tracer.cameras.len(), self.tracer.columns)
     }
 
-    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (Vec<Sums>, u64) {
+    fn trace(&self, randomisation: u64, samples: Range<u64>) -> (ReplicateRow, u64) {
         let ViewTracer { stage, cameras, columns, key } = &self.tracer;
         // All views share their points: differences between them have less noise.
         let stream = key.index(randomisation);
@@ -250,6 +250,6 @@ impl<P: PathTracer, F: Fn() -> P + Sync> SampleTracer for PathsOfViews<'_, F> {
                 );
             });
         }
-        (vec![sums], rays + batch.rays())
+        (ReplicateRow { sums: vec![sums], coefficients: None }, rays + batch.rays())
     }
 }

@@ -1,12 +1,14 @@
 //! Products of spectra: the spectral part of packet weights, computed once for all packets that share it.
 
 use std::collections::HashMap;
+use std::io::{self, Read, Write};
 use std::ops::Range;
 
 use indexmap::IndexSet;
 
 use crate::scattering::{LobeSpectrum, SpectrumId, SurfaceModels};
 use crate::transport::band_blocks::BLOCK;
+use crate::transport::films::{restore_u64, save_u64};
 
 /// Products `P = Π f / max f` of spectra `f` in any order, and `P (1 - f)`.
 ///
@@ -15,7 +17,7 @@ use crate::transport::band_blocks::BLOCK;
 /// negligible beside another band. Lobes of models that depend on directions are factors as they are; each
 /// makes a product of its own.
 #[derive(Clone, Debug)]
-pub(super) struct SpectrumProducts {
+pub(in crate::transport) struct SpectrumProducts {
     /// Each after the product that it is made of.
     all: Vec<Product>,
     /// Lookup for reuse; absent where bands are few and a duplicate is cheaper than a lookup.
@@ -23,7 +25,7 @@ pub(super) struct SpectrumProducts {
 }
 
 /// Index of a product.
-pub(super) type ProductId = usize;
+pub(in crate::transport) type ProductId = usize;
 
 #[derive(Clone, Copy, Debug)]
 enum Product {
@@ -63,17 +65,69 @@ struct Powers {
 
 impl SpectrumProducts {
     /// The empty product.
-    pub(super) const ONE: ProductId = 0;
+    pub(in crate::transport) const ONE: ProductId = 0;
 
     /// The empty product alone; with `reuse`, products of the same factors are one.
-    pub(super) fn new(reuse: bool) -> Self {
+    pub(in crate::transport) fn new(reuse: bool) -> Self {
         let mut products = Self { all: Vec::new(), index: reuse.then(ProductIndex::default) };
         products.clear();
         products
     }
 
+    /// Adds those products of another that are needed; returns the index of each here.
+    pub(in crate::transport) fn absorb(&mut self, other: &Self, needed: &[bool]) -> Vec<ProductId> {
+        let mut ids: Vec<ProductId> = Vec::with_capacity(other.all.len());
+        for (product, is_needed) in other.all.iter().zip(needed) {
+            ids.push(match *product {
+                Product::Times(of, spectrum) if *is_needed => self.times(ids[of], spectrum),
+                Product::Complement(of, spectrum, c) if *is_needed => {
+                    self.complement(ids[of], spectrum, c)
+                }
+                Product::One | Product::Times(..) | Product::Complement(..) => Self::ONE,
+            });
+        }
+        ids
+    }
+
+    /// Writes all products, each as the product and the spectrum that it is made of.
+    ///
+    /// # Errors
+    /// Errors of the writer.
+    ///
+    /// # Panics
+    /// If a product is not one of spectra of the table alone.
+    pub(in crate::transport) fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        save_u64(out, &[self.all.len() as u64 - 1])?;
+        self.all[1..].iter().try_for_each(|product| {
+            let Product::Times(of, LobeSpectrum::Table(spectrum)) = *product else {
+                panic!("coefficients are kept of products of spectra alone")
+            };
+            save_u64(out, &[of as u64, spectrum.number().into()])
+        })
+    }
+
+    /// Reads what [`Self::save`] wrote.
+    ///
+    /// # Errors
+    /// Errors of the reader, and products that are made of later ones.
+    pub(in crate::transport) fn restore(&mut self, input: &mut dyn Read) -> io::Result<()> {
+        self.clear();
+        let mut count = [0];
+        restore_u64(input, &mut count)?;
+        for _ in 0..count[0] {
+            let mut numbers = [0; 2];
+            restore_u64(input, &mut numbers)?;
+            let [of, spectrum] = numbers;
+            if of >= self.all.len() as u64 {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+            self.times(of as usize, LobeSpectrum::Table(SpectrumId::from_number(spectrum as u32)));
+        }
+        Ok(())
+    }
+
     /// Removes all but the empty product.
-    pub(super) fn clear(&mut self) {
+    pub(in crate::transport) fn clear(&mut self) {
         self.all.clear();
         self.all.push(Product::One);
         if let Some(ProductIndex { next, spectra, known, powers }) = &mut self.index {
@@ -86,12 +140,16 @@ impl SpectrumProducts {
     }
 
     /// Number of products.
-    pub(super) const fn len(&self) -> usize {
+    pub(in crate::transport) const fn len(&self) -> usize {
         self.all.len()
     }
 
     /// `P f / max f`; of models that depend on directions, `P f`.
-    pub(super) fn times(&mut self, product: ProductId, spectrum: LobeSpectrum) -> ProductId {
+    pub(in crate::transport) fn times(
+        &mut self,
+        product: ProductId,
+        spectrum: LobeSpectrum,
+    ) -> ProductId {
         let new = self.all.len();
         let id = self.index.as_mut().map_or(new, |index| index.times(product, spectrum, new));
         if id == new {
@@ -101,7 +159,7 @@ impl SpectrumProducts {
     }
 
     /// `P (1 - c f)`, which no further product is made of.
-    pub(super) fn complement(
+    pub(in crate::transport) fn complement(
         &mut self,
         product: ProductId,
         spectrum: LobeSpectrum,
@@ -115,18 +173,32 @@ impl SpectrumProducts {
         id
     }
 
-    /// Writes all products in a range of bands, shape `[products, bands]`.
+    /// Returns whether each product is one of these, or one of these is made of it.
+    pub(in crate::transport) fn needed(&self, ids: impl Iterator<Item = ProductId>) -> Vec<bool> {
+        let mut needed = vec![false; self.all.len()];
+        ids.for_each(|id| needed[id] = true);
+        for (id, product) in self.all.iter().enumerate().rev() {
+            if let Product::Times(of, _) | Product::Complement(of, ..) = *product {
+                needed[of] |= needed[id];
+            }
+        }
+        needed
+    }
+
+    /// Writes those products that are needed in a range of bands, shape `[products, bands]`.
     #[inline(always)]
-    pub(super) fn write(
+    pub(in crate::transport) fn write(
         &self,
         models: &SurfaceModels,
+        needed: &[bool],
         bands: &Range<usize>,
         values: &mut Vec<f64>,
     ) {
         let width = bands.len();
         values.resize(self.all.len() * width, 0.0);
         let mut buffer = [0.0; BLOCK];
-        for (id, product) in self.all.iter().enumerate() {
+        let products = self.all.iter().enumerate().zip(needed);
+        for ((id, product), _) in products.filter(|(_, is_needed)| **is_needed) {
             let (before, rows) = values.split_at_mut(id * width);
             let row = &mut rows[..width];
             match *product {
@@ -225,7 +297,7 @@ mod tests {
         let nothing = products.times(of_a, black);
         assert_eq!(products.len(), 8);
         let mut values = Vec::new();
-        products.write(&models, &(0..3), &mut values);
+        products.write(&models, &vec![true; products.len()], &(0..3), &mut values);
         for band in 0..3 {
             let value =
                 |spectrum| f64::from(models.values(&spectrum, band..band + 1, &mut [0.0])[0]);
@@ -265,7 +337,7 @@ mod tests {
         assert_eq!(ab, ba);
         assert_ne!(ab, products.times(second, of_a));
         let mut values = Vec::new();
-        products.write(&models, &(0..2), &mut values);
+        products.write(&models, &vec![true; products.len()], &(0..2), &mut values);
         // (0.5 a + 2 b) a / max a · b / max b
         let expected = [(0.25 + 0.5) * 0.5 * 0.5, 1.5];
         assert!((values[2 * ab] - expected[0]).abs() < 1e-7, "{values:?}");

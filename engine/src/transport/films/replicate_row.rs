@@ -1,0 +1,66 @@
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
+use crate::scattering::SurfaceModels;
+use crate::statistics::Sums;
+use crate::transport::coefficients::Coefficients;
+
+/// Sums of a block of samples or of a randomisation, and terms of them that are still to be evaluated.
+#[derive(Clone, Debug, Default)]
+pub(in crate::transport) struct ReplicateRow {
+    pub(in crate::transport) sums: Vec<Sums>,
+    /// Terms, of measurements that have any.
+    pub(in crate::transport) coefficients: Option<Coefficients>,
+}
+
+impl ReplicateRow {
+    /// Terms are evaluated beyond this many.
+    const MOST_TERMS: usize = 1 << 16;
+
+    /// Terms are evaluated beyond this many products.
+    pub(in crate::transport) const MOST_PRODUCTS: usize = 1 << 13;
+
+    /// Adds the sums of a block.
+    pub(super) fn merge(&mut self, part: &Self, models: Option<&SurfaceModels>) {
+        for (total, part) in self.sums.iter_mut().zip(&part.sums) {
+            total.merge(part);
+        }
+        let (Some(terms), Some(part)) = (&mut self.coefficients, &part.coefficients) else {
+            return;
+        };
+        terms.absorb(part);
+        if terms.exceeds(Self::MOST_TERMS, Self::MOST_PRODUCTS) {
+            self.evaluate(models);
+        }
+    }
+
+    /// Adds the values of all terms to the sums.
+    pub(super) fn evaluate(&mut self, models: Option<&SurfaceModels>) {
+        if let (Some(terms), Some(models)) = (&mut self.coefficients, models) {
+            terms.flush(models, 0..models.spectra.bands(), &mut self.sums);
+        }
+    }
+
+    /// One of the sums of each row, all of its terms evaluated. Products that rows share are evaluated once a thread.
+    pub(super) fn evaluated<'r>(
+        rows: &[&'r Self],
+        index: usize,
+        models: Option<&SurfaceModels>,
+    ) -> Vec<Cow<'r, Sums>> {
+        let each = rows.len().div_ceil(rayon::current_num_threads()).max(1);
+        let evaluated = |rows: &[&'r Self]| -> Vec<Cow<'r, Sums>> {
+            let mut sums: Vec<_> = rows.iter().map(|row| Cow::Borrowed(&row.sums[index])).collect();
+            let all: Option<Vec<&Coefficients>> =
+                rows.iter().map(|row| row.coefficients.as_ref()).collect();
+            let (Some(all), Some(models)) = (all, models) else { return sums };
+            let terms = Coefficients::of_sums(all, index);
+            if !terms.is_empty() {
+                let mut into: Vec<_> = sums.iter_mut().map(|sums| Some(sums.to_mut())).collect();
+                terms.add_to(models, 0..models.spectra.bands(), &mut into);
+            }
+            sums
+        };
+        rows.par_chunks(each).flat_map_iter(evaluated).collect()
+    }
+}
