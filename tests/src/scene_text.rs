@@ -7,7 +7,7 @@ use std::path::Path;
 
 use sunfleck::document::{self, ReadOptions, Reading};
 use sunfleck::products::Report;
-use sunfleck::run::{Options, SweepRun, Unwatched};
+use sunfleck::run::{Failure, Options, SweepRun, Unwatched};
 
 use crate::SheetOptics;
 
@@ -229,10 +229,13 @@ impl SceneText {
         let groups = sweep.groups().to_vec();
         let mut reports: Vec<Option<Report>> = sweep.points().iter().map(|_| None).collect();
         for (group, places) in groups.iter().enumerate() {
-            let found = sweep.run(group, &Unwatched).unwrap_or_else(|failure| panic!("{failure}"));
-            for (&place, report) in places.iter().zip(found) {
-                reports[place] = Some(report);
-            }
+            let run = sweep.run(group, &Unwatched, |part, found| {
+                for (&place, report) in places[part].iter().zip(found) {
+                    reports[place] = Some(report);
+                }
+                Ok::<_, Failure>(())
+            });
+            run.unwrap_or_else(|failure| panic!("{failure}"));
         }
         (
             groups,

@@ -313,7 +313,7 @@ fn a_thousand_million_terms_add_up() {
     let mut exact = [0_u64; BANDS];
     let mut state = 1_u64;
     for _ in 0..calls / BLOCK {
-        let mut block = Sums::new_for_block(1, BANDS);
+        let mut block = Sums::new_sparse(1, BANDS);
         for _ in 0..BLOCK {
             // Whole multiples of 2⁻²⁴ of all sizes, none of which f32 rounds.
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

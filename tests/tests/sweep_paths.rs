@@ -1,6 +1,7 @@
 //! Points of a sweep that differ in optics, light or temperature alone are traced on the same paths.
 
 use sunfleck::products::{Product, Report};
+use sunfleck::run::{Checkpoint, Options, Partition};
 use sunfleck_tests::{Estimate, SceneText, albedo_of_sheets, product};
 
 /// Text of a list of numbers.
@@ -160,4 +161,103 @@ fn images_maps_and_temperatures_are_those_of_the_point() {
             values(&reports[0], "image", "gap_fraction")
         );
     }
+}
+
+/// *Scene*: SOILSPECT soils whose shapes differ and whose albedos are alike, at 150 points, under a leaf. *Expected*: the albedo
+/// of every 15th point as in a run of its own, within 4.5 standard errors of the difference.
+#[test]
+fn soils_of_other_shapes_are_not_ruled_out() {
+    let soil = r#""soil": Soilspect(albedo: Constant(0.6), roughness: Constant(0.2), b: Constant("=b"), b_prime: Constant("=p"))"#;
+    let scene = sheets()
+        .with("params", r#""b": 0.1, "p": 0.0"#)
+        .with(
+            "materials",
+            format!(
+                r#"{soil}, "leaf": Leaf(reflectance: Constant(0.3), transmittance: Constant(0.3))"#
+            ),
+        )
+        .with("sun", "zenith_deg: 30.0, azimuth_deg: 10.0, irradiance: Constant(1.0)");
+    let points: Vec<(f64, f64)> = (0..150_u32)
+        .map(|i| {
+            let share = f64::from(i) / 149.0;
+            if i % 2 == 0 { (0.9 * share, 0.0) } else { (0.0, 0.9 * share) }
+        })
+        .collect();
+    let [b, p] = [|point: &(f64, f64)| point.0, |point: &(f64, f64)| point.1]
+        .map(|value| list(points.iter().map(value)));
+    let sweep = format!(r#"Zip({{ "b": {b}, "p": {p} }})"#);
+    let (groups, reports) = scene.clone().with("sweep", sweep).sweep();
+    assert_eq!(groups.len(), 1);
+    for (place, (b, p)) in points.iter().enumerate().step_by(15) {
+        let own = scene
+            .clone()
+            .with("params", format!(r#""b": {b:?}, "p": {p:?}"#))
+            .with("transport", "seed: 7")
+            .measure();
+        let [own, joined] =
+            [&own, &reports[place]].map(|report| Estimate::of(product(report, "p", "albedo"), 0));
+        assert!(own.z_against(joined).abs() < 4.5, "{b} {p}: {own:?} {joined:?}");
+    }
+}
+
+/// A point without light of the sky has a BRF, one with such light an HDRF.
+#[test]
+fn factors_are_called_by_the_light_of_the_point() {
+    let sensors = r#""v": Directions(views: List([(0.0, 0.0)]), until: Samples(200))"#;
+    let (groups, reports) = sheets()
+        .with("params", r#""e": 0.0, "r": 0.1, "t": 0.1, "s": 0.1, "sza": 30.0"#)
+        .with("sky", r#"Isotropic(irradiance: Constant("=e"))"#)
+        .with("sensors", sensors)
+        .with("sweep", r#"Grid({ "e": [0.0, 0.5] })"#)
+        .sweep();
+    assert_eq!(groups.len(), 1);
+    let name = |report: &Report| report.sensors[0].products[0].name.clone();
+    assert_eq!([name(&reports[0]), name(&reports[1])], ["brf", "hdrf"]);
+}
+
+/// *Scene*: leaf sheets in 700 bands, whose coefficients are evaluated at the end. *Expected*: the albedo of every 50th band
+/// by adding layers; and the same bits in one round, in rounds that are saved and resumed, and united from two parts.
+#[test]
+fn coefficients_are_evaluated_late_and_travel_in_checkpoints() {
+    let optics: Vec<(f64, f64, f64)> = (0..700_u32)
+        .map(|band| {
+            let share = f64::from(band) / 699.0;
+            (0.05 + 0.4 * share, 0.5 * share * (1.0 - share), 0.6 * (1.0 - share))
+        })
+        .collect();
+    let scene = SceneText::sheets(&optics, &[1.0, 2.0]).with(
+        "sensors",
+        r#""p": Photons(until: Samples(60000), measure: [Albedo, Fapar(layer_m: 1.0)])"#,
+    );
+    let whole = scene.measure();
+    for (band, optics) in optics.iter().enumerate().step_by(50) {
+        let albedo = Estimate::of(product(&whole, "p", "albedo"), band);
+        let truth = albedo_of_sheets(*optics, 2);
+        assert!((albedo.value - truth).abs() < 4.5 * albedo.error + 1e-6, "{optics:?} {albedo:?}");
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let part = |index| {
+        let file = folder.path().join(format!("part{index}"));
+        let share = Partition { index, count: 2 };
+        let checkpoint = Some(Checkpoint { file: file.clone(), every: 0.0, share });
+        drop(scene.measure_with(&Options { checkpoint, ..Options::default() }));
+        file
+    };
+    let unite = vec![part(0), part(1)];
+    let united = scene.measure_with(&Options { unite, ..Options::default() });
+    let file = folder.path().join("whole");
+    let shorter = scene.clone().with(
+        "sensors",
+        r#""p": Photons(until: Samples(20480), measure: [Albedo, Fapar(layer_m: 1.0)])"#,
+    );
+    let saved = |scene: &SceneText| {
+        let share = Partition::ALL;
+        let checkpoint = Some(Checkpoint { file: file.clone(), every: 0.0, share });
+        scene.measure_with(&Options { checkpoint, ..Options::default() })
+    };
+    drop(saved(&shorter));
+    let resumed = saved(&scene);
+    let bits = |report: &Report| report.sensors[0].bits().collect::<Vec<_>>();
+    assert!(bits(&whole) == bits(&united), "united");
+    assert!(bits(&whole) == bits(&resumed), "resumed");
 }

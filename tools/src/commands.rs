@@ -1,5 +1,6 @@
 //! Execution of the commands.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -58,7 +59,7 @@ pub(crate) fn message(error: &anyhow::Error) -> String {
     for cause in error.chain().skip(1) {
         // Some errors name their cause themselves.
         let cause = cause.to_string();
-        if !text.ends_with(&cause) {
+        if !text.ends_with(cause.strip_prefix("error: ").unwrap_or(&cause)) {
             text = format!("{text}: {cause}");
         }
     }
@@ -160,31 +161,39 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let scene = &arguments.scene.file;
     let results = Results::open(&folder, "sweep", scene, arguments.out.force)?;
     let mut sweep = run::SweepRun::read(scene, &run_options(arguments))?;
-    let points = sweep.points().to_vec();
-    let (mut is_first, mut ran, mut dark) = (true, 0, 0);
+    let (points, sweep_report) = (sweep.points().to_vec(), sweep.report());
+    let distinct: usize = sweep.groups().iter().map(Vec::len).sum();
+    let (mut shown, mut ran, mut dark) = (BTreeSet::new(), 0, 0);
+    let mut is_first = true;
     for (group, places) in sweep.groups().to_vec().into_iter().enumerate() {
         let of_group: Vec<SweepPoint> = places.iter().map(|&place| points[place].clone()).collect();
-        let is_unfinished = |&index: &usize| !output::is_complete(&of_group[index], &folder);
-        let unfinished: Vec<usize> = (0..of_group.len()).filter(is_unfinished).collect();
-        if unfinished.is_empty() {
+        let is_finished = |point: &SweepPoint| output::is_complete(point, &folder);
+        if of_group.iter().all(is_finished) {
             continue;
         }
         of_group.iter().for_each(warn_night);
         let bars = Bars::new();
         bars.heading(&heading(places[0], &of_group, points.len()));
-        let reports = sweep.run(group, &bars);
+        sweep.run(group, &bars, |part, reports| -> anyhow::Result<()> {
+            let group = &of_group[part];
+            let unfinished: Vec<usize> =
+                (0..group.len()).filter(|&index| !is_finished(&group[index])).collect();
+            bars.clear();
+            for (report, point) in reports.iter().zip(group) {
+                warn_once(report, point, &mut shown);
+            }
+            if is_first {
+                // From now on the folder says which scene its points are of.
+                results.write_texts(&sweep_report, &[])?;
+            }
+            is_first = false;
+            output::write_points(&reports, group, &unfinished, &folder)?;
+            let of_night = unfinished.iter().filter(|&&index| group[index].darkness().is_some());
+            let of_night = of_night.count();
+            (ran, dark) = (ran + unfinished.len() - of_night, dark + of_night);
+            Ok(())
+        })?;
         bars.clear();
-        let reports = reports?;
-        if is_first {
-            warn(&warnings_beside_night(&reports[0], &of_group[0]));
-            // From now on the folder says which scene its points are of.
-            results.write_texts(&sweep.report(), &[])?;
-        }
-        is_first = false;
-        output::write_points(&reports, &of_group, &unfinished, &folder)?;
-        let of_night = unfinished.iter().filter(|&&index| of_group[index].darkness().is_some());
-        let of_night = of_night.count();
-        (ran, dark) = (ran + unfinished.len() - of_night, dark + of_night);
     }
     let table = output::sweep_table(&points, &folder)?;
     let daily = output::daily_sums(&sweep.days(), &points, &folder)?;
@@ -194,7 +203,7 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
         written.folder.join("sweep.csv").display(),
         if ran == 1 { "point" } else { "points" },
         if dark > 0 { format!("{dark} without light, ") } else { String::new() },
-        points.len() - ran - dark,
+        distinct - ran - dark,
         match sweep.builds() {
             1 => "once".to_owned(),
             builds => format!("{builds} times"),
@@ -206,15 +215,19 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
 fn heading(first: usize, group: &[SweepPoint], all: usize) -> String {
     match group {
         [point] => format!("point {} of {all}: {}", first + 1, point.name()),
-        _ => format!("{} of {all} points, on the same paths", group.len()),
+        _ => format!("{} points of {all}, on the same paths", group.len()),
     }
 }
 
-/// Warnings of a point without the one about its night, which has been shown.
-fn warnings_beside_night(report: &Report, point: &SweepPoint) -> Vec<String> {
+/// Shows the warnings of a point that no point before it had; the one about its night has been shown.
+fn warn_once(report: &Report, point: &SweepPoint, shown: &mut BTreeSet<String>) {
     let is_of_night =
         |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
-    report.warnings.iter().filter(|text| !is_of_night(text)).cloned().collect()
+    for text in report.warnings.iter().filter(|text| !is_of_night(text)) {
+        if shown.insert(text.clone()) {
+            warn(&[format!("at {}: {text}", point.name())]);
+        }
+    }
 }
 
 /// Says what a sun below the horizon means at a point of a sweep.

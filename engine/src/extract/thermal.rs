@@ -35,7 +35,9 @@ impl Thermal {
         spectra: &mut SceneSpectra,
     ) -> Option<Self> {
         let emission = optics.emission.as_ref()?;
-        let mut add = |values: &[f64]| spectra.add(values.iter().map(|&value| value as f32));
+        // Packets of all temperatures start in proportion to the warmest: no temperature needs a band of its own.
+        let mut add =
+            |values: &[f64]| spectra.add_counted(values.iter().map(|&value| value as f32));
         let surfaces = materials
             .iter()
             .map(|material| {
@@ -49,7 +51,7 @@ impl Thermal {
             })
             .collect();
         let sky = add(&emission.sky);
-        let bands = spectra.add(emission.bands.iter().map(|&emits| f32::from(emits)));
+        let bands = spectra.add_counted(emission.bands.iter().map(|&emits| f32::from(emits)));
         Some(Self { bands, sky, surfaces })
     }
 

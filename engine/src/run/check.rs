@@ -108,7 +108,7 @@ fn too_many_samples(
     })
 }
 
-/// Memory that the sensors take, measured one after the other, bytes.
+/// Memory of all products and the largest films, bytes: by their shapes alone, the same for any number of threads.
 pub(super) fn joined_memory(
     sensors: &[SensorEntity],
     measured: MeasureContext<'_>,
@@ -120,7 +120,7 @@ pub(super) fn joined_memory(
             begin(&one.name, &one.sensor, measured, options.quality);
         CostEstimate::new(measurement.as_mut(), &store)
     });
-    cost::peak(&costs.collect::<Vec<_>>())
+    cost::shapes(costs)
 }
 
 /// Checks the memory of all sensors.

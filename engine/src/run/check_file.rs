@@ -68,7 +68,7 @@ fn checked(
         let optics = SceneOptics::from_world(&world.world, reading.scene.bands.len());
         let stage = staged(&mut world, &reading.scene, &optics, options.free_memory())?;
         let mut notes: Vec<String> = world.resources.messages.notes().cloned().collect();
-        notes.extend(pixels::count_pixels(&mut world.world, &stage)?);
+        notes.extend(pixels::count_pixels(&mut world.world, &stage, stage.bands)?);
         let context = context(&reading.scene, &optics);
         let sensors = sensors::in_order(&world.world);
         let measured = MeasureContext { stage: &stage, context: &context };

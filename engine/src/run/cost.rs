@@ -4,6 +4,8 @@ use std::cmp::Reverse;
 use std::iter::successors;
 use std::sync::OnceLock;
 
+use glam::UVec2;
+
 use super::advice::{Smaller, smaller};
 use super::checkpoint::CheckpointStore;
 use super::convergence::{Measurement, Start};
@@ -88,7 +90,7 @@ const PILOT_SECONDS: f64 = 1.0;
 const PILOT_SECONDS_ALONE: f64 = 0.5;
 
 /// Tiles of an image that a forecast traces at least.
-const PILOT_TILES: usize = 64;
+const PILOT_TILES: u32 = 64;
 
 impl PilotRun {
     /// Pilot run of a measurement that starts, or is resumed, at `start`.
@@ -104,10 +106,10 @@ impl PilotRun {
         is_fixed: bool,
     ) -> Self {
         let films = measurement.films();
-        let tiles = films.iter().map(|paced| paced.film.units()).min().unwrap_or(0);
-        // Odd, so that the tiles are not those of one column.
-        let partitions = if is_fixed { (tiles / PILOT_TILES).saturating_sub(1) | 1 } else { 1 };
-        let partition = Partition { index: 0, count: partitions as u32 };
+        let units = films.iter().map(|paced| paced.film.units());
+        let units = units.min_by_key(|units| units.x * units.y).unwrap_or(UVec2::ONE);
+        let count = if is_fixed { partitions_of(units) } else { 1 };
+        let partition = Partition { index: 0, count };
         for paced in films {
             paced.film.restrict(partition);
         }
@@ -149,12 +151,32 @@ impl PilotRun {
     }
 }
 
+/// Number of partitions of an image of these tiles, one of which is traced for a forecast: enough tiles for all threads, and
+/// none of the numbers that would choose those of some columns.
+fn partitions_of(tiles: UVec2) -> u32 {
+    let least = PILOT_TILES.max(8 * rayon::current_num_threads() as u32);
+    let most = (tiles.x * tiles.y / least).max(1);
+    let has_common_factor =
+        |count: u32| (2..=count).any(|f| count.is_multiple_of(f) && tiles.x.is_multiple_of(f));
+    (1..=most).rev().find(|&count| !has_common_factor(count)).unwrap_or(1)
+}
+
 fn sum(bytes: impl IntoIterator<Item = u64>) -> u64 {
     bytes.into_iter().fold(0, u64::saturating_add)
 }
 
+/// Memory of all products and of the largest films, which depends on their shapes alone.
+pub(super) fn shapes(costs: impl Iterator<Item = CostEstimate>) -> u64 {
+    let (mut films, mut products) = (0, 0);
+    for cost in costs {
+        films = cost.films.max(films);
+        products = sum([products, cost.products]);
+    }
+    sum([films, products])
+}
+
 /// Peak memory of sensors that are measured one after the other.
-pub(super) fn peak(costs: &[CostEstimate]) -> u64 {
+fn peak(costs: &[CostEstimate]) -> u64 {
     let (mut most, mut permanent) = (0, 0);
     for &CostEstimate { films, beside, products, checkpoint, .. } in costs {
         permanent = sum([permanent, products, checkpoint]);
@@ -216,3 +238,23 @@ const SHOWN: usize = 5;
 
 /// Number of smaller sensors that are tried.
 const MOST_TRIES: usize = 40;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tiles of a forecast are spread over all columns of an image, and are a small part of a large one.
+    #[test]
+    fn the_tiles_of_a_forecast_are_those_of_all_columns() {
+        for (columns, rows) in
+            [(1, 1), (63, 64), (64, 64), (61, 70), (60, 210), (500, 500), (1, 32)]
+        {
+            let count = partitions_of(UVec2::new(columns, rows));
+            let partition = Partition { index: 0, count };
+            let owned = (0..columns * rows).filter(|&tile| partition.owns(tile as usize));
+            let shown: std::collections::BTreeSet<u32> = owned.map(|tile| tile % columns).collect();
+            assert_eq!(shown.len(), columns as usize, "{columns} x {rows}: {count}");
+        }
+        assert!(partitions_of(UVec2::new(500, 500)) > 100);
+    }
+}

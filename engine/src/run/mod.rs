@@ -146,7 +146,7 @@ fn measure_scenes(
     progress.stage("building");
     let optics = joined_optics(scenes);
     let stage = staged(world, &scenes[0].scene, &optics, options.free_memory())?;
-    let notes = pixels::count_pixels(&mut world.world, &stage)?;
+    let notes = pixels::count_pixels(&mut world.world, &stage, scenes[0].scene.bands.len())?;
     clock.lap("build");
     let context = joined_context(scenes);
     progress.stage("tracing");

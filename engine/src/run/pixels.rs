@@ -11,12 +11,15 @@ use crate::transport::wanted_footprint;
 use super::Failure;
 
 /// Counts the pixels of each parallel projection that names their side: what the whole scene covers is
-/// known only of a stage. Returns a note for each footprint that grows to whole pixels.
+/// known only of a stage; each has this number of bands. Returns a note for each footprint that grows to whole pixels.
 ///
 /// # Errors
 /// If an image has more pixels than it may have.
-pub(super) fn count_pixels(world: &mut World, stage: &Stage) -> Result<Vec<String>, Failure> {
-    let bands = stage.light.irradiance.len();
+pub(super) fn count_pixels(
+    world: &mut World,
+    stage: &Stage,
+    bands: usize,
+) -> Result<Vec<String>, Failure> {
     let mut problems: Vec<Diagnostic> = Vec::new();
     let mut notes: Vec<String> = Vec::new();
     for (name, sensor) in world.query_mut::<(&Name, &mut ResolvedSensor)>() {

@@ -1,5 +1,6 @@
 //! Points of a sweep that are traced on the same paths.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::check::joined_memory;
@@ -11,79 +12,99 @@ use super::scene_world::SceneWorld;
 use super::settled::SettledScene;
 use super::staging::staged;
 use super::sweep::{at, wrong_at};
-use super::{Failure, Options, Progress, joined_context, joined_optics, measure_scenes, sensors};
-use crate::document::Scene;
+use super::{
+    Failure, Options, Progress, joined_context, joined_optics, measure_scenes, pixels, sensors,
+    uncovered,
+};
+use crate::document::{Scene, Source};
 use crate::products::{Report, SweepPoint};
 
 /// Memory that films and products of points on the same paths take at most, unless those of one point take more, bytes. It
-/// is the same on every machine, as results depend on which points share paths.
+/// is the same on every machine with more than twice as much free, as results depend on which points share paths.
 const MOST_MEMORY: u64 = 1 << 30;
 
-/// Runs of a scene file at points that share paths.
-pub(super) struct PointRun<'a> {
-    pub(super) world: &'a mut SceneWorld,
-    pub(super) hashes: &'a mut FileHashes,
-    pub(super) file: &'a Path,
-    pub(super) options: &'a Options,
+/// Points of a sweep that can share paths: the scene at each.
+pub(super) struct SettledPoints {
+    scenes: Vec<SettledScene>,
+    source: Source,
+    /// Number of points that are measured at a time.
+    most: usize,
 }
 
-impl PointRun<'_> {
-    /// Follows the scene at each of these points, and measures as many at a time as fit into memory on the same paths.
-    pub(super) fn run(
-        self,
+impl SettledPoints {
+    /// Follows the scene of a file at each of these points.
+    ///
+    /// # Errors
+    /// All errors of the scene at the first point that has any.
+    ///
+    /// # Panics
+    /// If there is no point.
+    pub(super) fn new(
+        file: &Path,
         points: &[SweepPoint],
-        progress: &dyn Progress,
-    ) -> Result<Vec<Report>, Failure> {
-        let Self { world, hashes, file, options } = self;
-        let mut clock = Clock::start();
-        let mut settled = Vec::with_capacity(points.len());
-        let mut first = None;
-        progress.stage("loading");
+        options: &Options,
+        world: &mut SceneWorld,
+        hashes: &mut FileHashes,
+    ) -> Result<Self, Failure> {
+        let (mut scenes, mut first) = (Vec::with_capacity(points.len()), None);
         for point in points {
             let reading = read(file, &at(options, point))?;
-            // Every point has a long list of all points.
+            // Every point has the list of all points.
             let scene = Scene { sweep: None, ..reading.scene };
             let scene = SettledScene::new(world, scene, hashes)
                 .map_err(|failure| wrong_at(point, failure.with_source(&reading.source)))?;
-            settled.push(scene);
-            first.get_or_insert((point, reading.source));
+            scenes.push(scene);
+            first.get_or_insert(reading.source);
         }
-        clock.lap("spawn");
-        let mut measure = || {
-            let most = most_at_a_time(world, &settled, options)?;
-            let mut reports = Vec::with_capacity(points.len());
-            for scenes in settled.chunks(most) {
-                let mut store = CheckpointStore::disabled();
-                let clock = std::mem::replace(&mut clock, Clock::start());
-                let found = measure_scenes(world, scenes, options, &mut store, progress, clock)?;
-                reports.extend(found);
-            }
-            Ok(reports)
-        };
-        measure().map_err(|failure: Failure| match &first {
-            Some((point, source)) => wrong_at(point, failure.with_source(source)),
-            None => failure,
-        })
+        let source = first.expect("a point");
+        let mut settled = Self { scenes, source, most: points.len() };
+        settled.most = settled
+            .most_at_a_time(world, options)
+            .map_err(|failure| wrong_at(&points[0], failure.with_source(&settled.source)))?;
+        Ok(settled)
     }
-}
 
-/// Number of scenes whose films and products fit into [`MOST_MEMORY`] together, at least 1.
-fn most_at_a_time(
-    world: &mut SceneWorld,
-    scenes: &[SettledScene],
-    options: &Options,
-) -> Result<usize, Failure> {
-    let mut most = scenes.len();
-    while most > 1 {
-        let tried = &scenes[..most];
-        let optics = joined_optics(tried);
-        let stage = staged(world, &tried[0].scene, &optics, options.free_memory())?;
-        let context = joined_context(tried);
-        let measured = sensors::MeasureContext { stage: &stage, context: &context };
-        if joined_memory(&sensors::in_order(&world.world), measured, options) <= MOST_MEMORY {
-            break;
-        }
-        most = most.div_ceil(2);
+    /// Places of the points that are measured together.
+    pub(super) fn parts(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let (count, most) = (self.scenes.len(), self.most);
+        (0..count).step_by(most).map(move |start| start..(start + most).min(count))
     }
-    Ok(most)
+
+    /// Measures the points of one of the parts on the same paths.
+    ///
+    /// # Errors
+    /// Errors of the run, at the first of these points.
+    pub(super) fn measure(
+        &self,
+        part: Range<usize>,
+        first: &SweepPoint,
+        options: &Options,
+        world: &mut SceneWorld,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Report>, Failure> {
+        let mut store = CheckpointStore::disabled();
+        measure_scenes(world, &self.scenes[part], options, &mut store, progress, Clock::start())
+            .map_err(|failure| wrong_at(first, failure.with_source(&self.source)))
+    }
+
+    /// Number of scenes, at least 1, whose films and products fit into [`MOST_MEMORY`] together, and whose bands have
+    /// representatives that cover all of them.
+    fn most_at_a_time(&self, world: &mut SceneWorld, options: &Options) -> Result<usize, Failure> {
+        let limit = MOST_MEMORY.min(options.free_memory() / 2);
+        let mut most = self.scenes.len();
+        while most > 1 {
+            let tried = &self.scenes[..most];
+            let optics = joined_optics(tried);
+            let stage = staged(world, &tried[0].scene, &optics, options.free_memory())?;
+            pixels::count_pixels(&mut world.world, &stage, tried[0].scene.bands.len())?;
+            let context = joined_context(tried);
+            let measured = sensors::MeasureContext { stage: &stage, context: &context };
+            let memory = joined_memory(&sensors::in_order(&world.world), measured, options);
+            if memory <= limit && uncovered::warning(&stage, &context).is_none() {
+                break;
+            }
+            most = most.div_ceil(2);
+        }
+        Ok(most)
+    }
 }

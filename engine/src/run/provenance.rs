@@ -1,5 +1,6 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::Failure;
 use crate::document::{Ends, Fisheye, Perspective, Scene, Sensor};
@@ -48,20 +49,31 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
     Ok(*scene_hash(&scene, files, &mut FileHashes::default())?.as_bytes())
 }
 
-/// Hashes of what files hold, by path: each file is read once for all scenes that name it.
+/// Hashes of what files hold, by path: each file is read once for all scenes that name it, and again if it has changed.
 #[derive(Default)]
-pub(super) struct FileHashes(HashMap<PathBuf, blake3::Hash>);
+pub(super) struct FileHashes(HashMap<PathBuf, FileHash>);
+
+/// Hash of a file, and what tells whether it has changed.
+struct FileHash {
+    length: u64,
+    changed: Option<SystemTime>,
+    hash: blake3::Hash,
+}
 
 impl FileHashes {
     /// Hash of what a file holds.
     pub(super) fn of(&mut self, path: &Path) -> Result<blake3::Hash, Failure> {
-        if let Some(hash) = self.0.get(path) {
-            return Ok(*hash);
-        }
         let error = |source| Failure::Read { path: path.to_owned(), source };
+        let metadata = std::fs::metadata(path).map_err(error)?;
+        let (length, changed) = (metadata.len(), metadata.modified().ok());
+        if let Some(known) = self.0.get(path)
+            && (known.length, known.changed) == (length, changed)
+        {
+            return Ok(known.hash);
+        }
         let file = files::open(path).map_err(error)?;
         let hash = blake3::Hasher::new().update_reader(file).map_err(error)?.finalize();
-        self.0.insert(path.to_owned(), hash);
+        self.0.insert(path.to_owned(), FileHash { length, changed, hash });
         Ok(hash)
     }
 }

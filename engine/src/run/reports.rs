@@ -6,7 +6,7 @@ use super::settled::SettledScene;
 use super::{enclosed, footprint, params, projection, sensors, uncovered};
 use crate::document::Sun;
 use crate::extract::Stage;
-use crate::products::{Context, Report, SensorReport};
+use crate::products::{Context, Product, Report, SensorReport};
 
 /// What all scenes of a run have in common.
 pub(super) struct CommonResults<'a> {
@@ -27,14 +27,20 @@ pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Ve
     let count = scenes.len();
     let share = 1.0 / count as f64;
     let warnings = common_warnings(common);
+    let hashes: String = scenes.iter().map(|settled| settled.hash.as_str()).collect();
     let report = |(index, settled): (usize, &SettledScene)| {
         let SettledScene { scene, context, .. } = settled;
         let sensors: Vec<SensorReport> =
-            common.sensors.iter().map(|sensor| of_scene(sensor, index, count)).collect();
+            common.sensors.iter().map(|sensor| of_scene(sensor, index, common, context)).collect();
         Report {
             projection: projection(common.world),
             scene: scene.title.clone(),
-            hash: settled.hash.clone(),
+            hash: if count == 1 {
+                settled.hash.clone()
+            } else {
+                // Results depend on all that share paths.
+                blake3::hash(format!("{}{hashes}", settled.hash).as_bytes()).to_hex().to_string()
+            },
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed: scene.transport.seed,
             seconds: common.seconds * share,
@@ -56,10 +62,24 @@ pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Ve
 }
 
 /// Report of one scene from that of all.
-fn of_scene(report: &SensorReport, scene: usize, scenes: usize) -> SensorReport {
+fn of_scene(
+    report: &SensorReport,
+    scene: usize,
+    common: &CommonResults<'_>,
+    context: &Context,
+) -> SensorReport {
+    let scenes = common.context.scenes;
+    let product = |product: &Product| {
+        let product = product.of_scene(scene, scenes);
+        // Some scenes may have light of the sky, and others none.
+        match product.name.strip_prefix(common.context.factor()) {
+            Some(kind) => Product { name: format!("{}{kind}", context.factor()), ..product },
+            None => product,
+        }
+    };
     SensorReport {
         name: report.name.clone(),
-        products: report.products.iter().map(|one| one.of_scene(scene, scenes)).collect(),
+        products: report.products.iter().map(product).collect(),
         seconds: report.seconds / scenes as f64,
         ended_by: report.ended_by.clone(),
         ..*report

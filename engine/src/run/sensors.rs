@@ -119,7 +119,7 @@ pub(super) fn measure(
     })
 }
 
-/// Text that says which criterion ended a measurement.
+/// Text that says which criterion ended a measurement, with the largest error of all scenes.
 fn ended_by(end: &MeasurementEnd, samples: &str) -> String {
     let text = |(name, error): &(String, f64), limit: f64| {
         format!("{name}: median relative standard error {error:.2e} at most {limit:.2e}")
@@ -132,8 +132,9 @@ fn ended_by(end: &MeasurementEnd, samples: &str) -> String {
         }
         StopCriterion::RelErrors(limits) => {
             let of = |(name, limit): (&String, &f64)| {
-                let product = end.errors.iter().find(|(known, _)| known == name);
-                product.map(|product| text(product, *limit))
+                let of_name = end.errors.iter().filter(|(known, _)| known == name);
+                let worst = of_name.max_by(|a, b| a.1.total_cmp(&b.1));
+                worst.map(|worst| text(worst, *limit))
             };
             let texts: Vec<String> = limits.iter().filter_map(of).collect();
             if texts.is_empty() { samples.to_owned() } else { texts.join("; ") }

@@ -1,11 +1,12 @@
 //! A scene at many values of its parameters: what does not change is built once.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use super::points::PointRun;
+use super::points::SettledPoints;
 use super::pool::in_pool;
 use super::provenance::FileHashes;
 use super::reading::{choose_sensors, folder_of, sound};
@@ -67,6 +68,9 @@ impl SweepRun {
         let is_new = |index: &usize| names.insert(points[*index].name());
         let distinct: Vec<usize> = (0..points.len()).filter(is_new).collect();
         let groups = groups(&distinct, &likeness, scene.bands.len());
+        for group in groups.iter().filter(|group| group.len() > 1) {
+            include_group(group, &mut points);
+        }
         let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
         Ok(Self { file, options, scene, points, groups, suns, world, hashes })
@@ -81,7 +85,8 @@ impl SweepRun {
     /// Groups of points by their places in the list of all, in the order to run them in: a group is traced on the same
     /// paths, and groups of the same geometry, which is then built once, follow each other.
     ///
-    /// They depend on the sweep alone, and results on the group: a point is always run with the others of its group.
+    /// They depend on the sweep alone, and results on the group: a point is always run with the others of its group, and
+    /// its key changes with them.
     #[must_use]
     pub fn groups(&self) -> &[Vec<usize>] {
         &self.groups
@@ -103,31 +108,46 @@ impl SweepRun {
         }
     }
 
-    /// Runs the scene at the points of one of its groups, in their order; a point without any light has a report
+    /// Runs the scene at the points of one of its groups. `take` receives the reports of some points at a time, as many as
+    /// fit into memory together, with the places of these points in the group; a point without any light has a report
     /// without sensors.
     ///
     /// # Errors
-    /// All errors of the scene at the first point that has any.
+    /// All errors of the scene at the first point that has any; errors of `take`.
     ///
     /// # Panics
     /// If there is no such group.
-    pub fn run(&mut self, group: usize, progress: &dyn Progress) -> Result<Vec<Report>, Failure> {
+    pub fn run<E: From<Failure>>(
+        &mut self,
+        group: usize,
+        progress: &dyn Progress,
+        mut take: impl FnMut(Range<usize>, Vec<Report>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let points: Vec<SweepPoint> =
             self.groups[group].iter().map(|&index| self.points[index].clone()).collect();
         if let Some(why) = points[0].darkness() {
             let params = points[0].params.clone();
-            return Ok(vec![Report { notes: vec![why.to_owned()], params, ..self.report() }]);
+            let report = Report { notes: vec![why.to_owned()], params, ..self.report() };
+            return take(0..1, vec![report]);
         }
         let Self { file, options, world, hashes, .. } = self;
-        let mut reports =
-            in_pool(options, || PointRun { world, hashes, file, options }.run(&points, progress))?;
-        for (report, point) in reports.iter_mut().zip(&points) {
-            if let Some(Night::WithoutSun(warning)) = &point.night {
-                report.warnings.insert(0, warning.clone());
+        progress.stage("loading");
+        let settled =
+            in_pool(options, || SettledPoints::new(file, &points, options, world, hashes))?;
+        for part in settled.parts() {
+            let first = &points[part.start];
+            let mut reports = in_pool(options, || {
+                settled.measure(part.clone(), first, options, world, progress)
+            })?;
+            for (report, point) in reports.iter_mut().zip(&points[part.clone()]) {
+                if let Some(Night::WithoutSun(warning)) = &point.night {
+                    report.warnings.insert(0, warning.clone());
+                }
+                report.source = Some(scene_source(file, options));
             }
-            report.source = Some(scene_source(&self.file, &self.options));
+            take(part, reports)?;
         }
-        Ok(reports)
+        Ok(())
     }
 
     /// Report of what is common to all points: it has no sensors, and its hash is that of all points.
@@ -190,6 +210,19 @@ struct Likeness {
 
 /// Largest number of bands that are traced on the same paths.
 const MOST_BANDS: usize = 1 << 14;
+
+/// Makes the key of each point of a group depend on all: results depend on which points share paths.
+fn include_group(group: &[usize], points: &mut [SweepPoint]) {
+    let mut hasher = blake3::Hasher::new();
+    for &index in group {
+        hasher.update(points[index].key.as_bytes());
+    }
+    for &index in group {
+        let mut hasher = hasher.clone();
+        hasher.update(points[index].key.as_bytes());
+        points[index].key = hasher.finalize().to_hex().to_string();
+    }
+}
 
 /// Groups of points that are traced on the same paths; those of the same geometry follow each other.
 fn groups(points: &[usize], likeness: &[Likeness], bands: usize) -> Vec<Vec<usize>> {

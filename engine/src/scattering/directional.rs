@@ -28,8 +28,17 @@ pub trait BandModel: Copy + Sync {
 pub struct Directional<B> {
     bands: Vec<B>,
     fractions: FractionTable,
-    /// Representative bands, each with the brightest of those that it stands for.
-    representatives: Vec<[u32; 2]>,
+    representatives: Vec<Representative>,
+}
+
+/// A representative band of a model.
+#[derive(Clone, Debug, PartialEq)]
+struct Representative {
+    band: u32,
+    /// Minimum of its `π f` by the cosine of `wo`, at the nodes of the fractions: a part of the largest scattered fraction of
+    /// the bands that it stands for, so that none of them is ruled out where its own shape is 0. Empty if it stands
+    /// for itself alone.
+    least: Vec<f32>,
 }
 
 impl<B: BandModel> Directional<B> {
@@ -46,10 +55,39 @@ impl<B: BandModel> Directional<B> {
     /// Takes over the representative bands of the spectra.
     pub(super) fn choose_representatives(&mut self, spectra: &SceneSpectra) {
         let chosen = spectra.representative_bands();
-        let middle = self.fractions.scattered[INTERVALS / 2];
-        let brightest = chosen.brightest_of(spectra.lanes(middle));
-        let pairs = chosen.bands().iter().zip(brightest);
-        self.representatives = pairs.map(|(&band, brightest)| [band, brightest]).collect();
+        let representative = |(index, &band): (usize, &u32)| {
+            let least = if chosen.stands_for_others(index) {
+                let scattered = self.fractions.scattered.iter();
+                let largest = scattered.map(|&id| chosen.largest_of(index, spectra.lanes(id)));
+                largest.map(|largest| RepresentativeBands::LEAST * largest).collect()
+            } else {
+                Vec::new()
+            };
+            Representative { band, least }
+        };
+        self.representatives = chosen.bands().iter().enumerate().map(representative).collect();
+    }
+
+    /// `π f` for some pairs of directions, by which representative bands are chosen; each of shape `[bands]`.
+    pub(super) fn shapes(&self) -> Vec<Vec<f32>> {
+        let direction = |zenith: f64, azimuth: f64| {
+            let ((sin, cos), (y, x)) = (zenith.to_radians().sin_cos(), azimuth.sin_cos());
+            DVec3::new(sin * x, sin * y, cos)
+        };
+        let pairs = [
+            (direction(0.0, 0.0), direction(0.0, 0.0)),
+            (direction(30.0, 0.0), direction(30.0, 0.0)),
+            (direction(30.0, 0.0), direction(30.0, PI)),
+            (direction(60.0, 0.0), direction(0.0, 0.0)),
+            (direction(60.0, 0.0), direction(60.0, 0.5 * PI)),
+            (direction(75.0, 0.0), direction(60.0, 0.0)),
+            (direction(75.0, 0.0), direction(60.0, PI)),
+        ];
+        let shape = |(wo, wi)| {
+            let angles = Angles::new(DVec3::Z, wo, wi);
+            self.bands.iter().map(|band| band.f(&angles)).collect()
+        };
+        pairs.into_iter().map(shape).collect()
     }
 
     pub(super) fn scattered_fraction(&self, at: &Interaction<'_>) -> Lobe {
@@ -67,14 +105,15 @@ impl<B: BandModel> Directional<B> {
         }
     }
 
-    /// Writes `π f` in the representative bands: at least a part of the brightest of the bands that each stands for.
+    /// Writes `π f` in the representative bands: at least a part of what any of the bands that each stands for scatters.
     pub(super) fn evaluate_representatives(&self, angles: &Angles, values: &mut [f32]) {
         values.fill(0.0);
-        for (value, &[band, brightest]) in values.iter_mut().zip(&self.representatives) {
-            *value = self.bands[band as usize].f(angles);
-            if brightest != band {
-                let least = RepresentativeBands::LEAST * self.bands[brightest as usize].f(angles);
-                *value = value.max(least);
+        let node = (f64::from(angles.cos_o).sqrt() * INTERVALS as f64) as usize;
+        for (value, Representative { band, least }) in values.iter_mut().zip(&self.representatives)
+        {
+            *value = self.bands[*band as usize].f(angles);
+            if !least.is_empty() {
+                *value = value.max(least[node.min(INTERVALS)]);
             }
         }
     }

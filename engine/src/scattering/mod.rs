@@ -103,7 +103,12 @@ impl SurfaceModels {
 
     /// Chooses the representative bands, when all surfaces and all light are there.
     pub fn choose_representatives(&mut self) {
-        self.spectra.choose_representatives();
+        let shapes = self.bsdfs.iter().flat_map(|bsdf| match bsdf {
+            Bsdf::BiLambertian(_) | Bsdf::GlossyLeaf(_) => Vec::new(),
+            Bsdf::Rpv(model) => model.shapes(),
+            Bsdf::Soilspect(model) => model.shapes(),
+        });
+        self.spectra.choose_representatives(&shapes.collect::<Vec<_>>());
         for bsdf in &mut self.bsdfs {
             match bsdf {
                 Bsdf::BiLambertian(_) | Bsdf::GlossyLeaf(_) => {}

@@ -10,7 +10,7 @@ use super::{LANES, padded};
 /// show until such a path comes. A band that is darker is traced with more rays than it needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepresentativeBands {
-    /// The representative bands, padded by nothing.
+    /// The representative bands.
     bands: Vec<u32>,
     /// Index in `bands` of the representative of each band, shape `[all bands]`.
     of: Vec<u32>,
@@ -99,16 +99,16 @@ impl RepresentativeBands {
         padded(values)
     }
 
-    /// Brightest in a spectrum of the bands that each representative stands for, shape `[representatives]`.
-    pub(super) fn brightest_of(&self, spectrum: &[f32]) -> Vec<u32> {
-        let mut brightest = self.bands.clone();
-        for (band, &of) in self.of.iter().enumerate() {
-            let brightest = &mut brightest[of as usize];
-            if spectrum[band] > spectrum[*brightest as usize] {
-                *brightest = band as u32;
-            }
-        }
-        brightest
+    /// Returns whether the representative with this index stands for more bands than itself.
+    pub(super) fn stands_for_others(&self, index: usize) -> bool {
+        let count = self.of.iter().filter(|&&of| of as usize == index).take(2).count();
+        count > 1
+    }
+
+    /// Largest value of a spectrum in the bands that the representative with this index stands for.
+    pub(super) fn largest_of(&self, index: usize, spectrum: &[f32]) -> f32 {
+        let own = self.of.iter().zip(spectrum).filter(|(of, _)| **of as usize == index);
+        own.map(|(_, value)| *value).fold(0.0, f32::max)
     }
 
     /// Bands that are more than this many times as bright as their representative in some spectrum, each with that
@@ -167,7 +167,7 @@ mod tests {
             };
             table.add((0..bands).map(value))
         });
-        table.choose_representatives();
+        table.choose_representatives(&[]);
         (table, ids)
     }
 
@@ -178,9 +178,9 @@ mod tests {
                 let mut table = SceneSpectra::new(bands);
                 let value = |band: usize| if band == only { 0.7 } else { 0.0 };
                 let id = table.add((0..bands).map(value));
-                // Whoever does not decide is not ruled out either.
+                // A spectrum that does not decide is not ruled out either.
                 let counted = table.add_counted((0..bands).map(|band| value((band + 1) % bands)));
-                table.choose_representatives();
+                table.choose_representatives(&[]);
                 let chosen = table.representative_bands();
                 assert!(chosen.bands().len() <= RepresentativeBands::MOST);
                 let (values, others) = (table.representatives(id), table.representatives(counted));
@@ -223,7 +223,7 @@ mod tests {
             let value = |band: usize| if band % 300 == spectrum { 0.5 } else { 0.05 };
             table.add((0..bands).map(value));
         }
-        table.choose_representatives();
+        table.choose_representatives(&[]);
         let chosen = table.representative_bands();
         assert_eq!(chosen.bands().len(), RepresentativeBands::MOST);
         assert!(chosen.brighter_than(2.0).next().is_some());

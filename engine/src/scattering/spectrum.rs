@@ -97,14 +97,16 @@ impl SceneSpectra {
         SpectrumId(self.largest.len() as u32 - 1)
     }
 
-    /// Chooses the representative bands for the spectra so far; with few bands there is nothing to choose.
-    pub fn choose_representatives(&mut self) {
+    /// Chooses the representative bands for the spectra so far and for values of models that depend on directions, each of
+    /// shape `[bands]`; with few bands there is nothing to choose.
+    pub fn choose_representatives(&mut self, shapes: &[Vec<f32>]) {
         if self.bands <= RepresentativeBands::MOST {
             return;
         }
         let rows = self.values.chunks(self.lanes).map(|row| &row[..self.bands]);
         let factors = rows.clone().zip(&self.is_factor).filter(|(_, is_factor)| **is_factor);
-        let factors: Vec<&[f32]> = factors.map(|(row, _)| row).collect();
+        let factors = factors.map(|(row, _)| row);
+        let factors: Vec<&[f32]> = factors.chain(shapes.iter().map(Vec::as_slice)).collect();
         self.chosen = RepresentativeBands::choose(self.bands, &factors);
         self.representatives = rows.flat_map(|row| self.chosen.values_of(row)).collect();
     }

@@ -2,6 +2,8 @@
 
 use std::io::{self, Read, Write};
 
+use glam::UVec2;
+
 use super::{Partition, blocks};
 use crate::transport::ProgressFn;
 
@@ -14,8 +16,8 @@ pub trait Film {
     /// Restricts it to a partition of the samples.
     fn restrict(&mut self, partition: Partition);
 
-    /// Number of units that partitions share out: randomisations, or tiles of an image.
-    fn units(&self) -> usize;
+    /// Columns and rows of the units that partitions share out: tiles of an image, or one column of randomisations.
+    fn units(&self) -> UVec2;
 
     /// Writes the state of its partition; only where a round may end (see [`Schedule`]).
     ///

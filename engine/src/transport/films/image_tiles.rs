@@ -261,8 +261,8 @@ impl Film for ImageTiles<'_> {
         self.partition = partition;
     }
 
-    fn units(&self) -> usize {
-        count(self.size) as usize
+    fn units(&self) -> UVec2 {
+        UVec2::new(self.size.x.div_ceil(TILE), self.size.y.div_ceil(TILE))
     }
 
     fn save(&self, out: &mut dyn Write) -> io::Result<()> {

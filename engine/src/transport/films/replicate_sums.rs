@@ -3,6 +3,8 @@
 use std::io::{self, Read, Write};
 use std::ops::Range;
 
+use glam::UVec2;
+
 use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
 use super::{Film, Partition, ReplicateRow, blocks};
 use crate::scattering::SurfaceModels;
@@ -177,8 +179,8 @@ impl Film for ReplicateSums<'_> {
         self.partition = partition;
     }
 
-    fn units(&self) -> usize {
-        RANDOMISATIONS as usize
+    fn units(&self) -> UVec2 {
+        UVec2::new(1, RANDOMISATIONS)
     }
 
     fn save(&self, out: &mut dyn Write) -> io::Result<()> {
