@@ -45,7 +45,10 @@ impl BiLambertian {
                 scattered: spectra.add_counted(scattered),
             }
         };
-        let (front, back) = (side(optics.front()), side(optics.back()));
+        let front = side(optics.front());
+        // Sides that are alike share their spectra, and so do the packets that meet either.
+        let is_alike = optics.back() == optics.front();
+        let back = if is_alike { front.clone() } else { side(optics.back()) };
         let transmitted = spectra.add(tau.iter().copied());
         Self { front, back, transmitted, is_opaque: spectra.is_zero(transmitted) }
     }
