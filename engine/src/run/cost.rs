@@ -241,9 +241,11 @@ const MOST_TRIES: usize = 40;
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
-    /// Tiles of a forecast are spread over all columns of an image, and are a small part of a large one.
+    /// Tiles of a forecast lie in as many columns of an image as can be, and are a small part of a large one.
     #[test]
     fn the_tiles_of_a_forecast_are_those_of_all_columns() {
         for (columns, rows) in
@@ -252,8 +254,9 @@ mod tests {
             let count = partitions_of(UVec2::new(columns, rows));
             let partition = Partition { index: 0, count };
             let owned = (0..columns * rows).filter(|&tile| partition.owns(tile as usize));
-            let shown: std::collections::BTreeSet<u32> = owned.map(|tile| tile % columns).collect();
-            assert_eq!(shown.len(), columns as usize, "{columns} x {rows}: {count}");
+            let shown: BTreeSet<u32> = owned.clone().map(|tile| tile % columns).collect();
+            let most = owned.count().min(columns as usize);
+            assert_eq!(shown.len(), most, "{columns} x {rows}: {count}");
         }
         assert!(partitions_of(UVec2::new(500, 500)) > 100);
     }
