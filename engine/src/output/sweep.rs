@@ -1,7 +1,7 @@
 //! Files of a sweep: a folder for each point, and one table of all.
 //!
 //! `points/sza=30,lai=2/` holds what [`write()`](super::write()) writes, and `point.csv`: where it bears the
-//! point's key, the point is complete.
+//! point's key, the point is complete. Of many points on the same paths, each has `point.csv` alone.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;

@@ -4,8 +4,8 @@ use std::io::{self, Read, Write};
 use std::ops::Range;
 
 use super::band_blocks::blocks;
-use super::films::{restore_u64, save_u64};
 use super::spectrum_products::{ProductId, SpectrumProducts};
+use super::state::{restore_u64, save_u64};
 use crate::scattering::{LANES, SurfaceModels, with_simd};
 use crate::statistics::Sums;
 

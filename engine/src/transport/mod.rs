@@ -11,7 +11,7 @@
 //! | `ray_queue.rs` | rays of many paths or packets, traced together |
 //! | `roulette.rs`, `plane.rs` | Russian roulette; the plane that reflected light leaves through |
 //! | `spectrum_products.rs`, `coefficients.rs` | products of spectra that many packets share; sums of them that are evaluated later |
-//! | `scattering_order.rs`, `band_blocks.rs` | parts of the light by order; bands that are evaluated at a time |
+//! | `scattering_order.rs`, `band_blocks.rs`, `state.rs` | parts of the light by order; bands that are evaluated at a time; saved numbers |
 //!
 //! Reflected light is computed for a total horizontal irradiance of 1 in each band (see
 //! [`Light`](crate::extract::Light)), and products put the units back; emitted light is absolute.
@@ -29,6 +29,7 @@ mod roulette;
 mod scattering_order;
 mod sensors;
 mod spectrum_products;
+mod state;
 
 pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,

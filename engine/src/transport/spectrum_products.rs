@@ -8,7 +8,7 @@ use indexmap::IndexSet;
 
 use crate::scattering::{LobeSpectrum, SpectrumId, SurfaceModels};
 use crate::transport::band_blocks::BLOCK;
-use crate::transport::films::{restore_u64, save_u64};
+use crate::transport::state::{restore_u64, save_u64};
 
 /// Products `P = Π f / max f` of spectra `f` in any order, and `P (1 - f)`.
 ///

@@ -6,13 +6,13 @@ use std::ops::Range;
 use glam::{DVec2, UVec2};
 use rayon::prelude::*;
 
-use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
 use super::tile::{PixelSample, PooledVariance, REPLICATES_PER_PIXEL, Tile};
 use super::{Film, Partition, blocks};
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
 use crate::statistics::{Replicates, Sums, ratio};
 use crate::transport::paths::{PathBatch, PathTracer};
+use crate::transport::state::{restore_f64, restore_u64, save_f64, save_u64};
 use crate::transport::{Camera, ProgressFn, RANDOMISATIONS};
 
 /// Outcome of an image measurement.

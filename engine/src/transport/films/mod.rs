@@ -11,7 +11,6 @@ mod tile;
 pub use film::{Film, Schedule};
 pub use image_tiles::{ImageOutcome, ImageTiles};
 pub use partition::Partition;
-pub(super) use partition::{restore_u64, save_u64};
 pub(super) use replicate_row::ReplicateRow;
 pub use replicate_sums::ReplicateSums;
 pub(super) use replicate_sums::SampleTracer;

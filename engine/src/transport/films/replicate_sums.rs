@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use glam::UVec2;
 
-use super::partition::{restore_f64, restore_u64, save_f64, save_u64};
 use super::{Film, Partition, ReplicateRow, blocks};
 use crate::scattering::SurfaceModels;
 use crate::statistics::{Spread, Sums};
+use crate::transport::state::{restore_f64, restore_u64, save_f64, save_u64};
 use crate::transport::{ProgressFn, RANDOMISATIONS};
 
 /// Traces the samples of a randomisation.
