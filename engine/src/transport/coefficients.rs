@@ -82,13 +82,15 @@ impl Coefficients {
         self.unite();
     }
 
-    /// The terms of one of the sums in several of these; their sums are numbered by the place among these.
+    /// The terms of one of the sums in several of these, as far as they are there; their sums are numbered by the place
+    /// among these.
     pub(in crate::transport) fn of_sums<'a>(
-        all: impl IntoIterator<Item = &'a Self>,
+        all: impl IntoIterator<Item = Option<&'a Self>>,
         sums: usize,
     ) -> Self {
         let mut joined = Self::new(true);
         for (number, one) in (0..).zip(all) {
+            let Some(one) = one else { continue };
             joined.extend(one, |term| (term.sums as usize == sums).then_some(number));
         }
         joined.unite();

@@ -10,7 +10,7 @@ use crate::transport::coefficients::Coefficients;
 #[derive(Clone, Debug, Default)]
 pub(in crate::transport) struct ReplicateRow {
     pub(in crate::transport) sums: Vec<Sums>,
-    /// Terms, of measurements that have any.
+    /// Terms; `None` if there are none.
     pub(in crate::transport) coefficients: Option<Coefficients>,
 }
 
@@ -26,9 +26,10 @@ impl ReplicateRow {
         for (total, part) in self.sums.iter_mut().zip(&part.sums) {
             total.merge(part);
         }
-        let (Some(terms), Some(part)) = (&mut self.coefficients, &part.coefficients) else {
+        let Some(part) = part.coefficients.as_ref().filter(|terms| !terms.is_empty()) else {
             return;
         };
+        let terms = self.coefficients.get_or_insert_with(|| Coefficients::new(true));
         terms.absorb(part);
         if terms.exceeds(Self::MOST_TERMS, Self::MOST_PRODUCTS) {
             self.evaluate(models);
@@ -51,9 +52,8 @@ impl ReplicateRow {
         let each = rows.len().div_ceil(rayon::current_num_threads()).max(1);
         let evaluated = |rows: &[&'r Self]| -> Vec<Cow<'r, Sums>> {
             let mut sums: Vec<_> = rows.iter().map(|row| Cow::Borrowed(&row.sums[index])).collect();
-            let all: Option<Vec<&Coefficients>> =
-                rows.iter().map(|row| row.coefficients.as_ref()).collect();
-            let (Some(all), Some(models)) = (all, models) else { return sums };
+            let Some(models) = models else { return sums };
+            let all = rows.iter().map(|row| row.coefficients.as_ref());
             let terms = Coefficients::of_sums(all, index);
             if !terms.is_empty() {
                 let mut into: Vec<_> = sums.iter_mut().map(|sums| Some(sums.to_mut())).collect();

@@ -8,6 +8,7 @@ use glam::UVec2;
 use super::{Film, Partition, ReplicateRow, blocks};
 use crate::scattering::SurfaceModels;
 use crate::statistics::{Spread, Sums};
+use crate::transport::coefficients::Coefficients;
 use crate::transport::state::{restore_f64, restore_u64, save_f64, save_u64};
 use crate::transport::{ProgressFn, RANDOMISATIONS};
 
@@ -30,6 +31,9 @@ pub(in crate::transport) trait SampleTracer: Sync {
 
     /// Prepares for tracing, once, before any sample is traced.
     fn prepare(&self) {}
+
+    /// Frees what it has kept from block to block.
+    fn finish(&self) {}
 
     /// Traces these samples of a randomisation; returns its sums and the number of rays.
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (ReplicateRow, u64);
@@ -172,6 +176,7 @@ impl Film for ReplicateSums<'_> {
                 progress(traced as f64 / all as f64);
             },
         );
+        self.tracer.finish();
         self.done = to;
     }
 
@@ -194,6 +199,7 @@ impl Film for ReplicateSums<'_> {
                     save_f64(out, ordered.values(cells, &mut buffer))?;
                 }
             }
+            save_u64(out, &[row.coefficients.is_some().into()])?;
             row.coefficients.iter().try_for_each(|terms| terms.save(out))?;
         }
         Ok(())
@@ -206,7 +212,7 @@ impl Film for ReplicateSums<'_> {
         self.done = done;
         if let Store::All(rows) = &mut self.store {
             let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
-            owned.for_each(|(_, row)| row.sums.clear());
+            owned.for_each(|(_, row)| *row = ReplicateRow::default());
         }
         self.set_up(partition);
         let Store::All(rows) = &mut self.store else { return Ok(()) };
@@ -221,7 +227,12 @@ impl Film for ReplicateSums<'_> {
                     }
                 }
             }
-            row.coefficients.iter_mut().try_for_each(|terms| terms.restore(input))?;
+            let mut has_terms = [0];
+            restore_u64(input, &mut has_terms)?;
+            if has_terms == [1] {
+                let terms = row.coefficients.insert(Coefficients::new(true));
+                terms.restore(input)?;
+            }
         }
         Ok(())
     }

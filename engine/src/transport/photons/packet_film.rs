@@ -12,7 +12,6 @@ use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
 use crate::scattering::SurfaceModels;
 use crate::statistics::Sums;
-use crate::transport::coefficients::Coefficients;
 use crate::transport::films::{ReplicateRow, SampleTracer};
 use crate::transport::ray_queue::RayRounds;
 use crate::transport::{LightSource, PhotonKind, ReferencePlane, ReplicateSums};
@@ -90,7 +89,7 @@ impl SampleTracer for PacketTracer<'_> {
     }
 
     fn empty_row(&self) -> ReplicateRow {
-        ReplicateRow { sums: self.empty_sums(), coefficients: Some(Coefficients::new(true)) }
+        ReplicateRow { sums: self.empty_sums(), coefficients: None }
     }
 
     fn prepare(&self) {
@@ -110,6 +109,10 @@ impl SampleTracer for PacketTracer<'_> {
         let rays = batch.trace(&self.settings, samplers, &mut tally);
         self.idle().push(batch);
         (tally.into_row(), rays)
+    }
+
+    fn finish(&self) {
+        *self.idle() = Vec::new();
     }
 
     fn models(&self) -> Option<&SurfaceModels> {
