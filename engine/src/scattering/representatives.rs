@@ -3,7 +3,7 @@
 use super::{LANES, padded};
 
 /// Real bands that stand for all: each band has one that is as bright in every spectrum that paths are multiplied by,
-/// but for [`DARKER`], and no more than [`BRIGHTER`] times as bright.
+/// but for 5 %, and no more than four times as bright.
 ///
 /// A path ends by Russian roulette in proportion to its throughput in the brightest representative. A band that is brighter
 /// than all of them along some paths receives few of these with large weights: a noise that its standard error does not
