@@ -83,7 +83,7 @@ const SENSORS: [(&str, usize, &str); 8] = [
         400,
         "Directions(views: PrincipalPlane(max_deg: 80.0, step_deg: 2.0), measure: [Brf, Orders], until: Samples(32))",
     ),
-    // So many packets that each randomisation touches most cells: those that it does not touch take no memory.
+    // Each randomisation touches most cells with so many packets: those that it does not touch take no memory.
     ("cells", 40, "Photons(per_m2: 20000.0, measure: [Albedo, BrfCells(3000)])"),
     ("faces", 3, "Photons(per_m2: 100.0, measure: [Absorbed(per: Triangle)])"),
     ("folded", 2, "Photons(per_m2: 20.0, measure: [Fluxes(pixel_m: 0.0045)])"),

@@ -117,9 +117,9 @@ pub struct LeafCoating {
 /// is lawful and no side sends out more than it receives; build it with [`LambertianOptics::new`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LambertianOptics {
-    front: Box<[f32]>,
-    back: Box<[f32]>,
-    transmittance: Box<[f32]>,
+    front: Vec<f32>,
+    back: Vec<f32>,
+    transmittance: Vec<f32>,
 }
 
 /// A band in which a surface would send out more light than it receives, or less than zero.
@@ -162,12 +162,9 @@ impl LambertianOptics {
     }
 
     fn join(&mut self, next: &Self) {
-        let join = |values: &mut Box<[f32]>, next: &[f32]| {
-            *values = [&**values, next].concat().into();
-        };
-        join(&mut self.front, &next.front);
-        join(&mut self.back, &next.back);
-        join(&mut self.transmittance, &next.transmittance);
+        self.front.extend_from_slice(&next.front);
+        self.back.extend_from_slice(&next.back);
+        self.transmittance.extend_from_slice(&next.transmittance);
     }
 
     /// Reflectance of the front side, shape `[bands]`.

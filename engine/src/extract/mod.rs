@@ -81,12 +81,8 @@ pub fn extract(
         let instances = instance_inputs(terrain, placed, &mesh_of);
         Arc::new(TwoLevelBvh::build(&meshes, instances, domain)?)
     };
-    let inventory = reported_absorption(world).map(|per| {
-        let meshes: Vec<_> = prototypes.iter().map(|&(_, mesh, _)| mesh).collect();
-        let placed = Instance::in_order(world);
-        let instances: Vec<_> = instance_inputs(terrain, placed.clone(), &mesh_of).collect();
-        Arc::new(Inventory::new(world, terrain, &placed, &instances, &meshes, per))
-    });
+    let meshes: Vec<_> = prototypes.iter().map(|&(_, mesh, _)| mesh).collect();
+    let inventory = inventory(world, terrain, &meshes, &mesh_of);
     let (mut models, surface_names) = surfaces.models(optics);
     let thermal = Thermal::new(optics, &surfaces.ordered, &mut models.spectra);
     let light = Light::new(optics, &mut models.spectra);
@@ -108,6 +104,19 @@ pub fn extract(
         inventory,
         geometry,
     })
+}
+
+/// Instances and their faces, where a sensor reports what each absorbs.
+fn inventory(
+    world: &World,
+    terrain: &TerrainPatch,
+    meshes: &[&Mesh],
+    mesh_of: &BTreeMap<u32, u32>,
+) -> Option<Arc<Inventory>> {
+    let per = reported_absorption(world)?;
+    let placed = Instance::in_order(world);
+    let instances: Vec<_> = instance_inputs(terrain, placed.clone(), mesh_of).collect();
+    Some(Arc::new(Inventory::new(world, terrain, &placed, &instances, meshes, per)))
 }
 
 /// Number of the stage's mesh for each prototype that has instances; mesh 0 is the ground.

@@ -1,4 +1,4 @@
-//! What differs by band in a world: surfaces, light and emission.
+//! Quantities of a world that differ by band: surfaces, light and emission.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::components::{
     BlackBody, Emission, MaterialId, Name, SceneId, SkyLight, SunLight, SurfaceOptics,
 };
 
-/// All of a world that differs by band. Worlds that differ in nothing else can be joined: their bands then ride on the
+/// All quantities of a world that differ by band. Worlds that differ in nothing else can be joined: their bands then ride on the
 /// same paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneOptics {
@@ -26,7 +26,7 @@ pub struct SceneOptics {
 pub(super) struct MaterialOptics {
     pub(super) name: String,
     pub(super) surface: SurfaceOptics,
-    /// What it would emit if it were black, where a sensor measures that.
+    /// Emission of a black surface of its temperature, where a sensor measures it.
     pub(super) body: Option<BlackBody>,
 }
 

@@ -29,6 +29,16 @@ fn scene_hash(
     Ok(hasher.finalize())
 }
 
+/// Hashes of results that depend on all of these: each made of its own and of all.
+pub(super) fn joint_hashes(own: &[&str]) -> Vec<String> {
+    let mut all = blake3::Hasher::new();
+    for hash in own {
+        all.update(hash.as_bytes());
+    }
+    let joint = |hash: &&str| all.clone().update(hash.as_bytes()).finalize().to_hex().to_string();
+    own.iter().map(joint).collect()
+}
+
 /// Hash of a scene without the stop criteria of its sensors: scenes with equal hashes draw the same samples.
 pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], Failure> {
     let mut scene = scene.clone();

@@ -2,13 +2,14 @@
 
 use hecs::World;
 
+use super::provenance::joint_hashes;
 use super::settled::SettledScene;
 use super::{enclosed, footprint, params, projection, sensors, uncovered};
 use crate::document::Sun;
 use crate::extract::Stage;
 use crate::products::{Context, Product, Report, SensorReport};
 
-/// What all scenes of a run have in common.
+/// Data that all scenes of a run share.
 pub(super) struct CommonResults<'a> {
     pub(super) world: &'a World,
     pub(super) stage: &'a Stage,
@@ -27,20 +28,16 @@ pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Ve
     let count = scenes.len();
     let share = 1.0 / count as f64;
     let warnings = common_warnings(common);
-    let hashes: String = scenes.iter().map(|settled| settled.hash.as_str()).collect();
-    let report = |(index, settled): (usize, &SettledScene)| {
+    let own: Vec<&str> = scenes.iter().map(|settled| settled.hash.as_str()).collect();
+    let hashes = if let [only] = own[..] { vec![only.to_owned()] } else { joint_hashes(&own) };
+    let report = |(index, (settled, hash)): (usize, (&SettledScene, String))| {
         let SettledScene { scene, context, .. } = settled;
         let sensors: Vec<SensorReport> =
             common.sensors.iter().map(|sensor| of_scene(sensor, index, common, context)).collect();
         Report {
             projection: projection(common.world),
             scene: scene.title.clone(),
-            hash: if count == 1 {
-                settled.hash.clone()
-            } else {
-                // Results depend on all that share paths.
-                blake3::hash(format!("{}{hashes}", settled.hash).as_bytes()).to_hex().to_string()
-            },
+            hash,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed: scene.transport.seed,
             seconds: common.seconds * share,
@@ -58,7 +55,7 @@ pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Ve
             source: None,
         }
     };
-    scenes.iter().enumerate().map(report).collect()
+    scenes.iter().zip(hashes).enumerate().map(report).collect()
 }
 
 /// Report of one scene from that of all.

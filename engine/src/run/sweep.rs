@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 
 use super::points::SettledPoints;
 use super::pool::in_pool;
-use super::provenance::FileHashes;
+use super::provenance::{FileHashes, joint_hashes};
 use super::reading::{choose_sensors, folder_of, sound};
 use super::scene_world::SceneWorld;
 use super::{Failure, Options, Progress, day, params, scene_source};
@@ -69,7 +69,11 @@ impl SweepRun {
         let distinct: Vec<usize> = (0..points.len()).filter(is_new).collect();
         let groups = groups(&distinct, &likeness, scene.bands.len());
         for group in groups.iter().filter(|group| group.len() > 1) {
-            include_group(group, &mut points);
+            // Results depend on which points share paths.
+            let own: Vec<&str> = group.iter().map(|&index| points[index].key.as_str()).collect();
+            for (&index, key) in group.iter().zip(joint_hashes(&own)) {
+                points[index].key = key;
+            }
         }
         let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
@@ -210,19 +214,6 @@ struct Likeness {
 
 /// Largest number of bands that are traced on the same paths.
 const MOST_BANDS: usize = 1 << 14;
-
-/// Makes the key of each point of a group depend on all: results depend on which points share paths.
-fn include_group(group: &[usize], points: &mut [SweepPoint]) {
-    let mut hasher = blake3::Hasher::new();
-    for &index in group {
-        hasher.update(points[index].key.as_bytes());
-    }
-    for &index in group {
-        let mut hasher = hasher.clone();
-        hasher.update(points[index].key.as_bytes());
-        points[index].key = hasher.finalize().to_hex().to_string();
-    }
-}
 
 /// Groups of points that are traced on the same paths; those of the same geometry follow each other.
 fn groups(points: &[usize], likeness: &[Likeness], bands: usize) -> Vec<Vec<usize>> {

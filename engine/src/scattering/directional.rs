@@ -6,10 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{
-    Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, RepresentativeBands, SceneSpectra,
-    SpectrumId,
-};
+use super::{Angles, BsdfSample, Interaction, Lobe, LobeSpectrum, SceneSpectra, SpectrumId};
 use crate::components::DirectionalOptics;
 use crate::sampling::cosine_direction;
 
@@ -28,17 +25,12 @@ pub trait BandModel: Copy + Sync {
 pub struct Directional<B> {
     bands: Vec<B>,
     fractions: FractionTable,
-    representatives: Vec<Representative>,
-}
-
-/// A representative band of a model.
-#[derive(Clone, Debug, PartialEq)]
-struct Representative {
-    band: u32,
-    /// Minimum of its `π f` by the cosine of `wo`, at the nodes of the fractions: a part of the largest scattered fraction of
-    /// the bands that it stands for, so that none of them is ruled out where its own shape is 0. Empty if it stands
-    /// for itself alone.
-    least: Vec<f32>,
+    /// The representative bands.
+    representatives: Vec<u32>,
+    /// Minimum of `π f` in these by the cosine of `wo`, shape `[nodes of the fractions, representatives]`: a part of what any
+    /// of the bands that each stands for scatters, so that none is ruled out where the representative reflects
+    /// nothing. Empty if each band represents itself.
+    least: Vec<Vec<f32>>,
 }
 
 impl<B: BandModel> Directional<B> {
@@ -47,7 +39,8 @@ impl<B: BandModel> Directional<B> {
     pub fn new(optics: &DirectionalOptics<B>, spectra: &mut SceneSpectra) -> Self {
         let DirectionalOptics { bands, dhr } = optics;
         let fractions = FractionTable::new(dhr, spectra);
-        let mut model = Self { bands: bands.clone(), fractions, representatives: Vec::new() };
+        let (bands, representatives, least) = (bands.clone(), Vec::new(), Vec::new());
+        let mut model = Self { bands, fractions, representatives, least };
         model.choose_representatives(spectra);
         model
     }
@@ -55,17 +48,9 @@ impl<B: BandModel> Directional<B> {
     /// Takes over the representative bands of the spectra.
     pub(super) fn choose_representatives(&mut self, spectra: &SceneSpectra) {
         let chosen = spectra.representative_bands();
-        let representative = |(index, &band): (usize, &u32)| {
-            let least = if chosen.stands_for_others(index) {
-                let scattered = self.fractions.scattered.iter();
-                let largest = scattered.map(|&id| chosen.largest_of(index, spectra.lanes(id)));
-                largest.map(|largest| RepresentativeBands::LEAST * largest).collect()
-            } else {
-                Vec::new()
-            };
-            Representative { band, least }
-        };
-        self.representatives = chosen.bands().iter().enumerate().map(representative).collect();
+        self.representatives = chosen.bands().to_vec();
+        let nodes = self.fractions.scattered.iter().filter(|_| !chosen.are_all());
+        self.least = nodes.map(|&node| chosen.least_of(spectra.lanes(node))).collect();
     }
 
     /// `π f` for some pairs of directions, by which representative bands are chosen; each of shape `[bands]`.
@@ -108,12 +93,13 @@ impl<B: BandModel> Directional<B> {
     /// Writes `π f` in the representative bands: at least a part of what any of the bands that each stands for scatters.
     pub(super) fn evaluate_representatives(&self, angles: &Angles, values: &mut [f32]) {
         values.fill(0.0);
-        let node = (f64::from(angles.cos_o).sqrt() * INTERVALS as f64) as usize;
-        for (value, Representative { band, least }) in values.iter_mut().zip(&self.representatives)
-        {
-            *value = self.bands[*band as usize].f(angles);
-            if !least.is_empty() {
-                *value = value.max(least[node.min(INTERVALS)]);
+        for (value, &band) in values.iter_mut().zip(&self.representatives) {
+            *value = self.bands[band as usize].f(angles);
+        }
+        if !self.least.is_empty() {
+            let node = (f64::from(angles.cos_o).sqrt() * INTERVALS as f64) as usize;
+            for (value, least) in values.iter_mut().zip(&self.least[node.min(INTERVALS)]) {
+                *value = value.max(*least);
             }
         }
     }

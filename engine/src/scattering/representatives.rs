@@ -91,24 +91,29 @@ impl RepresentativeBands {
 
     /// Values of a spectrum in the representative bands, padded with zeros to whole groups of lanes.
     pub(crate) fn values_of(&self, spectrum: &[f32]) -> Box<[f32]> {
-        let mut values: Vec<f32> = self.bands.iter().map(|&band| spectrum[band as usize]).collect();
-        for (&of, &value) in self.of.iter().zip(spectrum) {
-            let representative = &mut values[of as usize];
-            *representative = representative.max(Self::LEAST * value);
+        let least = self.least_of(spectrum);
+        padded(
+            self.bands.iter().zip(least).map(|(&band, least)| spectrum[band as usize].max(least)),
+        )
+    }
+
+    /// Minimum values in the representative bands: a part of the largest value of the bands that each stands for; 0 if it
+    /// stands for itself alone.
+    pub(super) fn least_of(&self, spectrum: &[f32]) -> Vec<f32> {
+        let mut largest = vec![0.0_f32; self.bands.len()];
+        let mut has_others = vec![false; self.bands.len()];
+        for (band, (&of, &value)) in self.of.iter().zip(spectrum).enumerate() {
+            let of = of as usize;
+            largest[of] = largest[of].max(value);
+            has_others[of] |= self.bands[of] as usize != band;
         }
-        padded(values)
+        let least = |(largest, has_others)| if has_others { Self::LEAST * largest } else { 0.0 };
+        largest.into_iter().zip(has_others).map(least).collect()
     }
 
-    /// Returns whether the representative with this index stands for more bands than itself.
-    pub(super) fn stands_for_others(&self, index: usize) -> bool {
-        let count = self.of.iter().filter(|&&of| of as usize == index).take(2).count();
-        count > 1
-    }
-
-    /// Largest value of a spectrum in the bands that the representative with this index stands for.
-    pub(super) fn largest_of(&self, index: usize, spectrum: &[f32]) -> f32 {
-        let own = self.of.iter().zip(spectrum).filter(|(of, _)| **of as usize == index);
-        own.map(|(_, value)| *value).fold(0.0, f32::max)
+    /// Returns whether each band represents itself.
+    pub(super) const fn are_all(&self) -> bool {
+        self.bands.len() == self.of.len()
     }
 
     /// Bands that are more than this many times as bright as their representative in some spectrum, each with that
@@ -213,7 +218,7 @@ mod tests {
         assert!(counts.iter().all(|count| *count == counts[0] && *count < 100), "{counts:?}");
     }
 
-    /// Where bands differ too much for so few representatives, those that are not covered are known.
+    /// Bands that no representative covers are known if spectra differ too much.
     #[test]
     fn bands_that_no_representative_covers_are_known() {
         let bands = 3000;
