@@ -224,7 +224,7 @@ impl SceneText {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = folder.path().join("test.ron");
         fs::write(&file, self.to_string()).expect("a file");
-        let mut sweep = SweepRun::read(&file, &Options::default())
+        let mut sweep = SweepRun::read(&file, &Options::default(), &Unwatched)
             .unwrap_or_else(|failure| panic!("{failure}"));
         let groups = sweep.groups().to_vec();
         let mut reports: Vec<Option<Report>> = sweep.points().iter().map(|_| None).collect();

@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use sunfleck::output::{Results, Written};
+use sunfleck::output::{PointTables, Results, SweepTable, Written};
 use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::run::Partition;
 use sunfleck::{document, output, run};
@@ -160,24 +160,28 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let folder = arguments.folder("_sweep");
     let scene = &arguments.scene.file;
     let results = Results::open(&folder, "sweep", scene, arguments.out.force)?;
-    let mut sweep = run::SweepRun::read(scene, &run_options(arguments))?;
+    let bars = Bars::new();
+    let sweep = run::SweepRun::read(scene, &run_options(arguments), &bars);
+    bars.clear();
+    let mut sweep = sweep?;
     let (points, sweep_report) = (sweep.points().to_vec(), sweep.report());
+    let mut tables = PointTables::open(&folder, &points)?;
     let distinct: usize = sweep.groups().iter().map(Vec::len).sum();
     let (mut shown, mut ran, mut dark) = (BTreeSet::new(), 0, 0);
     let mut is_first = true;
     for (group, places) in sweep.groups().to_vec().into_iter().enumerate() {
         let of_group: Vec<SweepPoint> = places.iter().map(|&place| points[place].clone()).collect();
-        let is_finished = |point: &SweepPoint| output::is_complete(point, &folder);
-        if of_group.iter().all(is_finished) {
+        let finished: Vec<bool> = of_group.iter().map(|point| tables.contains(point)).collect();
+        if !finished.contains(&false) {
             continue;
         }
         of_group.iter().for_each(warn_night);
         let bars = Bars::new();
         bars.heading(&heading(places[0], &of_group, points.len()));
         sweep.run(group, &bars, |part, reports| -> anyhow::Result<()> {
-            let group = &of_group[part];
+            let (group, finished) = (&of_group[part.clone()], &finished[part]);
             let unfinished: Vec<usize> =
-                (0..group.len()).filter(|&index| !is_finished(&group[index])).collect();
+                (0..group.len()).filter(|&index| !finished[index]).collect();
             bars.clear();
             for (report, point) in reports.iter().zip(group) {
                 warn_once(report, point, &mut shown);
@@ -187,7 +191,7 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
                 results.write_texts(&sweep_report, &[])?;
             }
             is_first = false;
-            output::write_points(&reports, group, &unfinished, &folder)?;
+            tables.write(&reports, group, &unfinished)?;
             let of_night = unfinished.iter().filter(|&&index| group[index].darkness().is_some());
             let of_night = of_night.count();
             (ran, dark) = (ran + unfinished.len() - of_night, dark + of_night);
@@ -195,8 +199,8 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
         })?;
         bars.clear();
     }
-    let table = output::sweep_table(&points, &folder)?;
-    let daily = output::daily_sums(&sweep.days(), &points, &folder)?;
+    let table = SweepTable::new(&points, &tables)?;
+    let daily = output::daily_sums(&sweep.days(), &points, &tables)?;
     let written = results.write_sweep(&sweep.report(), &points, &table, daily.as_ref())?;
     print(&format!(
         "{}: {ran} {} run, {}{} kept; geometry built {}\n",

@@ -1,16 +1,13 @@
 //! Reading: a file or a text to a scene, with all that is wrong in it.
 
-use std::collections::HashSet;
 use std::io;
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::Arc;
 
-use super::check::check_readable;
-use super::decode::{Decode, Findings, Reader};
-use super::diagnostic::{Diagnostic, Place};
+use super::diagnostic::Diagnostic;
 use super::encode::Encode as _;
-use super::include::{Included, include};
-use super::params::{settle_params, survey};
+use super::parsed::ParsedScene;
 use super::path::ScenePath;
 use super::ron_text::{Group, Node, Text, parse};
 use super::scene::{Param, Scene};
@@ -36,7 +33,7 @@ pub struct Reading {
     /// The scene, with placeholders where it could not be read.
     pub scene: Scene,
     /// The text it was read from.
-    pub source: Source,
+    pub source: Arc<Source>,
     /// Errors and warnings, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
     pub(super) options: ReadOptions,
@@ -85,8 +82,7 @@ pub enum ReadError {
 /// Where the file cannot be read, or is not RON. Whatever else is wrong with the scene is among
 /// [`Reading::diagnostics`].
 pub fn read_file(path: &Path, options: &ReadOptions) -> Result<Reading, ReadError> {
-    let text = text_of_file(path, false)?;
-    read_text(&path.display().to_string(), &text, options)
+    Ok(ParsedScene::from_file(path)?.read(options))
 }
 
 /// The text of a scene file. What is no file on a disk (a pipe, say) might never end or never start:
@@ -135,7 +131,7 @@ pub(super) fn parse_text(source: &Source) -> Result<Node, ReadError> {
 }
 
 /// Texts that cannot be a scene.
-fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
+pub(super) fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
     let file = file.to_owned();
     if text.len() as u64 > FILE_SIZE {
         return Err(ReadError::TooLarge { file, bytes: text.len() as u64, limit: FILE_SIZE });
@@ -156,52 +152,7 @@ fn refuse_odd(file: &str, text: &str) -> Result<(), ReadError> {
 /// Where the text is not RON. Whatever else is wrong with the scene is among
 /// [`Reading::diagnostics`].
 pub fn read_text(name: &str, text: &str, options: &ReadOptions) -> Result<Reading, ReadError> {
-    refuse_odd(name, text)?;
-    let mut source = Source::new(name, text);
-    let mut tree = parse_text(&source)?;
-    let Included { diagnostics, lost } = include(&mut tree, &mut source);
-    let mut reader = Reader::new(&source);
-    reader.start_with(diagnostics, &lost);
-    let params = settle_params(&tree, options, lost, &mut reader);
-    reader.advise_from(&tree, params.values.keys());
-    survey(&tree, &params, &mut reader);
-    let mut scene = Scene::decode(&tree, &mut reader);
-    let Findings { mut diagnostics, dropped, broken, lost } = reader.finish();
-    let unused = params.unused();
-    scene.params = params.values;
-
-    let source = source.with_tree(tree);
-    if dropped == 0 {
-        diagnostics.extend(check_readable(&scene, &broken, &lost));
-    }
-    if !diagnostics.iter().any(Diagnostic::is_error) {
-        diagnostics.extend(unused.iter().map(|name| unused_param(name)));
-    }
-    for diagnostic in &mut diagnostics {
-        if diagnostic.place.is_none() {
-            diagnostic.place = source.place_of_path(diagnostic);
-        }
-    }
-    // What has no place of its own stands last.
-    diagnostics.sort_by_key(|one| one.place.as_ref().map_or(u32::MAX, |place| place.span.start));
-    // A file that is included twice is wrong once.
-    let mut seen = HashSet::new();
-    diagnostics.retain(|Diagnostic { place, message, .. }| {
-        place.as_ref().is_none_or(|Place { file, line, column, .. }| {
-            seen.insert((file.clone(), *line, *column, message.clone()))
-        })
-    });
-    if dropped > 0 {
-        let message = format!("and {dropped} more errors");
-        diagnostics.push(Diagnostic::error(ScenePath::root(), message));
-    }
-    Ok(Reading { scene, source, diagnostics, options: options.clone() })
-}
-
-fn unused_param(name: &str) -> Diagnostic {
-    let path = ScenePath::from("params").name(name);
-    Diagnostic::warning(path, format!("no formula uses the parameter `{name}`"))
-        .help(format!("write `\"={name}\"` where its value is meant, or take it out"))
+    Ok(ParsedScene::new(name, text)?.read(options))
 }
 
 impl Scene {

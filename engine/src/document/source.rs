@@ -8,6 +8,7 @@
 //! wide characters, those here count characters.
 
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 use super::diagnostic::{Diagnostic, Place, Severity};
 use super::legible::{NAME, legible, shortened};
@@ -21,7 +22,7 @@ pub struct Source {
     files: Vec<SourceFile>,
     text: String,
     lines: Vec<usize>,
-    tree: Option<Node>,
+    tree: Option<Arc<Node>>,
 }
 
 /// A file of a scene.
@@ -84,7 +85,7 @@ impl Source {
         &self.file_at(span.start as usize).folder
     }
 
-    pub(super) fn with_tree(self, tree: Node) -> Self {
+    pub(super) fn with_tree(self, tree: Arc<Node>) -> Self {
         Self { tree: Some(tree), ..self }
     }
 
@@ -102,7 +103,7 @@ impl Source {
 
     /// The node at a path of the document, or at its nearest ancestor that exists; true for the former.
     pub(super) fn nearest(&self, path: &ScenePath) -> Option<(&Node, bool)> {
-        let mut node = self.tree.as_ref()?;
+        let mut node = self.tree.as_deref()?;
         for step in path.steps() {
             match self.step(node, step) {
                 Some(child) => node = child,
@@ -123,7 +124,7 @@ impl Source {
     fn locate_key(&self, path: &ScenePath) -> Option<Span> {
         let (name, parents) = path.steps().split_last()?;
         let map =
-            parents.iter().try_fold(self.tree.as_ref()?, |node, step| self.step(node, step))?;
+            parents.iter().try_fold(self.tree.as_deref()?, |node, step| self.step(node, step))?;
         let Value::Map(entries) = &map.inner().value else { return None };
         entries.iter().map(|(key, _)| key).find(|key| self.is_named(key, name)).map(|key| key.span)
     }

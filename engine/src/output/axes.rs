@@ -1,5 +1,6 @@
 //! Columns of tables that hold several products, one column per axis.
 
+use super::length;
 use super::rows::{columns, indices, point};
 use crate::products::{Product, ProductAxis, Report};
 
@@ -8,6 +9,24 @@ use crate::products::{Product, ProductAxis, Report};
 pub struct AxisColumns<'a> {
     names: Vec<String>,
     report: &'a Report,
+}
+
+/// Cells of the values of one product.
+#[derive(Clone, Debug)]
+pub struct ProductCells {
+    columns: usize,
+    /// Length of each dimension.
+    lengths: Vec<usize>,
+    along: Vec<Vec<AxisTexts>>,
+}
+
+/// Texts of the points of an axis.
+#[derive(Clone, Debug)]
+struct AxisTexts {
+    /// Column of the axis, if it has one.
+    column: Option<usize>,
+    is_band: bool,
+    texts: Vec<String>,
 }
 
 /// Position of a value in its product, as cells of a table.
@@ -40,26 +59,47 @@ impl<'a> AxisColumns<'a> {
         self.names.iter().map(String::as_str)
     }
 
-    /// Cells of the value `row` of a product.
+    /// Cells of the values of a product.
     #[must_use]
-    pub fn place(&self, product: &Product, row: usize) -> AxisCells {
-        let mut place =
-            AxisCells { cells: vec![String::new(); self.names.len()], band: String::new() };
-        let places = indices(&product.dimensions, row);
-        for (dimension, index) in Self::along(product, self.report).iter().zip(places) {
-            for axis in dimension {
-                let text = point(axis, index);
-                if axis.name == BAND {
-                    place.band = text;
-                } else if let Some(at) = self.names.iter().position(|name| *name == axis.name) {
-                    place.cells[at] = text;
-                }
-            }
+    pub fn cells(&self, product: &Product) -> ProductCells {
+        let along = Self::along(product, self.report);
+        let column = |axis: &ProductAxis| {
+            let column = self.names.iter().position(|name| *name == axis.name);
+            let texts = (0..axis.points.len()).map(|index| point(axis, index)).collect();
+            AxisTexts { column, is_band: axis.name == BAND, texts }
+        };
+        ProductCells {
+            columns: self.names.len(),
+            lengths: along.iter().map(|dimension| length(dimension)).collect(),
+            along: along.iter().map(|axes| axes.iter().map(column).collect()).collect(),
         }
-        place
     }
 
     fn along(product: &Product, report: &Report) -> Vec<Vec<ProductAxis>> {
         product.dimensions.iter().map(|dimension| columns(dimension, report)).collect()
+    }
+}
+
+impl ProductCells {
+    /// Number of columns of axes.
+    #[must_use]
+    pub const fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Cells of the value `row`, the last dimension fastest.
+    #[must_use]
+    pub fn row(&self, row: usize) -> AxisCells {
+        let mut found = AxisCells { cells: vec![String::new(); self.columns], band: String::new() };
+        for (axes, index) in self.along.iter().zip(indices(&self.lengths, row)) {
+            for AxisTexts { column, is_band, texts } in axes {
+                match column {
+                    _ if *is_band => found.band.clone_from(&texts[index]),
+                    Some(column) => found.cells[*column].clone_from(&texts[index]),
+                    None => {}
+                }
+            }
+        }
+        found
     }
 }

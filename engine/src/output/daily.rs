@@ -3,16 +3,14 @@
 //! `scenes/RESULTS.md` has the formulas. Products in units of power become energy; shares of the incident
 //! light become their mean weighted with the irradiance. All others have no sum.
 
-use std::collections::HashMap;
 use std::io::{self, Write};
-use std::path::Path;
 
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
 use super::OutputError;
+use super::point_tables::{PointTable, PointTables};
 use super::rows::{harmless, number};
-use super::sweep::{irradiance, table, table_file, unreadable};
 use crate::document::Param;
 use crate::products::{Day, SweepPoint};
 
@@ -84,7 +82,7 @@ impl Kind {
     }
 }
 
-/// Sums over the days of a sweep whose points are complete in `folder`; none if no point of any day has a
+/// Sums over the days of a sweep whose points have these tables; none if no point of any day has a
 /// product that adds up.
 ///
 /// # Errors
@@ -92,13 +90,16 @@ impl Kind {
 pub fn daily_sums(
     days: &[Day],
     points: &[SweepPoint],
-    folder: &Path,
+    tables: &PointTables,
 ) -> Result<Option<DailySums>, OutputError> {
     let mut sums = DailySums { names: Vec::new(), rows: Vec::new() };
     for day in days {
         let mut found: IndexMap<Vec<(String, String)>, (Kind, Sum)> = IndexMap::new();
         for &(index, weight_h) in &day.weights_h {
-            add_point(&points[index], weight_h, folder, &mut found)?;
+            let point = &points[index];
+            if let Some(table) = tables.get(point) {
+                add_point(table, point.params.len(), weight_h, &mut found)?;
+            }
         }
         for (cells, (kind, sum)) in found {
             let traced = day.weights_h.len();
@@ -108,22 +109,22 @@ pub fn daily_sums(
     Ok(Some(sums).filter(|sums| !sums.rows.is_empty()))
 }
 
-/// Adds all values of a point's table to the sums of a day.
+/// Adds all values of a point's table, behind its columns of parameters, to the sums of a day.
 fn add_point(
-    point: &SweepPoint,
+    table: &PointTable,
+    params: usize,
     weight_h: f64,
-    folder: &Path,
     found: &mut IndexMap<Vec<(String, String)>, (Kind, Sum)>,
 ) -> Result<(), OutputError> {
-    let path = table_file(point, folder);
-    let lit: HashMap<String, f64> = irradiance(&path)?;
-    let mut rows = table(&path)?;
-    let header = rows.headers().cloned().map_err(|error| unreadable(&path, error))?;
+    let unreadable = |error: csv::Error| table.unreadable(error.into());
+    let lit = table.irradiance()?;
+    let mut rows = table.rows()?;
+    let header = rows.headers().cloned().map_err(unreadable)?;
     for row in rows.records() {
-        let row = row.map_err(|error| unreadable(&path, error))?;
+        let row = row.map_err(unreadable)?;
         let cell = |name: &str| {
-            let at = header.iter().skip(point.params.len()).position(|column| column == name);
-            at.and_then(|at| row.get(at + point.params.len())).unwrap_or("")
+            let at = header.iter().skip(params).position(|column| column == name);
+            at.and_then(|at| row.get(at + params)).unwrap_or("")
         };
         let Some(kind) = Kind::from_unit(cell("product"), cell("unit")) else { continue };
         let weight = match kind {
@@ -133,7 +134,7 @@ fn add_point(
                 None => continue,
             },
         };
-        let names = header.iter().zip(&row).skip(point.params.len());
+        let names = header.iter().zip(&row).skip(params);
         let names = names.filter(|(name, _)| !["value", "standard_error"].contains(name));
         let cells = names.map(|(name, cell)| match name {
             "unit" => (name.to_owned(), kind.unit(cell)),

@@ -22,6 +22,7 @@ mod names;
 mod partial;
 mod picture;
 mod ply;
+mod point_tables;
 mod results;
 mod rows;
 mod scale;
@@ -40,16 +41,18 @@ use envi::Raster;
 
 use crate::products::{Image, Product, Report};
 
-pub use axes::{AxisCells, AxisColumns};
+pub use axes::{AxisCells, AxisColumns, ProductCells};
 pub use daily::{DailySums, daily_sums};
+pub use names::folder_name;
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
 pub use picture::RgbaPicture;
+pub use point_tables::PointTables;
 pub use results::{Results, Written};
 pub use rows::{harmless, number};
 pub use scale::{axis_title, range_of, tick};
 pub use size::file_size;
-pub use sweep::{folder_name, is_complete, sweep_table, write_points};
+pub use sweep::SweepTable;
 pub use table::table;
 
 /// Error of writing a report; no part of it is on disk.

@@ -4,6 +4,24 @@ use std::collections::HashSet;
 
 use crate::products::Report;
 
+/// Longest name of a folder, bytes.
+pub(super) const FOLDER_LENGTH: usize = 100;
+
+/// Name of a folder that is safe on every file system. A hash of `identity` distinguishes names that are cut.
+#[must_use]
+pub fn folder_name(name: &str, identity: &str) -> String {
+    let safe = |letter: char| {
+        if letter.is_alphanumeric() || "-_.=,+".contains(letter) { letter } else { '_' }
+    };
+    let mut name: String = name.chars().map(safe).collect();
+    if name.len() > FOLDER_LENGTH {
+        let hash = blake3::hash(identity.as_bytes()).to_hex();
+        name.truncate(name.floor_char_boundary(FOLDER_LENGTH - 17));
+        name = format!("{name},{}", &hash[..16]);
+    }
+    name
+}
+
 /// Names for one sensor.
 #[derive(Debug)]
 pub(super) struct SensorNames {

@@ -7,6 +7,7 @@ use super::daily::{self, DailySums};
 use super::manifest::{Manifest, relative};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
+use super::sweep::SweepTable;
 use super::{OutputError, names, put_products, summary};
 use crate::products::{Report, SceneSource, SweepPoint};
 
@@ -95,7 +96,7 @@ impl Results {
     /// Writes files that need nothing beside them.
     pub(super) fn write_alone(
         &self,
-        fill: impl Fn(&mut Staging) -> Result<(), OutputError>,
+        mut fill: impl FnMut(&mut Staging) -> Result<(), OutputError>,
     ) -> Result<Written, OutputError> {
         self.put(|_, staging| fill(staging).map(|()| None))
     }
@@ -131,11 +132,11 @@ impl Results {
         &self,
         report: &Report,
         points: &[SweepPoint],
-        table: &str,
+        table: &SweepTable<'_>,
         daily: Option<&DailySums>,
     ) -> Result<Written, OutputError> {
         self.put(|folder, staging| {
-            staging.file("sweep.csv", |file| file.write_all(table.as_bytes()))?;
+            staging.file("sweep.csv", |file| table.write(file))?;
             if let Some(daily) = daily {
                 staging.file(daily::FILE, |file| daily.write(file))?;
             }
@@ -152,9 +153,9 @@ impl Results {
     /// is not lost.
     fn put(
         &self,
-        fill: impl Fn(&Path, &mut Staging) -> Result<Option<String>, OutputError>,
+        mut fill: impl FnMut(&Path, &mut Staging) -> Result<Option<String>, OutputError>,
     ) -> Result<Written, OutputError> {
-        let put = |folder: &Path| -> Result<Written, OutputError> {
+        let mut put = |folder: &Path| -> Result<Written, OutputError> {
             let mut staging = self.stage(folder)?;
             let replaced = fill(folder, &mut staging)?;
             let files = staging.commit(self.force)?;

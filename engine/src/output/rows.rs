@@ -33,11 +33,12 @@ pub(super) fn write(source: &Source<'_>, file: &mut impl Write) -> io::Result<()
     if columns == 0 {
         return writer.flush();
     }
+    let lengths: Vec<usize> = down.iter().map(|dimension| length(dimension)).collect();
     let rows =
         product.values.chunks_exact(columns).zip(product.standard_error.chunks_exact(columns));
     for (row, (values, errors)) in rows.enumerate() {
         let mut record: Vec<String> = Vec::with_capacity(header.len());
-        for (dimension, index) in down.iter().zip(indices(&down, row)) {
+        for (dimension, index) in down.iter().zip(indices(&lengths, row)) {
             record.extend(dimension.iter().map(|axis| harmless(&point(axis, index))));
         }
         for (value, error) in values.iter().zip(errors) {
@@ -98,16 +99,15 @@ fn harmless_line(text: &str) -> String {
     cells.map(cell).collect()
 }
 
-/// Index along each dimension of the `row`-th point, last dimension fastest.
-pub(super) fn indices(dimensions: &[Vec<ProductAxis>], row: usize) -> Vec<usize> {
+/// Index along each dimension, of these lengths, of the `row`-th point; the last dimension is the fastest.
+pub(super) fn indices(lengths: &[usize], row: usize) -> Vec<usize> {
     let mut rest = row;
-    let mut indices: Vec<_> = dimensions
+    let mut indices: Vec<_> = lengths
         .iter()
         .rev()
-        .map(|dimension| {
-            let points = length(dimension).max(1);
-            let index = rest % points;
-            rest /= points;
+        .map(|&points| {
+            let index = rest % points.max(1);
+            rest /= points.max(1);
             index
         })
         .collect();

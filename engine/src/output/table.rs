@@ -104,7 +104,8 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 }
 
 fn place(dimensions: &[Vec<ProductAxis>], point: usize) -> String {
-    let indices = indices(dimensions, point);
+    let lengths: Vec<usize> = dimensions.iter().map(|dimension| length(dimension)).collect();
+    let indices = indices(&lengths, point);
     let axes = dimensions.iter().zip(indices).flat_map(|(axes, index)| {
         axes.iter().map(move |axis| match &axis.points {
             AxisPoints::Labels(_) => label(axis, index),

@@ -8,15 +8,22 @@ impl Product {
     /// The bands of one of the scenes; what has no bands is the same for all.
     #[must_use]
     pub fn of_scene(&self, scene: usize, scenes: usize) -> Self {
-        let Some(joined) = self.bands().filter(|_| scenes > 1) else { return self.clone() };
+        let (Some(joined), Some((bands, others))) =
+            (self.bands().filter(|_| scenes > 1), self.dimensions.split_last())
+        else {
+            return self.clone();
+        };
         let part = BandsOfScene { joined, start: scene * (joined / scenes), len: joined / scenes };
-        let mut dimensions = self.dimensions.clone();
-        for axis in dimensions.last_mut().into_iter().flatten() {
-            axis.points = match &axis.points {
+        // The labels of thousands of bands are copied for none but their scene.
+        let own = |axis: &ProductAxis| ProductAxis {
+            name: axis.name.clone(),
+            points: match &axis.points {
                 AxisPoints::Labels(labels) => AxisPoints::Labels(part.of(labels)),
                 AxisPoints::Numbers(numbers) => AxisPoints::Numbers(part.of(numbers)),
-            };
-        }
+            },
+        };
+        let mut dimensions = others.to_vec();
+        dimensions.push(bands.iter().map(own).collect());
         Self {
             name: self.name.clone(),
             unit: self.unit.clone(),

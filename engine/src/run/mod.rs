@@ -15,6 +15,7 @@ mod footprint;
 mod options;
 mod photons;
 mod pixels;
+mod point_reader;
 mod points;
 mod pool;
 mod provenance;
@@ -122,11 +123,11 @@ fn run_in(
     let mut clock = Clock::start();
     options.checkpoint.as_ref().map_or(Ok(()), Checkpoint::try_file)?;
     progress.stage("loading");
-    let mut hashes = FileHashes::default();
-    let mut settled = SettledScene::new(world, scene.clone(), &mut hashes)?;
+    let hashes = FileHashes::default();
+    let mut settled = SettledScene::new(world, scene.clone(), &hashes)?;
     // Parts that were traced with some sensors are united with those.
     if let Some(chosen) = sensors_of_parts(scene, options, &settled.files)? {
-        settled = SettledScene::new(world, chosen, &mut hashes)?;
+        settled = SettledScene::new(world, chosen, &hashes)?;
     }
     let mut store = open_store(&settled.scene, &settled.files, options)?;
     clock.lap("spawn");
@@ -158,13 +159,13 @@ fn measure_scenes(
         world: &world.world,
         stage: &stage,
         context: &context,
-        sensors: &sensors,
+        sensors,
         notes,
         warnings: unsaved.into_iter().collect(),
         seconds: clock.seconds(),
         stages: clock.laps,
     };
-    Ok(reports(scenes, &common))
+    Ok(reports(scenes, common))
 }
 
 /// Optics of scenes, the bands of all one behind the other.

@@ -1,22 +1,20 @@
 //! Points of a sweep that are traced on the same paths.
 
 use std::ops::Range;
-use std::path::Path;
+use std::sync::Arc;
 
 use super::check::joined_memory;
 use super::checkpoint::CheckpointStore;
 use super::clock::Clock;
-use super::provenance::FileHashes;
-use super::reading::read;
+use super::point_reader::{AT_A_TIME, PointReader, wrong_at};
 use super::scene_world::SceneWorld;
 use super::settled::SettledScene;
 use super::staging::staged;
-use super::sweep::{at, wrong_at};
 use super::{
     Failure, Options, Progress, joined_context, joined_optics, measure_scenes, pixels, sensors,
     uncovered,
 };
-use crate::document::{Scene, Source};
+use crate::document::{Reading, Source};
 use crate::products::{Report, SweepPoint};
 
 /// Memory that films and products of points on the same paths take at most, unless those of one point take more, bytes. It
@@ -26,13 +24,13 @@ const MOST_MEMORY: u64 = 1 << 30;
 /// Points of a sweep that can share paths: the scene at each.
 pub(super) struct SettledPoints {
     scenes: Vec<SettledScene>,
-    source: Source,
+    source: Arc<Source>,
     /// Number of points that are measured at a time.
     most: usize,
 }
 
 impl SettledPoints {
-    /// Follows the scene of a file at each of these points.
+    /// Follows the scene at each of these points.
     ///
     /// # Errors
     /// All errors of the scene at the first point that has any.
@@ -40,21 +38,20 @@ impl SettledPoints {
     /// # Panics
     /// If there is no point.
     pub(super) fn new(
-        file: &Path,
+        reader: &PointReader,
         points: &[SweepPoint],
         options: &Options,
         world: &mut SceneWorld,
-        hashes: &mut FileHashes,
     ) -> Result<Self, Failure> {
         let (mut scenes, mut first) = (Vec::with_capacity(points.len()), None);
-        for point in points {
-            let reading = read(file, &at(options, point))?;
-            // Every point has the list of all points.
-            let scene = Scene { sweep: None, ..reading.scene };
-            let scene = SettledScene::new(world, scene, hashes)
-                .map_err(|failure| wrong_at(point, failure.with_source(&reading.source)))?;
-            scenes.push(scene);
-            first.get_or_insert(reading.source);
+        for some in points.chunks(AT_A_TIME) {
+            for (reading, point) in reader.read_all(some).into_iter().zip(some) {
+                let Reading { scene, source, .. } = reading?;
+                let scene = SettledScene::new(world, scene, reader.hashes())
+                    .map_err(|failure| wrong_at(point, failure.with_source(&source)))?;
+                scenes.push(scene);
+                first.get_or_insert(source);
+            }
         }
         let source = first.expect("a point");
         let mut settled = Self { scenes, source, most: points.len() };

@@ -1,5 +1,6 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
 use super::Failure;
@@ -11,7 +12,7 @@ use crate::files;
 pub(super) fn hash(
     scene: &Scene,
     files: &[PathBuf],
-    known: &mut FileHashes,
+    known: &FileHashes,
 ) -> Result<String, Failure> {
     Ok(scene_hash(scene, files, known)?.to_hex().to_string())
 }
@@ -19,7 +20,7 @@ pub(super) fn hash(
 fn scene_hash(
     scene: &Scene,
     files: &[PathBuf],
-    known: &mut FileHashes,
+    known: &FileHashes,
 ) -> Result<blake3::Hash, Failure> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene.resolved().to_ron().as_bytes());
@@ -56,12 +57,12 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
             Sensor::Photons(sensor) => (sensor.per_m2, sensor.until) = (1.0, None),
         }
     }
-    Ok(*scene_hash(&scene, files, &mut FileHashes::default())?.as_bytes())
+    Ok(*scene_hash(&scene, files, &FileHashes::default())?.as_bytes())
 }
 
 /// Hashes of what files hold, by path: each file is read once for all scenes that name it, and again if it has changed.
 #[derive(Default)]
-pub(super) struct FileHashes(HashMap<PathBuf, FileHash>);
+pub(super) struct FileHashes(Mutex<HashMap<PathBuf, FileHash>>);
 
 /// Hash of a file, and what tells whether it has changed.
 struct FileHash {
@@ -72,18 +73,20 @@ struct FileHash {
 
 impl FileHashes {
     /// Hash of what a file holds.
-    pub(super) fn of(&mut self, path: &Path) -> Result<blake3::Hash, Failure> {
+    pub(super) fn of(&self, path: &Path) -> Result<blake3::Hash, Failure> {
         let error = |source| Failure::Read { path: path.to_owned(), source };
         let metadata = std::fs::metadata(path).map_err(error)?;
         let (length, changed) = (metadata.len(), metadata.modified().ok());
-        if let Some(known) = self.0.get(path)
+        // Threads that ask for the same file wait for the first, which reads it.
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known.get(path)
             && (known.length, known.changed) == (length, changed)
         {
             return Ok(known.hash);
         }
         let file = files::open(path).map_err(error)?;
         let hash = blake3::Hasher::new().update_reader(file).map_err(error)?.finalize();
-        self.0.insert(path.to_owned(), FileHash { length, changed, hash });
+        known.insert(path.to_owned(), FileHash { length, changed, hash });
         Ok(hash)
     }
 }

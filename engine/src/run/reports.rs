@@ -1,6 +1,7 @@
 //! Reports of scenes that were measured on the same paths.
 
 use hecs::World;
+use rayon::prelude::*;
 
 use super::provenance::joint_hashes;
 use super::settled::SettledScene;
@@ -15,7 +16,7 @@ pub(super) struct CommonResults<'a> {
     pub(super) stage: &'a Stage,
     pub(super) context: &'a Context,
     /// Reports of the sensors, of the bands of all scenes.
-    pub(super) sensors: &'a [SensorReport],
+    pub(super) sensors: Vec<SensorReport>,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
     pub(super) stages: Vec<(String, f64)>,
@@ -24,16 +25,16 @@ pub(super) struct CommonResults<'a> {
 
 /// A report for each scene. Time is shared evenly among them; rays and samples are those that each result is made
 /// of, and so those of all.
-pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Vec<Report> {
+pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) -> Vec<Report> {
     let count = scenes.len();
     let share = 1.0 / count as f64;
-    let warnings = common_warnings(common);
+    let warnings = common_warnings(&common);
+    let sensors = std::mem::take(&mut common.sensors);
+    let sensors = sensors_by_scene(sensors, scenes, &common);
     let own: Vec<&str> = scenes.iter().map(|settled| settled.hash.as_str()).collect();
     let hashes = if let [only] = own[..] { vec![only.to_owned()] } else { joint_hashes(&own) };
-    let report = |(index, (settled, hash)): (usize, (&SettledScene, String))| {
+    let report = |((settled, hash), sensors): ((&SettledScene, String), Vec<SensorReport>)| {
         let SettledScene { scene, context, .. } = settled;
-        let sensors: Vec<SensorReport> =
-            common.sensors.iter().map(|sensor| of_scene(sensor, index, common, context)).collect();
         Report {
             projection: projection(common.world),
             scene: scene.title.clone(),
@@ -55,7 +56,24 @@ pub(super) fn reports(scenes: &[SettledScene], common: &CommonResults<'_>) -> Ve
             source: None,
         }
     };
-    scenes.iter().zip(hashes).enumerate().map(report).collect()
+    scenes.iter().zip(hashes).zip(sensors).map(report).collect()
+}
+
+/// Reports of the sensors for each scene.
+fn sensors_by_scene(
+    sensors: Vec<SensorReport>,
+    scenes: &[SettledScene],
+    common: &CommonResults<'_>,
+) -> Vec<Vec<SensorReport>> {
+    // Images are large.
+    if scenes.len() == 1 {
+        return vec![sensors];
+    }
+    let of_scene = |(index, settled): (usize, &SettledScene)| {
+        let sensors = sensors.iter();
+        sensors.map(|sensor| of_scene(sensor, index, common, &settled.context)).collect()
+    };
+    scenes.par_iter().enumerate().map(of_scene).collect()
 }
 
 /// Report of one scene from that of all.
@@ -93,7 +111,7 @@ fn common_warnings(common: &CommonResults<'_>) -> Vec<String> {
         .map(super::failure::one_line)
         .chain(footprint::warnings(&sensors, stage))
         .chain(uncovered::warning(stage, context))
-        .chain(unbalanced(common.sensors))
+        .chain(unbalanced(&common.sensors))
         .chain(common.warnings.iter().cloned())
         .collect()
 }

@@ -32,7 +32,7 @@ impl SettledScene {
     pub(super) fn new(
         world: &mut SceneWorld,
         scene: Scene,
-        hashes: &mut FileHashes,
+        hashes: &FileHashes,
     ) -> Result<Self, Failure> {
         check_scene(&scene)?;
         world.set(&scene).map_err(Failure::Problems)?;

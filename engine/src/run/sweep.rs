@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
+use super::point_reader::PointReader;
 use super::points::SettledPoints;
 use super::pool::in_pool;
-use super::provenance::{FileHashes, joint_hashes};
-use super::reading::{choose_sensors, folder_of, sound};
+use super::provenance::joint_hashes;
+use super::reading::folder_of;
 use super::scene_world::SceneWorld;
 use super::{Failure, Options, Progress, day, params, scene_source};
 use crate::document::{
-    self, Lambertian, Map, Material, Reading, Scene, ScenePath, Sensor, Sky, Spectrum,
-    StopCriterion, Sun, System, ThermalSky,
+    self, Lambertian, Map, Material, Scene, Sensor, Sky, Spectrum, StopCriterion, Sun, System,
+    ThermalSky,
 };
 use crate::products::{Day, Night, Report, SweepPoint};
 
@@ -32,7 +33,7 @@ pub struct SweepRun {
     groups: Vec<Vec<usize>>,
     suns: Vec<Option<Sun>>,
     world: SceneWorld,
-    hashes: FileHashes,
+    reader: PointReader,
 }
 
 impl SweepRun {
@@ -40,8 +41,9 @@ impl SweepRun {
     ///
     /// # Errors
     /// Errors of the scene at the first point that has any.
-    pub fn read(file: &Path, options: &Options) -> Result<Self, Failure> {
-        let (Reading { scene, .. }, _) = read_point(file, options)?;
+    pub fn read(file: &Path, options: &Options, progress: &dyn Progress) -> Result<Self, Failure> {
+        progress.stage("reading the scene");
+        let (reader, scene) = PointReader::new(file, options)?;
         let Some(sweep) = &scene.sweep else {
             let example = "sweep: Grid({ \"sza\": [0.0, 30.0, 60.0] })";
             let text =
@@ -49,20 +51,15 @@ impl SweepRun {
             return Err(Failure::Sweep(text));
         };
         let sweep = sweep.fixed(&options.document.set);
-        let mut hashes = FileHashes::default();
-        let mut points = Vec::with_capacity(sweep.len());
-        let mut likeness = Vec::with_capacity(sweep.len());
-        let mut suns = Vec::with_capacity(sweep.len());
-        for index in 0..sweep.len() {
-            let params = sweep.point(index);
-            let mut point = SweepPoint { params, key: String::new(), night: None };
-            let found = look_at(file, &at(options, &point), &mut hashes);
-            let found = found.map_err(|source| wrong_at(&point, source))?;
-            (point.key, point.night) = (found.key, found.night);
-            points.push(point);
-            suns.push(found.sun);
-            likeness.push(found.likeness);
+        let mut points: Vec<SweepPoint> = (0..sweep.len())
+            .map(|index| SweepPoint { params: sweep.point(index), key: String::new(), night: None })
+            .collect();
+        let found = in_pool(options, || reader.look_at_all(&points, progress))?;
+        for (point, found) in points.iter_mut().zip(&found) {
+            (point.key, point.night) = (found.key.clone(), found.night.clone());
         }
+        let likeness: Vec<Likeness> = found.iter().map(|found| found.likeness).collect();
+        let suns = found.into_iter().map(|found| found.sun).collect();
         let mut names = HashSet::new();
         // A list may hold a value twice.
         let is_new = |index: &usize| names.insert(points[*index].name());
@@ -77,7 +74,7 @@ impl SweepRun {
         }
         let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, scene, points, groups, suns, world, hashes })
+        Ok(Self { file, options, scene, points, groups, suns, world, reader })
     }
 
     /// All points, the last parameter fastest.
@@ -134,10 +131,9 @@ impl SweepRun {
             let report = Report { notes: vec![why.to_owned()], params, ..self.report() };
             return take(0..1, vec![report]);
         }
-        let Self { file, options, world, hashes, .. } = self;
+        let Self { file, options, world, reader, .. } = self;
         progress.stage("loading");
-        let settled =
-            in_pool(options, || SettledPoints::new(file, &points, options, world, hashes))?;
+        let settled = in_pool(options, || SettledPoints::new(reader, &points, options, world))?;
         for part in settled.parts() {
             let first = &points[part.start];
             let mut reports = in_pool(options, || {
@@ -184,32 +180,23 @@ impl SweepRun {
     }
 }
 
-pub(super) fn at(options: &Options, point: &SweepPoint) -> Options {
-    let mut options = options.clone();
-    options.document.point.clone_from(&point.params);
-    options
-}
-
-pub(super) fn wrong_at(point: &SweepPoint, source: Failure) -> Failure {
-    Failure::Point { point: point.name(), source: Box::new(source) }
-}
-
-/// Properties of a point that need no run.
-struct Glance {
-    /// Hash of all that decides its results.
-    key: String,
-    likeness: Likeness,
-    sun: Option<Sun>,
-    night: Option<Night>,
-}
-
 /// Hashes of what points can share.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Likeness {
+pub(super) struct Likeness {
     /// Hash of the geometry: the ray engine is built once for points that are equal in it.
     geometry: blake3::Hash,
     /// Hash of all that decides the paths; none of a point that is traced alone.
     paths: Option<blake3::Hash>,
+}
+
+impl Likeness {
+    /// Hashes of a scene; one without light is traced alone.
+    pub(super) fn new(scene: &Scene, is_dark: bool) -> Self {
+        let geometry = blake3::hash(geometry_of(scene).to_ron().as_bytes());
+        let paths = paths_of(scene).filter(|_| !is_dark);
+        let paths = paths.map(|paths| blake3::hash(paths.to_ron().as_bytes()));
+        Self { geometry, paths }
+    }
 }
 
 /// Largest number of bands that are traced on the same paths.
@@ -234,53 +221,6 @@ fn groups(points: &[usize], likeness: &[Likeness], bands: usize) -> Vec<Vec<usiz
         groups.push(vec![index]);
     }
     of_geometry.into_values().flatten().collect()
-}
-
-/// Reads a scene, which may be dark at night.
-fn read_point(file: &Path, options: &Options) -> Result<(Reading, Option<Night>), Failure> {
-    let mut reading = document::read_file(file, &options.document)
-        .map_err(|error| Failure::Scene(error.to_string()))?;
-    let Some(why) = reading.darkness() else {
-        let reading = sound(reading, file, options)?;
-        let night = reading.night_warning().map(Night::WithoutSun);
-        return Ok((reading, night));
-    };
-    let unknown = choose_sensors(&mut reading.scene, &options.sensors);
-    if unknown.is_empty() {
-        Ok((reading, Some(Night::Dark(why))))
-    } else {
-        Err(Failure::Scene(reading.source.render(&unknown)))
-    }
-}
-
-/// Reads a scene at a point.
-fn look_at(file: &Path, options: &Options, hashes: &mut FileHashes) -> Result<Glance, Failure> {
-    let (reading, night) = read_point(file, options)?;
-    let params = ScenePath::from("params");
-    let swept: Vec<_> = options.document.point.iter().map(|(name, _)| params.name(name)).collect();
-    // A point that changes nothing is no point.
-    let unused: Vec<_> =
-        reading.diagnostics.iter().filter(|one| swept.contains(&one.path)).cloned().collect();
-    if !unused.is_empty() {
-        return Err(Failure::Scene(reading.source.render(&unused)));
-    }
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-    hasher.update(&options.quality.to_bits().to_le_bytes());
-    let scene = Scene { sweep: None, ..reading.scene };
-    hasher.update(scene.resolved().to_ron().as_bytes());
-    for (_, named) in scene.files() {
-        // The run reports missing files with their places.
-        let Ok(hash) = hashes.of(&folder_of(file).join(named)) else { continue };
-        hasher.update(hash.as_bytes());
-    }
-    let geometry = blake3::hash(geometry_of(&scene).to_ron().as_bytes());
-    let is_dark = matches!(night, Some(Night::Dark(_)));
-    let paths = paths_of(&scene).filter(|_| !is_dark);
-    let paths = paths.map(|paths| blake3::hash(paths.to_ron().as_bytes()));
-    let key = hasher.finalize().to_hex().to_string();
-    let likeness = Likeness { geometry, paths };
-    Ok(Glance { key, likeness, sun: scene.sun, night })
 }
 
 /// Scene without light, spectra and sensors: points that are equal in it follow each other, so that their geometry is

@@ -46,8 +46,7 @@ pub struct LeafChemistry {
     pub carbon: f64,
 }
 
-/// Reflectance and transmittance of a leaf, each as points (wavelength nm, value), 400 to 2500 nm
-/// in steps of 1 nm.
+/// Reflectance and transmittance of a leaf, each as points (wavelength nm, value): whole nanometres from 400 to 2500.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeafSpectrum {
     /// Directional-hemispherical reflectance, no unit.
@@ -87,11 +86,22 @@ static TABLE: LazyLock<Vec<Constants>> = LazyLock::new(|| {
     include_str!("prospect_pro.csv").lines().skip(1).map(row).collect()
 });
 
-/// Reflectance and transmittance of a leaf.
+/// Reflectance and transmittance of a leaf in steps of 1 nm.
 ///
 /// # Errors
 /// A structure parameter below 1, or a content that is negative or not finite.
 pub fn leaf_spectrum(leaf: &LeafChemistry) -> Result<LeafSpectrum, ChemistryError> {
+    leaf_spectrum_at(leaf, |_| true)
+}
+
+/// Reflectance and transmittance of a leaf at those wavelengths, nm, that are needed, and at both ends.
+///
+/// # Errors
+/// Those of [`leaf_spectrum`].
+pub fn leaf_spectrum_at(
+    leaf: &LeafChemistry,
+    is_needed: impl Fn(f64) -> bool,
+) -> Result<LeafSpectrum, ChemistryError> {
     let contents = leaf.contents();
     if !(leaf.n >= 1.0 && leaf.n.is_finite()) {
         return Err(ChemistryError::Structure { value: leaf.n });
@@ -101,10 +111,14 @@ pub fn leaf_spectrum(leaf: &LeafChemistry) -> Result<LeafSpectrum, ChemistryErro
     }
     let mut spectrum = LeafSpectrum { reflectance: Vec::new(), transmittance: Vec::new() };
     for (step, constants) in TABLE.iter().enumerate() {
+        let wavelength = (FIRST_NM + step) as f64;
+        let is_end = step == 0 || step + 1 == TABLE.len();
+        if !(is_end || is_needed(wavelength)) {
+            continue;
+        }
         let absorbed = contents.iter().zip(constants.absorption).map(|(&(_, c), k)| c * k);
         let k = absorbed.sum::<f64>() / leaf.n;
         let (reflectance, transmittance) = plates(constants.refractive_index, k, leaf.n);
-        let wavelength = (FIRST_NM + step) as f64;
         spectrum.reflectance.push((wavelength, reflectance));
         spectrum.transmittance.push((wavelength, transmittance));
     }
@@ -376,5 +390,18 @@ mod tests {
                 prop_assert!(*r > 0.0 && *t >= 0.0 && r + t <= 1.0 + 4.0 * f64::EPSILON, "{r} {t}");
             }
         }
+    }
+
+    #[test]
+    fn wavelengths_that_are_needed_have_the_values_of_the_whole_spectrum() {
+        let all = leaf_spectrum(&BARE).unwrap();
+        let some = leaf_spectrum_at(&BARE, |nm| (700.0..=710.0).contains(&nm)).unwrap();
+        let chosen = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
+            let is_chosen = |nm: f64| nm == 400.0 || nm == 2500.0 || (700.0..=710.0).contains(&nm);
+            points.iter().copied().filter(|(nm, _)| is_chosen(*nm)).collect()
+        };
+        assert_eq!(some.reflectance.len(), 13);
+        assert_eq!(some.reflectance, chosen(&all.reflectance));
+        assert_eq!(some.transmittance, chosen(&all.transmittance));
     }
 }

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use hecs::Entity;
 
 use super::georeference::CoordinateSystem;
+use super::spectra::LastLeaf;
 use super::{Changes, Messages};
 use crate::components::{MaterialId, PrototypeId, SceneExtents};
 use crate::document::{
     Band, Boundary, Diagnostic, Frame, Map, NamePattern, ScenePath, Spectrum, unknown_name,
 };
-use crate::spectral::prospect::{LeafChemistry, LeafSpectrum};
 
 /// Data of a scene that belongs to no entity: settings, entities by name, and messages.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ pub struct Resources {
     /// Messages of the systems.
     pub messages: Messages,
     /// The leaf that PROSPECT has computed last: its reflectance and transmittance are asked for one after the other.
-    pub(super) leaf: Option<(LeafChemistry, LeafSpectrum)>,
+    pub(super) last_leaf: Option<LastLeaf>,
 }
 
 impl Resources {
@@ -89,7 +89,7 @@ impl Resources {
             extents: SceneExtents::default(),
             changes: Changes::NONE,
             messages: Messages::default(),
-            leaf: None,
+            last_leaf: None,
         }
     }
 

@@ -3,9 +3,10 @@
 use std::io::{self, Read, Write};
 use std::ops::Range;
 
-use super::band_blocks::blocks;
+use super::band_blocks::{BLOCK, blocks};
 use super::spectrum_products::{ProductId, SpectrumProducts};
 use super::state::{restore_u64, save_u64};
+use super::term_runs::{PlacedTerm, TermRuns};
 use crate::scattering::{LANES, SurfaceModels, with_simd};
 use crate::statistics::Sums;
 
@@ -78,32 +79,41 @@ impl Coefficients {
 
     /// Adds all terms of another.
     pub(in crate::transport) fn absorb(&mut self, other: &Self) {
-        self.extend(other, |term| Some(term.sums));
+        self.extend(other, Some);
         self.unite();
     }
 
     /// The terms of one of the sums in several of these, as far as they are there; their sums are numbered by the place
-    /// among these.
-    pub(in crate::transport) fn of_sums<'a>(
+    /// among these, and each cell is added to others with the weights that a function returns for it.
+    pub(in crate::transport) fn combined<'a, W: IntoIterator<Item = (usize, f64)>>(
         all: impl IntoIterator<Item = Option<&'a Self>>,
         sums: usize,
+        weights: impl Fn(usize) -> W,
     ) -> Self {
         let mut joined = Self::new(true);
         for (number, one) in (0..).zip(all) {
             let Some(one) = one else { continue };
-            joined.extend(one, |term| (term.sums as usize == sums).then_some(number));
+            joined.extend(one, |term| {
+                let is_asked = term.sums as usize == sums;
+                let weights = is_asked.then(|| weights(term.cell)).into_iter().flatten();
+                weights.map(move |(cell, weight)| Term {
+                    sums: number,
+                    cell,
+                    coefficient: term.coefficient * weight,
+                    ..term
+                })
+            });
         }
         joined.unite();
         joined
     }
 
-    /// Adds the terms of another for which a function returns new sums.
-    fn extend(&mut self, other: &Self, sums: impl Fn(&Term) -> Option<u32>) {
-        let chosen = || other.terms.iter().filter_map(|term| Some((term, sums(term)?)));
-        let needed = other.products.needed(chosen().map(|(term, _)| term.product));
+    /// Adds the terms that a function makes of those of another.
+    fn extend<T: IntoIterator<Item = Term>>(&mut self, other: &Self, terms: impl Fn(Term) -> T) {
+        let made: Vec<Term> = other.terms.iter().copied().flat_map(terms).collect();
+        let needed = other.products.needed(made.iter().map(|term| term.product));
         let ids = self.products.absorb(&other.products, &needed);
-        let moved = |(term, sums): (&Term, u32)| Term { product: ids[term.product], sums, ..*term };
-        self.terms.extend(chosen().map(moved));
+        self.terms.extend(made.iter().map(|term| Term { product: ids[term.product], ..*term }));
     }
 
     /// Adds the values of all terms in these bands to the sums that they are of, and removes them.
@@ -128,23 +138,29 @@ impl Coefficients {
         bands: Range<usize>,
         sums: &mut [Option<&mut Sums>],
     ) {
-        let mut starts = Vec::with_capacity(self.terms.len());
-        for term in &self.terms {
-            let sums = sums[term.sums as usize].as_mut();
-            starts.push(sums.map(|sums| sums.start(term.cell)));
+        let mut placed = Vec::with_capacity(self.terms.len());
+        for &Term { product, sums: index, cell, coefficient } in &self.terms {
+            let index = index as usize;
+            if let Some(sums) = sums[index].as_mut() {
+                let start = sums.start(cell);
+                placed.push(PlacedTerm { product, coefficient, sums: index, start });
+            }
         }
-        let placed =
-            || self.terms.iter().zip(&starts).filter_map(|(term, start)| Some((term, (*start)?)));
-        let needed = self.products.needed(placed().map(|(term, _)| term.product));
+        let needed = self.products.needed(placed.iter().map(|term| term.product));
+        // One block takes less time than sorting.
+        let runs = (bands.len() > BLOCK).then(|| TermRuns::new(std::mem::take(&mut placed)));
         let mut values = Vec::new();
         with_simd(
             #[inline(always)]
             || {
                 for block in blocks(bands) {
                     self.products.write(models, &needed, &block, &mut values);
-                    for (term, start) in placed() {
-                        let Some(sums) = &mut sums[term.sums as usize] else { continue };
-                        let cell = start + block.start..start + block.end;
+                    if let Some(runs) = &runs {
+                        runs.add_to(&block, &values, sums);
+                    }
+                    for term in &placed {
+                        let Some(sums) = &mut sums[term.sums] else { continue };
+                        let cell = term.start + block.start..term.start + block.end;
                         let product = term.product * block.len();
                         let values = &values[product..product + block.len()];
                         for (sum, value) in sums.values_mut()[cell].iter_mut().zip(values) {

@@ -30,6 +30,7 @@ mod scattering_order;
 mod sensors;
 mod spectrum_products;
 mod state;
+mod term_runs;
 
 pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,

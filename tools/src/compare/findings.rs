@@ -1,5 +1,5 @@
 use sunfleck::document::System;
-use sunfleck::output::{AxisCells, AxisColumns};
+use sunfleck::output::{AxisCells, ProductCells};
 use sunfleck::products::{Product, Report, SensorReport};
 
 use super::plan::Plan;
@@ -174,16 +174,16 @@ impl<'a> Estimate<'a> {
     }
 
     /// Cells of the axes of a value and of its row and column, if it is that of a pixel; and its band.
-    pub(crate) fn place(&self, index: usize, pixels: bool, axes: &AxisColumns<'_>) -> AxisCells {
+    pub(crate) fn place(&self, index: usize, pixels: bool, cells: &ProductCells) -> AxisCells {
         match &self.product.image {
             Some(image) if pixels => {
                 let (pixel, band) = (index / image.bands.len(), index % image.bands.len());
-                let mut cells = vec![String::new(); axes.names().count()];
+                let mut cells = vec![String::new(); cells.columns()];
                 cells.extend([pixel / image.width, pixel % image.width].map(|at| at.to_string()));
                 AxisCells { cells, band: image.bands[band].clone() }
             }
             _ => {
-                let mut place = axes.place(self.product, index);
+                let mut place = cells.row(index);
                 place.cells.extend([String::new(), String::new()]);
                 place
             }

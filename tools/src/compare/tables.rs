@@ -25,11 +25,12 @@ pub(super) fn values(
     let sets: &[bool] = if pixels { &[false, true] } else { &[false] };
     for finding in findings {
         for (index, estimate) in finding.estimates.iter().enumerate() {
+            let cells = axes.cells(estimate.product);
             for &pixels in sets {
                 let Some(all) = estimate.values(pixels) else { continue };
                 let scores = finding.scores(index, pixels);
                 for (row, (value, error)) in all.values.iter().zip(&all.errors).enumerate() {
-                    let place = estimate.place(row, pixels, &axes);
+                    let place = estimate.place(row, pixels, &cells);
                     let z = scores.as_ref().map(|scores| scores[row]);
                     let efficiency = (value / error).powi(2) / estimate.seconds;
                     let named = [finding.sensor, finding.product, finding.unit].map(harmless);

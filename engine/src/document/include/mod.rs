@@ -28,6 +28,7 @@ const DEPTH: usize = 32;
 const FILES: usize = 1000;
 
 /// Result of including files.
+#[derive(Clone, Debug)]
 pub(super) struct Included {
     pub(super) diagnostics: Vec<Diagnostic>,
     /// Namespaces of files that could not be read.
@@ -295,7 +296,7 @@ fn path_of(namespace: &str) -> ScenePath {
 }
 
 /// Keys of a file, with or without a word before the parentheses.
-fn fields(tree: &mut Node) -> Option<&mut Vec<Field>> {
+pub(super) fn fields(tree: &mut Node) -> Option<&mut Vec<Field>> {
     let is_file = |name: &str| matches!(name, "Scene" | "Library");
     let body = if matches!(&tree.value, Value::Named(named) if is_file(&named.name)) {
         let Value::Named(named) = &mut tree.value else { return None };

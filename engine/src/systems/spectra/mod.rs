@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::Resources;
 use crate::document::{Diagnostic, IRRADIANCE, Prospect, ScenePath, Spectrum, unknown_name};
-use crate::spectral::prospect::{LeafChemistry, leaf_spectrum};
+use crate::spectral::prospect::{LeafChemistry, LeafSpectrum, leaf_spectrum_at};
 use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
 
 use table::{edges, table_means};
@@ -33,6 +33,15 @@ impl Quantity {
     const fn is_fraction(self) -> bool {
         matches!(self, Self::Reflectance | Self::Transmittance)
     }
+}
+
+/// A leaf that PROSPECT has computed.
+#[derive(Clone, Debug)]
+pub(super) struct LastLeaf {
+    chemistry: LeafChemistry,
+    /// Ranges of wavelengths that it was computed for, nm.
+    ranges: Vec<(f64, f64)>,
+    spectrum: LeafSpectrum,
 }
 
 /// Value of a spectrum in each band, shape `[bands]`; `None` after an error.
@@ -154,23 +163,30 @@ fn prospect_means(
         protein: leaf.protein_g_cm2,
         carbon: leaf.carbon_g_cm2,
     };
-    let known = resources.leaf.take().filter(|(known, _)| *known == chemistry);
-    let (_, leaf) = if let Some(known) = known {
-        known
-    } else {
-        let leaf = leaf_spectrum(&chemistry);
-        (chemistry, leaf.map_err(|error| Box::new(problem(path, &error)))?)
+    let ranges: Vec<(f64, f64)> = resources.bands.iter().map(edges).collect();
+    let is_known = |last: &LastLeaf| last.chemistry == chemistry && last.ranges == ranges;
+    let spectrum = match resources.last_leaf.take() {
+        Some(last) if is_known(&last) => last.spectrum,
+        _ => {
+            // A band sees straight lines between whole nanometres.
+            let is_seen =
+                |nm: f64| ranges.iter().any(|(low, high)| (low - 1.0..=high + 1.0).contains(&nm));
+            let leaf = leaf_spectrum_at(&chemistry, is_seen);
+            leaf.map_err(|error| Box::new(problem(path, &error)))?
+        }
     };
     let means = match quantity {
-        Quantity::Reflectance => mean_over_bands(&leaf.reflectance, quantity, path, resources),
-        Quantity::Transmittance => mean_over_bands(&leaf.transmittance, quantity, path, resources),
+        Quantity::Reflectance => mean_over_bands(&spectrum.reflectance, quantity, path, resources),
+        Quantity::Transmittance => {
+            mean_over_bands(&spectrum.transmittance, quantity, path, resources)
+        }
         Quantity::Irradiance | Quantity::Parameter { .. } => {
             let what = "Prospect gives reflectance and transmittance, no irradiance";
             let help = "write AstmG173, Constant, Bands, Points or Table";
             Err(Box::new(Diagnostic::error(path, what).help(help)))
         }
     };
-    resources.leaf = Some((chemistry, leaf));
+    resources.last_leaf = Some(LastLeaf { chemistry, ranges, spectrum });
     means
 }
 

@@ -54,7 +54,7 @@ impl ReplicateRow {
             let mut sums: Vec<_> = rows.iter().map(|row| Cow::Borrowed(&row.sums[index])).collect();
             let Some(models) = models else { return sums };
             let all = rows.iter().map(|row| row.coefficients.as_ref());
-            let terms = Coefficients::of_sums(all, index);
+            let terms = Coefficients::combined(all, index, |cell| [(cell, 1.0)]);
             if !terms.is_empty() {
                 let mut into: Vec<_> = sums.iter_mut().map(|sums| Some(sums.to_mut())).collect();
                 terms.add_to(models, 0..models.spectra.bands(), &mut into);
@@ -62,5 +62,37 @@ impl ReplicateRow {
             sums
         };
         rows.par_chunks(each).flat_map_iter(evaluated).collect()
+    }
+
+    /// Combinations of the cells of one of the sums of each row, all of its terms evaluated: each cell is added to some of
+    /// the `count` combinations with the weights that a function returns for it. Terms that cancel are not evaluated.
+    pub(in crate::transport) fn combined<W: IntoIterator<Item = (usize, f64)>>(
+        rows: &[&Self],
+        index: usize,
+        models: Option<&SurfaceModels>,
+        count: usize,
+        weights: impl Fn(usize) -> W,
+    ) -> Vec<Sums> {
+        let combined = |row: &&Self| {
+            let sums = &row.sums[index];
+            let (ordered, mut buffer) = (sums.ordered(), Vec::new());
+            let mut combined = Sums::new(count, sums.bands());
+            for cell in 0..sums.cells() {
+                let values = ordered.values(cell..cell + 1, &mut buffer);
+                for (into, weight) in weights(cell) {
+                    let into = combined.cell_mut(into).iter_mut().zip(values);
+                    into.for_each(|(sum, value)| *sum += value * weight);
+                }
+            }
+            combined
+        };
+        let mut combined: Vec<Sums> = rows.iter().map(combined).collect();
+        let all = rows.iter().map(|row| row.coefficients.as_ref());
+        let terms = Coefficients::combined(all, index, weights);
+        if let Some(models) = models.filter(|_| !terms.is_empty()) {
+            let mut into: Vec<_> = combined.iter_mut().map(Some).collect();
+            terms.add_to(models, 0..models.spectra.bands(), &mut into);
+        }
+        combined
     }
 }

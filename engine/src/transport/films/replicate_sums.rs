@@ -41,8 +41,8 @@ pub(in crate::transport) trait SampleTracer: Sync {
     /// Maximum memory of the sums of this number of samples, bytes.
     fn block_bytes(&self, samples: u64) -> u64;
 
-    /// Fraction of the energy that the first of the sums of a whole randomisation does not account for.
-    fn imbalance(&self, _: &Sums) -> Option<f64> {
+    /// Largest fraction of the energy that the first of the sums of a randomisation does not account for.
+    fn imbalance(&self, _: &[&ReplicateRow]) -> Option<f64> {
         None
     }
 }
@@ -167,7 +167,7 @@ impl Film for ReplicateSums<'_> {
                     && let Some(mut row) = current.take()
                 {
                     row.evaluate(tracer.models());
-                    *imbalance = max_of(*imbalance, tracer.imbalance(&row.sums[0]));
+                    *imbalance = max_of(*imbalance, tracer.imbalance(&[&row]));
                     for (spread, sums) in spreads.iter_mut().zip(&row.sums) {
                         spread.push_sums(&[sums], to);
                     }
@@ -283,8 +283,7 @@ impl Film for ReplicateSums<'_> {
             Store::All(rows) => {
                 let rows: Vec<&ReplicateRow> =
                     rows.iter().filter(|row| !row.sums.is_empty()).collect();
-                let energy = ReplicateRow::evaluated(&rows, 0, self.tracer.models());
-                energy.iter().map(|sums| self.tracer.imbalance(sums)).fold(None, max_of)
+                self.tracer.imbalance(&rows)
             }
             Store::Folded(_, imbalance) => *imbalance,
         }

@@ -126,8 +126,10 @@ impl SampleTracer for PacketTracer<'_> {
         blocks.fold(0, u64::saturating_add)
     }
 
-    fn imbalance(&self, energy: &Sums) -> Option<f64> {
-        Some(EnergyCounter::imbalance(energy))
+    fn imbalance(&self, rows: &[&ReplicateRow]) -> Option<f64> {
+        let weights = EnergyCounter::balance_weights;
+        let balances = ReplicateRow::combined(rows, 0, self.models(), 2, weights);
+        balances.iter().map(EnergyCounter::imbalance).reduce(f64::max)
     }
 }
 

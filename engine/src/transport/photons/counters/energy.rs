@@ -32,15 +32,20 @@ impl EnergyCounter {
     /// First cell of the power that surfaces absorb, in their order.
     pub const ABSORBED: usize = 6;
 
-    /// Largest fraction over all bands of the incident power that the other terms do not account for.
+    /// Weights of a cell in the energy balance: in the incident power, and in that of it which is not accounted for.
     #[must_use]
-    pub fn imbalance(sums: &Sums) -> f64 {
-        let (ordered, mut buffer) = (sums.ordered(), Vec::new());
-        let values = ordered.values(0..sums.cells(), &mut buffer);
-        let (incident, others) = values.split_at(sums.bands());
-        let fractions = incident.iter().enumerate().map(|(band, &incident)| {
-            let accounted: f64 = others.iter().skip(band).step_by(sums.bands()).sum();
-            let fraction = (incident - accounted).abs() / incident.max(f64::MIN_POSITIVE);
+    pub fn balance_weights(cell: usize) -> impl IntoIterator<Item = (usize, f64)> {
+        let is_incident = cell == Self::INCIDENT;
+        let incident = is_incident.then_some((0, 1.0));
+        incident.into_iter().chain([(1, if is_incident { 1.0 } else { -1.0 })])
+    }
+
+    /// Largest fraction over all bands of the incident power that is not accounted for, from an energy balance.
+    #[must_use]
+    pub fn imbalance(balance: &Sums) -> f64 {
+        let (incident, missing) = balance.values().split_at(balance.bands());
+        let fractions = incident.iter().zip(missing).map(|(incident, missing)| {
+            let fraction = missing.abs() / incident.max(f64::MIN_POSITIVE);
             if fraction.is_nan() { f64::INFINITY } else { fraction }
         });
         fractions.fold(0.0, f64::max)
