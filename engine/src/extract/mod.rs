@@ -19,7 +19,7 @@ use crate::scattering::SurfaceModels;
 use inventory::reported_absorption;
 
 pub use inventory::{Face, Inventory, PlacedInstance};
-pub use light::{Beam, Dome, Light, SunDisc};
+pub use light::{Beam, DiscPoint, Dome, Light, SunDisc};
 pub use optics::SceneOptics;
 pub use stage::{Rules, Stage};
 pub use thermal::{SurfaceBlackBody, Thermal};

@@ -1,24 +1,48 @@
 //! Quantities of a world that differ by band: surfaces, light and emission.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
+use glam::DVec3;
 use hecs::World;
 
 use crate::components::{
     BlackBody, Emission, MaterialId, Name, SceneId, SkyLight, SunLight, SurfaceOptics,
 };
 
-/// All quantities of a world that differ by band. Worlds that differ in nothing else can be joined: their bands then ride on the
-/// same paths.
+/// All quantities of a world that differ by band, and its sun. Worlds that differ in nothing else can be joined: their bands
+/// then ride on the same paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneOptics {
     /// Materials that are used.
     pub(super) materials: BTreeMap<MaterialId, MaterialOptics>,
-    pub(super) sun: Option<SunLight>,
+    /// Suns of the bands; none, or one for each band.
+    pub(super) suns: Vec<BandSun>,
     pub(super) sky: Option<SkyLight>,
     pub(super) emission: Option<Emission>,
     /// Number of bands.
     pub(super) bands: usize,
+}
+
+/// The sun of some bands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct BandSun {
+    /// Bands that it lights.
+    pub(super) bands: Range<usize>,
+    /// Unit vector towards its middle.
+    pub(super) direction: DVec3,
+    /// Angular radius of its disc, rad.
+    pub(super) radius: f64,
+    /// Irradiance perpendicular to its beam, W m⁻² nm⁻¹, shape `[its bands]`.
+    pub(super) irradiance: Vec<f64>,
+}
+
+impl BandSun {
+    fn new(sun: &SunLight) -> Self {
+        let SunLight { direction, radius, irradiance } = sun;
+        let bands = 0..irradiance.len();
+        Self { bands, direction: *direction, radius: *radius, irradiance: irradiance.clone() }
+    }
 }
 
 /// A material.
@@ -41,7 +65,7 @@ impl SceneOptics {
         });
         Self {
             materials: materials.collect(),
-            sun: world.query::<&SunLight>().iter().next().cloned(),
+            suns: world.query::<&SunLight>().iter().map(BandSun::new).collect(),
             sky: world.query::<&SkyLight>().iter().next().cloned(),
             emission: world.query::<&Emission>().iter().next().cloned(),
             bands,
@@ -56,10 +80,13 @@ impl SceneOptics {
 
     /// Irradiance of the sun on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
     pub(super) fn beam_irradiance(&self) -> Vec<f64> {
-        self.sun.as_ref().map_or_else(
-            || vec![0.0; self.bands],
-            |sun| sun.irradiance.iter().map(|e| e * sun.direction.z).collect(),
-        )
+        let mut irradiance = vec![0.0; self.bands];
+        for sun in &self.suns {
+            for (sum, e) in irradiance[sun.bands.clone()].iter_mut().zip(&sun.irradiance) {
+                *sum = e * sun.direction.z;
+            }
+        }
+        irradiance
     }
 
     /// Irradiance of the sky on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`.
@@ -84,10 +111,10 @@ impl SceneOptics {
         self.sky.as_ref().is_some_and(gives_light)
     }
 
-    /// The bands of all of these, one behind the other.
+    /// The bands of all of these, one behind the other. Neighbours of the same sun share it.
     ///
     /// # Panics
-    /// If there is none, or they differ in anything but values by band.
+    /// If there is none, or they differ in anything but values by band and the positions of their suns.
     #[must_use]
     pub fn joined(all: &[&Self]) -> Self {
         let mut joined = (*all.first().expect("something to join")).clone();
@@ -106,7 +133,10 @@ impl SceneOptics {
                 body.shaded.extend(&next.shaded);
             });
         }
-        join(&mut self.sun, next.sun.as_ref(), |sun, next| sun.irradiance.extend(&next.irradiance));
+        assert!(self.suns.is_empty() == next.suns.is_empty(), "{ALIKE}");
+        for sun in &next.suns {
+            self.join_sun(sun);
+        }
         join(&mut self.sky, next.sky.as_ref(), |sky, next| sky.irradiance.extend(&next.irradiance));
         join(&mut self.emission, next.emission.as_ref(), |emission, next| {
             emission.bands.extend(&next.bands);
@@ -114,9 +144,25 @@ impl SceneOptics {
         });
         self.bands += next.bands;
     }
+
+    /// Adds the sun of bands that follow those so far.
+    fn join_sun(&mut self, sun: &BandSun) {
+        let bands = self.bands + sun.bands.start..self.bands + sun.bands.end;
+        let is_same = |last: &&mut BandSun| {
+            last.bands.end == bands.start
+                && (last.direction, last.radius) == (sun.direction, sun.radius)
+        };
+        if let Some(last) = self.suns.last_mut().filter(is_same) {
+            last.bands.end = bands.end;
+            last.irradiance.extend(&sun.irradiance);
+        } else {
+            self.suns.push(BandSun { bands, ..sun.clone() });
+        }
+    }
 }
 
-const ALIKE: &str = "scenes that are joined differ in values by band alone";
+const ALIKE: &str =
+    "scenes that are joined differ in values by band and in their suns' positions alone";
 
 /// Joins two values, of which there are both or none.
 fn join<T>(value: &mut Option<T>, next: Option<&T>, join: impl FnOnce(&mut T, &T)) {

@@ -1,4 +1,4 @@
-use super::{SceneOptics, Stage};
+use super::{DiscPoint, SceneOptics, Stage};
 use crate::accel::{Hit, Ray};
 use crate::components::MaterialId;
 use crate::sampling::Sampler;
@@ -55,12 +55,18 @@ impl Thermal {
         Some(Self { bands, sky, surfaces })
     }
 
-    /// Shadow ray towards the sun from a point of a surface, if its temperature depends on whether the sun is visible
+    /// Shadow rays towards all suns from a point of a surface, if its temperature depends on whether they are visible
     /// from there. It is the same on both sides: a leaf is too thin for two temperatures.
-    pub fn sun_ray(&self, stage: &Stage, hit: &Hit, sampler: &mut Sampler) -> Option<Ray> {
+    pub fn sun_rays<'s>(
+        &self,
+        stage: &'s Stage,
+        hit: &'s Hit,
+        sampler: &mut Sampler,
+    ) -> impl Iterator<Item = Ray> + use<'s> {
         let depends_on_sun = self.surfaces[hit.surface as usize].depends_on_sun;
-        let sun = stage.light.sun.as_ref().filter(|_| depends_on_sun)?;
-        Some(hit.leave(sun.towards(sampler)))
+        let suns = if depends_on_sun { stage.light.suns.as_slice() } else { &[] };
+        let point = DiscPoint::sample(suns, sampler);
+        suns.iter().map(move |sun| hit.leave(sun.towards(point)))
     }
 
     /// Radiance of the black body of a surface.

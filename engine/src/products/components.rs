@@ -9,7 +9,7 @@ use super::leaf_area::{GapSums, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_vi
 use super::{Class, Context, Image, Product, ProductAxis, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
-use crate::transport::{COMPONENT_COLUMNS, GAP_COLUMN, ImageOutcome, ViewsOutcome};
+use crate::transport::{ComponentColumns, ImageOutcome, ViewsOutcome};
 
 /// Names of the four components in the order of their numbers, from 1.
 const COMPONENTS: [&str; 4] = ["sunlit_ground", "sunlit_canopy", "shaded_ground", "shaded_canopy"];
@@ -44,44 +44,48 @@ pub fn image_components(
         rendering,
         georeference: georeference(sensor, stage, context),
     };
+    let columns = ComponentColumns::new(stage);
+    let row = columns.len();
     // A product of some columns, and the image of their pixels.
-    let columns = |name: &str, names: &[&str], columns: Range<usize>, rendering| Product {
+    let product_of = |name: &str, names: &[&str], columns: &[usize], rendering| Product {
         image: Some(image(
             names,
-            pick(&outcome.pixels, columns.clone()),
-            pick(&outcome.errors, columns.clone()),
+            pick(&outcome.pixels, row, columns),
+            pick(&outcome.errors, row, columns),
             rendering,
         )),
         ..product(
             name,
             vec![vec![axis(names)]],
-            &outcome.mean[columns.clone()],
-            &outcome.mean_error[columns],
+            &pick(&outcome.mean, row, columns),
+            &pick(&outcome.mean_error, row, columns),
         )
     };
     match measure {
         ImageMeasure::FourComponents => {
-            let shares =
-                columns("four_components", &COMPONENTS, 0..4, Rendering::Shares(classes()));
-            let numbers: Vec<f32> =
-                outcome.pixels.chunks_exact(COMPONENT_COLUMNS).map(|p| dominant(&p[..4])).collect();
+            let of_scenes = columns_of_scenes(columns, stage, context);
+            let names = COMPONENTS.repeat(of_scenes.len());
+            let components: Vec<usize> = of_scenes.iter().cloned().flatten().collect();
+            let rendering = Rendering::Shares(classes());
+            let shares = product_of("four_components", &names, &components, rendering);
+            let dominant = |row: &[f32]| -> Vec<f32> {
+                of_scenes.iter().map(|components| dominant(&row[components.clone()])).collect()
+            };
+            let numbers: Vec<f32> = outcome.pixels.chunks_exact(row).flat_map(dominant).collect();
             let errors = vec![f32::NAN; numbers.len()];
-            let mean: Vec<f32> = outcome.mean[..4].iter().map(|&share| share as f32).collect();
-            let name = "dominant_component";
+            let mean: Vec<f32> = outcome.mean.iter().map(|&share| share as f32).collect();
+            let mean: Vec<f64> = dominant(&mean).into_iter().map(f64::from).collect();
+            let (name, names) = ("dominant_component", ["class"].repeat(of_scenes.len()));
+            let unknown = vec![f64::NAN; mean.len()];
             let class = Product {
-                image: Some(image(&["class"], numbers, errors, Rendering::Classes(classes()))),
-                ..product(
-                    name,
-                    vec![vec![axis(&["class"])]],
-                    &[dominant(&mean).into()],
-                    &[f64::NAN],
-                )
+                image: Some(image(&names, numbers, errors, Rendering::Classes(classes()))),
+                ..product(name, vec![vec![axis(&names)]], &mean, &unknown)
             };
             vec![shares, class]
         }
         ImageMeasure::GapFraction => {
-            let column = GAP_COLUMN..GAP_COLUMN + 1;
-            let gaps = columns("gap_fraction", &["gap"], column, Rendering::Quicklook);
+            let gap = [columns.gap()];
+            let gaps = product_of("gap_fraction", &["gap"], &gap, Rendering::Quicklook);
             let rings = GapSums { sums: &outcome.image_sums, stride: 2, gaps: 0, samples: 1 };
             let lai = lai_of_rings(&rings).into_iter().map(|index| single(&index));
             std::iter::once(gaps).chain(lai).collect()
@@ -101,18 +105,27 @@ pub fn direction_components(
     measure: ImageMeasure,
     views: &[View],
     outcome: &ViewsOutcome,
+    stage: &Stage,
+    context: &Context,
 ) -> Vec<Product> {
+    let columns = ComponentColumns::new(stage);
+    let row = columns.len();
     match measure {
-        ImageMeasure::FourComponents => vec![product(
-            "four_components",
-            vec![axes(views), vec![axis(&COMPONENTS)]],
-            &pick(&outcome.mean, 0..4),
-            &pick(&outcome.error, 0..4),
-        )],
+        ImageMeasure::FourComponents => {
+            let of_scenes = columns_of_scenes(columns, stage, context);
+            let names = COMPONENTS.repeat(of_scenes.len());
+            let components: Vec<usize> = of_scenes.into_iter().flatten().collect();
+            vec![product(
+                "four_components",
+                vec![axes(views), vec![axis(&names)]],
+                &pick(&outcome.mean, row, &components),
+                &pick(&outcome.error, row, &components),
+            )]
+        }
         ImageMeasure::GapFraction => {
-            let column = GAP_COLUMN..GAP_COLUMN + 1;
-            let gaps = pick(&outcome.mean, column.clone());
-            let errors = pick(&outcome.error, column);
+            let gap = [columns.gap()];
+            let gaps = pick(&outcome.mean, row, &gap);
+            let errors = pick(&outcome.error, row, &gap);
             let by_view = |name: &str, column: &str, values: &[f64], errors: &[f64]| {
                 product(name, vec![axes(views), vec![axis(&[column])]], values, errors)
             };
@@ -126,9 +139,8 @@ pub fn direction_components(
                 by_view("lai_beer", "lai", &lai, &lai_errors),
             ];
             let zeniths: Vec<f64> = views.iter().map(|view| view.zenith).collect();
-            let stride = COMPONENT_COLUMNS + 1;
             let sums = &outcome.sums;
-            let sums = GapSums { sums, stride, gaps: GAP_COLUMN, samples: COMPONENT_COLUMNS };
+            let sums = GapSums { sums, stride: row + 1, gaps: columns.gap(), samples: row };
             products.extend(lai_of_views(&zeniths, &sums).iter().map(single));
             products
         }
@@ -156,11 +168,32 @@ fn dominant(shares: &[f32]) -> f32 {
     largest.0
 }
 
-/// Some columns of each row.
-fn pick<T: Copy>(values: &[T], columns: Range<usize>) -> Vec<T> {
-    let rows = values.chunks_exact(COMPONENT_COLUMNS);
+/// Columns of the components of each scene; those of one if all have the same sun.
+fn columns_of_scenes(
+    columns: ComponentColumns,
+    stage: &Stage,
+    context: &Context,
+) -> Vec<Range<usize>> {
+    let suns = &stage.light.suns;
+    if suns.len() <= 1 {
+        return vec![columns.of_sun(0)];
+    }
+    let first_band = |scene: usize| scene * stage.bands / context.scenes;
+    let sun_of = |band: usize| suns.partition_point(|sun| sun.bands.end <= band);
+    (0..context.scenes).map(|scene| columns.of_sun(sun_of(first_band(scene)))).collect()
+}
+
+/// Number of components of all scenes.
+pub(super) fn component_count(stage: &Stage, context: &Context) -> usize {
+    let columns = ComponentColumns::new(stage);
+    columns_of_scenes(columns, stage, context).len() * ComponentColumns::COMPONENTS
+}
+
+/// Some columns of each row of this length.
+fn pick<T: Copy>(values: &[T], row: usize, columns: &[usize]) -> Vec<T> {
+    let rows = values.chunks_exact(row);
     let mut picked = Vec::with_capacity(rows.len() * columns.len());
-    rows.for_each(|row| picked.extend_from_slice(&row[columns.clone()]));
+    rows.for_each(|row| picked.extend(columns.iter().map(|&column| row[column])));
     picked
 }
 

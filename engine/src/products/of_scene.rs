@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::{AxisPoints, Faces, Image, Product, ProductAxis, Rendering};
 
 impl Product {
-    /// The bands of one of the scenes; what has no bands is the same for all.
+    /// The values of one of the scenes; what does not have some for each is the same for all.
     #[must_use]
     pub fn of_scene(&self, scene: usize, scenes: usize) -> Self {
         let (Some(joined), Some((bands, others))) =
-            (self.bands().filter(|_| scenes > 1), self.dimensions.split_last())
+            (self.joined(scenes).filter(|_| scenes > 1), self.dimensions.split_last())
         else {
             return self.clone();
         };
@@ -35,10 +35,17 @@ impl Product {
         }
     }
 
-    /// Number of bands; `None` if its last dimension is another.
-    fn bands(&self) -> Option<usize> {
-        let is_band = |axis: &&ProductAxis| axis.name == "band";
-        self.dimensions.last()?.iter().find(is_band).map(|axis| axis.points.len())
+    /// Length of its last dimension, if that is of all scenes: of bands, or of the components of each sun.
+    fn joined(&self, scenes: usize) -> Option<usize> {
+        let is_joined = |axis: &&ProductAxis| match &axis.points {
+            AxisPoints::Labels(labels) if axis.name == "component" => {
+                let own = labels.len() / scenes;
+                let is_whole = own > 0 && own * scenes == labels.len();
+                is_whole && labels[own..] == labels[..labels.len() - own]
+            }
+            _ => axis.name == "band",
+        };
+        self.dimensions.last()?.iter().find(is_joined).map(|axis| axis.points.len())
     }
 }
 

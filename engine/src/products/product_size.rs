@@ -1,8 +1,10 @@
 //! Size of a product before it is measured.
 
+use super::components::component_count;
 use super::{Context, Product};
 use crate::components::{ImageMeasure, ImageSensor};
-use crate::transport::ScatteringOrder;
+use crate::extract::Stage;
+use crate::transport::{ComponentColumns, ScatteringOrder};
 
 /// Number of values of a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,13 +110,17 @@ pub fn image_sizes(
     sensor: &ImageSensor,
     light: MeasuredLight,
     has_zones: bool,
+    stage: &Stage,
     context: &Context,
 ) -> Vec<ProductSize> {
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
     let image = |bands: usize| ProductSize::Image { pixels, bands: bands as u64 };
     let index = ProductSize::Table { rows: 1, axes: 0, bands: 1 };
     let of = |measure: &ImageMeasure| match measure {
-        ImageMeasure::FourComponents => vec![image(4), image(1)],
+        ImageMeasure::FourComponents => {
+            let components = component_count(stage, context);
+            vec![image(components), image(components / ComponentColumns::COMPONENTS)]
+        }
         ImageMeasure::GapFraction => {
             [vec![image(1)], vec![index; usize::from(has_zones) * LEAF_AREA_INDICES]].concat()
         }
@@ -130,12 +136,13 @@ pub fn direction_sizes(
     views: usize,
     measures: &[ImageMeasure],
     light: MeasuredLight,
+    stage: &Stage,
     context: &Context,
 ) -> Vec<ProductSize> {
     let table =
         |bands: usize| ProductSize::Table { rows: views as u64, axes: 2, bands: bands as u64 };
     let of = |measure: &ImageMeasure| match measure {
-        ImageMeasure::FourComponents => vec![table(4)],
+        ImageMeasure::FourComponents => vec![table(component_count(stage, context))],
         // The share of gaps, and Beer's index.
         ImageMeasure::GapFraction => vec![table(1); 2],
         measure => light_sizes(*measure, light, context, table),

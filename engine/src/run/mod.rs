@@ -28,6 +28,7 @@ mod session;
 mod setting;
 mod settled;
 mod staging;
+mod suns;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -135,7 +136,7 @@ fn run_in(
     Ok(reports.pop().expect("a report for each scene"))
 }
 
-/// Measures scenes that differ in their optics alone, on the same paths.
+/// Measures scenes that differ in their optics and their suns alone, on the same paths.
 fn measure_scenes(
     world: &mut SceneWorld,
     scenes: &[SettledScene],

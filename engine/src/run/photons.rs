@@ -49,7 +49,7 @@ impl<'a> PhotonRun<'a> {
                         Some(part) => Box::new(OrderCounter { counter, part }),
                     }
                 });
-                let options = PacketOptions { source, kind, plane: plane.clone() };
+                let options = PacketOptions { source, beam: 0, kind, plane: plane.clone() };
                 let film = photon_film(stage, options, counters, key);
                 Counted { asked, film }
             })

@@ -244,7 +244,8 @@ impl Measurement for ImageRun<'_> {
         let has_zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
         let light =
             MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
-        products::image_sizes(self.sensor, light, has_zones, self.measured.context)
+        let MeasureContext { stage, context } = self.measured;
+        products::image_sizes(self.sensor, light, has_zones, stage, context)
     }
 
     fn context(&self) -> &Context {
@@ -271,7 +272,7 @@ impl Measurement for ImageRun<'_> {
 
 struct DirectionsRun<'a> {
     sensor: &'a DirectionSensor,
-    context: &'a Context,
+    measured: MeasureContext<'a>,
     reflected: Option<DirectionsFilm<'a>>,
     emitted: Option<DirectionsFilm<'a>>,
     components: Option<FirstSurfaceFilm<'a>>,
@@ -300,7 +301,7 @@ fn directions<'a>(
         .then(|| FirstSurfaceFilm::new(stage, views, plane, key.path("components")));
     let until = at_quality(&sensor.until, quality);
     let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each_of) };
-    let measurement = Box::new(DirectionsRun { sensor, context, reflected, emitted, components });
+    let measurement = Box::new(DirectionsRun { sensor, measured, reflected, emitted, components });
     Begun { measurement, convergence }
 }
 
@@ -318,24 +319,27 @@ impl Measurement for DirectionsRun<'_> {
         let DirectionSensor { views, measure, .. } = self.sensor;
         let light =
             MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
-        products::direction_sizes(views.len(), measure, light, self.context)
+        let MeasureContext { stage, context } = self.measured;
+        products::direction_sizes(views.len(), measure, light, stage, context)
     }
 
     fn context(&self) -> &Context {
-        self.context
+        self.measured.context
     }
 
     fn products(&self) -> Vec<Product> {
         let DirectionSensor { views, measure, .. } = self.sensor;
+        let MeasureContext { stage, context } = self.measured;
         let reflected = self.reflected.as_ref().map(DirectionsFilm::outcome);
         let emitted = self.emitted.as_ref().map(DirectionsFilm::outcome);
         let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
         let mut products =
-            products::direction_products(views, measure, reflected, emitted, self.context);
+            products::direction_products(views, measure, reflected, emitted, context);
         if let Some(components) = &self.components {
             let outcome = components.outcome();
             for &one in measure {
-                products.extend(products::direction_components(one, views, &outcome));
+                products
+                    .extend(products::direction_components(one, views, &outcome, stage, context));
             }
         }
         products

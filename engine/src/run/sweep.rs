@@ -1,6 +1,6 @@
 //! A scene at many values of its parameters: what does not change is built once.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +12,7 @@ use super::pool::in_pool;
 use super::provenance::joint_hashes;
 use super::reading::folder_of;
 use super::scene_world::SceneWorld;
+use super::suns::{grouped_by_sun, sun_of_paths};
 use super::{Failure, Options, Progress, day, params, scene_source};
 use crate::document::{
     self, Lambertian, Map, Material, Scene, Sensor, Sky, Spectrum, StopCriterion, Sun, System,
@@ -23,7 +24,8 @@ use crate::products::{Day, Night, Report, SweepPoint};
 ///
 /// Random streams have the seed and the sensor's path as keys, so each point is traced with the same
 /// numbers: differences between points have far less noise than the points themselves. Points that differ in
-/// spectra, temperatures or irradiance alone are traced on the same paths, as if their bands were those of one scene.
+/// spectra, temperatures or irradiance alone are traced on the same paths, as if their bands were those of one scene, and
+/// so are those that differ in the sun's position if all paths start at sensors.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
 pub struct SweepRun {
     file: PathBuf,
@@ -64,7 +66,7 @@ impl SweepRun {
         // A list may hold a value twice.
         let is_new = |index: &usize| names.insert(points[*index].name());
         let distinct: Vec<usize> = (0..points.len()).filter(is_new).collect();
-        let groups = groups(&distinct, &likeness, scene.bands.len());
+        let groups = groups(&distinct, &likeness, &suns, scene.bands.len());
         for group in groups.iter().filter(|group| group.len() > 1) {
             // Results depend on which points share paths.
             let own: Vec<&str> = group.iter().map(|&index| points[index].key.as_str()).collect();
@@ -203,24 +205,30 @@ impl Likeness {
 const MOST_BANDS: usize = 1 << 14;
 
 /// Groups of points that are traced on the same paths; those of the same geometry follow each other.
-fn groups(points: &[usize], likeness: &[Likeness], bands: usize) -> Vec<Vec<usize>> {
+fn groups(
+    points: &[usize],
+    likeness: &[Likeness],
+    suns: &[Option<Sun>],
+    bands: usize,
+) -> Vec<Vec<usize>> {
     let most = (MOST_BANDS / bands.max(1)).max(1);
-    let mut of_geometry: IndexMap<blake3::Hash, Vec<Vec<usize>>> = IndexMap::new();
-    let mut open: HashMap<(blake3::Hash, blake3::Hash), usize> = HashMap::new();
+    let mut of_geometry: IndexMap<blake3::Hash, IndexMap<PathsOf, Vec<usize>>> = IndexMap::new();
     for &index in points {
         let one = likeness[index];
-        let groups = of_geometry.entry(one.geometry).or_default();
-        let place = one.paths.and_then(|paths| open.get(&(one.geometry, paths)).copied());
-        if let Some(place) = place.filter(|&place| groups[place].len() < most) {
-            groups[place].push(index);
-            continue;
-        }
-        if let Some(paths) = one.paths {
-            open.insert((one.geometry, paths), groups.len());
-        }
-        groups.push(vec![index]);
+        let paths = one.paths.map_or(PathsOf::Point(index), PathsOf::Points);
+        of_geometry.entry(one.geometry).or_default().entry(paths).or_default().push(index);
     }
-    of_geometry.into_values().flatten().collect()
+    let alike = of_geometry.into_values().flat_map(IndexMap::into_values);
+    alike.flat_map(|points| grouped_by_sun(points, suns, most)).collect()
+}
+
+/// Paths that points share.
+#[derive(PartialEq, Eq, Hash)]
+enum PathsOf {
+    /// Paths of all points with this hash.
+    Points(blake3::Hash),
+    /// Paths of one point alone.
+    Point(usize),
 }
 
 /// Scene without light, spectra and sensors: points that are equal in it follow each other, so that their geometry is
@@ -240,7 +248,8 @@ fn geometry_of(scene: &Scene) -> Scene {
     }
 }
 
-/// Scene without values by band: points that are equal in it are traced on the same paths. `None` for a point that is
+/// Scene without values by band, and without the sun's position if no path starts there: points that are equal in it
+/// are traced on the same paths. `None` for a point that is
 /// traced alone: because a sensor has a limit of time, or photons that carry one band each.
 fn paths_of(scene: &Scene) -> Option<Scene> {
     let is_limited = |sensor: &Sensor| {
@@ -251,7 +260,6 @@ fn paths_of(scene: &Scene) -> Option<Scene> {
         return None;
     }
     let one = || Spectrum::Constant(1.0);
-    let sun = scene.sun.as_ref().map(|sun| Sun { irradiance: one(), ..sun.clone() });
     let sky = match &scene.sky {
         Sky::Fraction(shares) if shares.iter().any(|share| *share > 0.0) => {
             Sky::Fraction(vec![1.0; shares.len()])
@@ -264,7 +272,7 @@ fn paths_of(scene: &Scene) -> Option<Scene> {
         title: String::new(),
         spectra: Map::new(),
         materials: materials.map(|(name, one)| (name.clone(), one.without_values())).collect(),
-        sun,
+        sun: sun_of_paths(scene),
         sky,
         thermal_sky: ThermalSky::None,
         ..scene.resolved()

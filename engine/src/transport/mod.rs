@@ -36,7 +36,7 @@ pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,
 };
 pub use films::{Film, ImageOutcome, ImageTiles, Partition, ReplicateSums, Schedule};
-pub use paths::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS};
+pub use paths::{ComponentColumns, GAP_RINGS};
 pub use photons::{
     AbsorbedCounter, AlbedoCounter, Cell, CellCounter, ConeCounter, Counter, EnergyCounter,
     FluxCounter, FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightBeside, OrderCounter,

@@ -38,13 +38,6 @@ pub(in crate::transport) struct RayResults<'h> {
     pub(in crate::transport) hit: Option<&'h Hit>,
 }
 
-impl RayResults<'_> {
-    /// Returns whether there was a shadow ray and nothing occludes it.
-    pub(in crate::transport) fn is_lit(&self) -> bool {
-        self.occluded.first() == Some(&false)
-    }
-}
-
 /// A traced ray, for benchmarks of the ray engine.
 #[derive(Clone, Copy, Debug)]
 pub struct TracedRay {

@@ -11,7 +11,7 @@ use super::band_blocks::Block;
 use super::paths::PathTracer;
 use super::ray_queue::{RayQueue, RayResults};
 use crate::accel::{Hit, Ray};
-use crate::extract::Stage;
+use crate::extract::{DiscPoint, Stage};
 use crate::sampling::{Key, Sampler};
 use crate::scattering::{Importance, Lobe};
 
@@ -45,14 +45,17 @@ fn radiance(
         }
         let surface = stage.interaction(&surface_hit, -direction);
         // Next-event estimation: L = f E_sun |cos θ| if nothing occludes the sun, with E_sun perpendicular to it.
-        if let Some(sun) = &stage.light.beam {
-            let wi = sun.towards(sampler);
+        let point = DiscPoint::sample(&stage.light.beams, sampler);
+        for sun in &stage.light.beams {
+            let wi = sun.towards(point);
             if let Some(f) = surface.f(wi) {
                 *rays += 1;
                 if !stage.geometry.occluded(&surface_hit.leave(wi)) {
                     let (share, cosine) = (spectrum(sun.share), surface_hit.normal.dot(wi).abs());
                     add(&mut radiance, &throughput, |band| {
-                        let perpendicular = f64::from(share[band]) / wi.z;
+                        let is_lit = sun.bands.contains(&band);
+                        let perpendicular =
+                            if is_lit { f64::from(share[band]) / wi.z } else { 0.0 };
                         value(stage, &f, band) * FRAC_1_PI * perpendicular * cosine
                     });
                 }

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::History;
+use super::history::{History, LitBands};
 use super::tracer::PathTracer;
 use crate::accel::{Hit, Ray};
-use crate::extract::{Light, Stage};
+use crate::extract::{DiscPoint, Light, Stage};
 use crate::sampling::{Key, Sampler};
 use crate::scattering::{Interaction, Lobe};
 use crate::transport::band_blocks::{BLOCK, Block};
@@ -25,8 +25,8 @@ pub(in crate::transport) struct BackwardPath {
     history: History,
     /// Throughput in the representative bands.
     throughput: Vec<f32>,
-    /// Pending weight of next-event estimation, if the shadow ray meets nothing.
-    next_event: Option<Lobe>,
+    /// Suns whose shadow rays are queued, in their order.
+    next_events: Vec<NextEvent>,
     /// Pending weight of the continuation ray.
     continuation: Option<Lobe>,
     /// Direction of the continuation ray, if one is queued.
@@ -42,6 +42,14 @@ pub(in crate::transport) struct BackwardPath {
     has_hit: bool,
 }
 
+/// Pending light of a sun, if the shadow ray meets nothing.
+#[derive(Clone, Copy, Debug)]
+struct NextEvent {
+    /// Index of the sun among the beams of the stage.
+    beam: usize,
+    f: Lobe,
+}
+
 impl BackwardPath {
     /// A path through a stage.
     pub(in crate::transport) fn new(stage: &Stage, separates_orders: bool) -> Self {
@@ -49,7 +57,7 @@ impl BackwardPath {
         Self {
             history: History::default(),
             throughput: vec![0.0; lanes],
-            next_event: None,
+            next_events: Vec::new(),
             continuation: None,
             direction: None,
             sampler: Sampler::new(Key::new(0), 0),
@@ -62,16 +70,25 @@ impl BackwardPath {
         }
     }
 
-    /// Shadow ray towards the sun, if the surface would scatter light from there.
-    fn sample_sun(&mut self, stage: &Stage, hit: &Hit, surface: &Interaction<'_>) -> Option<Ray> {
-        let beam = stage.light.beam.as_ref()?;
-        let wi = beam.towards(&mut self.sampler);
-        let f = surface.f(wi)?;
-        // L = f E_sun |cos θ| with `surface.f` = π f, and E_sun the share over the cosine of the sun's zenith.
-        let cosine = hit.normal.dot(wi).abs();
-        let scale = (cosine / wi.z * FRAC_1_PI) as f32;
-        self.next_event = Some(f.scaled(scale));
-        Some(hit.leave(wi))
+    /// Queues shadow rays towards those suns from which the surface would scatter light.
+    fn sample_suns(
+        &mut self,
+        stage: &Stage,
+        hit: &Hit,
+        surface: &Interaction<'_>,
+        queue: &mut RayQueue,
+    ) {
+        let beams = &stage.light.beams;
+        let point = DiscPoint::sample(beams, &mut self.sampler);
+        for (index, beam) in beams.iter().enumerate() {
+            let wi = beam.towards(point);
+            let Some(f) = surface.f(wi) else { continue };
+            // L = f E_sun |cos θ| with `surface.f` = π f, and E_sun the share over the cosine of the sun's zenith.
+            let cosine = hit.normal.dot(wi).abs();
+            let scale = (cosine / wi.z * FRAC_1_PI) as f32;
+            self.next_events.push(NextEvent { beam: index, f: f.scaled(scale) });
+            queue.push_shadow(hit.leave(wi));
+        }
     }
 
     /// Continuation ray, if the path survives Russian roulette.
@@ -103,16 +120,20 @@ impl PathTracer for BackwardPath {
         self.history.clear();
         self.throughput.fill(1.0);
         (self.sampler, self.direction) = (sampler, Some(ray.direction));
-        (self.next_event, self.continuation) = (None, None);
+        self.next_events.clear();
+        self.continuation = None;
         // Light that meets nothing at all is uncollided; the first hit overwrites `has_met_ground`.
         (self.order, self.has_met_ground, self.has_hit) = (0, true, false);
     }
 
     fn advance(&mut self, stage: &Stage, results: RayResults<'_>, queue: &mut RayQueue) {
-        if let (Some(f), true, Some(beam)) =
-            (self.next_event.take(), results.is_lit(), &stage.light.beam)
+        for (NextEvent { beam, f }, &is_occluded) in
+            self.next_events.drain(..).zip(results.occluded)
         {
-            self.history.light(f, beam.share, 1.0);
+            if !is_occluded {
+                let beam = &stage.light.beams[beam];
+                self.history.light(f, beam.share, 1.0, LitBands::from(&beam.bands));
+            }
         }
         let Some(direction) = self.direction.take() else { return };
         if let Some(weight) = self.continuation.take() {
@@ -138,9 +159,7 @@ impl PathTracer for BackwardPath {
             _ => {}
         }
         let surface = stage.interaction(hit, -direction);
-        if let Some(ray) = self.sample_sun(stage, hit, &surface) {
-            queue.push_shadow(ray);
-        }
+        self.sample_suns(stage, hit, &surface, queue);
         if let Some(ray) = self.scatter(stage, hit, &surface) {
             self.direction = Some(ray.direction);
             queue.push_closest(ray);

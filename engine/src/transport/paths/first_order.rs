@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::History;
+use super::history::{History, LitBands};
 use super::tracer::PathTracer;
 use crate::accel::Ray;
-use crate::extract::Stage;
+use crate::extract::{DiscPoint, Stage};
 use crate::sampling::{Key, Sampler, cosine_direction};
 use crate::scattering::SpectrumId;
 use crate::transport::ScatteringOrder;
@@ -65,25 +65,25 @@ impl PathTracer for FirstOrderPath {
         self.part = ScatteringOrder::from_order(1, stage.is_ground(hit));
         let surface = stage.interaction(hit, -self.direction);
         let [sun_u, sun_v, sky_u, sky_v] = self.sampler.next_4d();
-        let mut add = |wi: DVec3, source: SpectrumId, scale: f64| {
+        let mut add = |wi: DVec3, (source, bands): (SpectrumId, LitBands), scale: f64| {
             let Some(f) = surface.f(wi) else { return };
             self.rays += 1;
             if !stage.geometry.occluded(&hit.leave(wi)) {
-                self.history.light(f, source, (scale * FRAC_1_PI) as f32);
+                self.history.light(f, source, (scale * FRAC_1_PI) as f32, bands);
             }
         };
-        if let Some(beam) = &stage.light.beam {
-            let disc = beam.disc.as_ref();
-            let sun = disc.map_or(beam.direction, |disc| disc.direction(sun_u, sun_v));
+        for beam in &stage.light.beams {
+            let sun = beam.towards(DiscPoint { u: sun_u, v: sun_v });
             // L = (f π) / π · E_sun cos θ, with E_sun the share over cos θ_sun.
-            add(sun, beam.share, hit.normal.dot(sun).abs() / sun.z);
+            let source = (beam.share, LitBands::from(&beam.bands));
+            add(sun, source, hit.normal.dot(sun).abs() / sun.z);
         }
         if let Some(dome) = &stage.light.dome {
             let sky = cosine_direction(hit.normal, sky_u, sky_v);
             let sky = if sky.z < 0.0 { -sky } else { sky };
             // A horizontal ray would never leave a flat scene.
             if sky.z > 0.0 {
-                add(sky, dome.share, 1.0);
+                add(sky, (dome.share, LitBands::ALL), 1.0);
             }
         }
     }

@@ -21,10 +21,34 @@ pub(super) struct History {
 enum Step {
     /// `T ← T f c`.
     Scattering(LobeSpectrum, f32),
-    /// `L ← L + T f S c` of a source `S`.
-    Lit(LobeSpectrum, SpectrumId, f32),
+    /// `L ← L + T f S c` of a source `S`, in some bands.
+    Lit(LobeSpectrum, SpectrumId, f32, LitBands),
     /// `L ← L + T S c`: the source itself is visible.
     Seen(SpectrumId, f32),
+}
+
+/// Bands that a source lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LitBands {
+    first: u32,
+    end: u32,
+}
+
+impl LitBands {
+    /// All bands.
+    pub(super) const ALL: Self = Self { first: 0, end: u32::MAX };
+
+    /// Those of a block that are lit, by their places in the block.
+    fn within(self, block: &Range<usize>) -> Range<usize> {
+        let place = |band: u32| (band as usize).clamp(block.start, block.end) - block.start;
+        place(self.first)..place(self.end)
+    }
+}
+
+impl From<&Range<usize>> for LitBands {
+    fn from(bands: &Range<usize>) -> Self {
+        Self { first: bands.start as u32, end: bands.end as u32 }
+    }
 }
 
 impl History {
@@ -43,9 +67,9 @@ impl History {
         self.steps.push(Step::Scattering(weight.spectrum, weight.scale));
     }
 
-    /// Records that a surface sends light of a source along the path, `f S c`.
-    pub(super) fn light(&mut self, f: Lobe, source: SpectrumId, c: f32) {
-        self.steps.push(Step::Lit(f.spectrum, source, f.scale * c));
+    /// Records that a surface sends light of a source along the path in some bands, `f S c`.
+    pub(super) fn light(&mut self, f: Lobe, source: SpectrumId, c: f32, bands: LitBands) {
+        self.steps.push(Step::Lit(f.spectrum, source, f.scale * c, bands));
     }
 
     /// Records that the path sees a source, `S c`.
@@ -71,10 +95,24 @@ impl History {
                     let f = models.values(&f, lanes.clone(), &mut buffer);
                     multiply(&mut throughput, f, c);
                 }
-                Step::Lit(f, source, c) => {
-                    let f = models.values(&f, lanes.clone(), &mut buffer);
-                    let source = &models.spectra.lanes(source)[lanes.clone()];
-                    add_lit(&mut sum, &throughput, f, source, c);
+                Step::Lit(f, source, c, lit) => {
+                    let lit = lit.within(&bands);
+                    if lit.len() == bands.len() {
+                        let f = models.values(&f, lanes.clone(), &mut buffer);
+                        let source = &models.spectra.lanes(source)[lanes.clone()];
+                        add_lit(&mut sum, &throughput, f, source, c);
+                    } else if !lit.is_empty() {
+                        // Models are evaluated in whole groups of lanes.
+                        let first = lit.start / LANES * LANES;
+                        let groups =
+                            lanes.start + first..lanes.start + lit.end.next_multiple_of(LANES);
+                        let f = models.values(&f, groups.clone(), &mut buffer);
+                        let source = &models.spectra.lanes(source)[groups];
+                        for band in lit {
+                            let (f, source) = (f[band - first], source[band - first]);
+                            sum[band] += throughput[band] * source * f * c;
+                        }
+                    }
                 }
                 Step::Seen(source, c) => {
                     let source = &models.spectra.lanes(source)[lanes.clone()];
@@ -103,9 +141,12 @@ mod tests {
                 models.spectra.add((0..bands).map(value))
             });
             let mut history = History::default();
-            history.light(a.into(), source, 0.5);
+            history.light(a.into(), source, 0.5, LitBands::ALL);
             history.scatter(Lobe::from(a).scaled(2.0));
-            history.light(black.into(), b, 1.0);
+            history.light(black.into(), b, 1.0, LitBands::ALL);
+            // Some bands have a source of their own.
+            let some = bands / 3..bands.div_ceil(2);
+            history.light(black.into(), a, 2.0, LitBands::from(&some));
             history.scatter(Lobe::from(b).scaled(0.25));
             history.see(source, 3.0);
             let mut seen = 0;
@@ -115,7 +156,8 @@ mod tests {
                 for (band, radiance) in block.zip(radiance) {
                     let value = |id| f64::from(models.spectra.lanes(id)[band]);
                     let [a, b, s, black] = [a, b, source, black].map(value);
-                    let expected = a * s * 0.5 + 2.0 * a * (b * black + 0.25 * b * s * 3.0);
+                    let some = if some.contains(&band) { 2.0 * black * a } else { 0.0 };
+                    let expected = a * s * 0.5 + 2.0 * a * (b * black + some + 0.25 * b * s * 3.0);
                     assert!((radiance - expected).abs() < 1e-6, "{bands}, {band}");
                     seen += 1;
                 }

@@ -9,7 +9,7 @@ mod tracer;
 
 pub(super) use backward::BackwardPath;
 pub(super) use first_hit::FirstHitPath;
-pub use first_hit::{COMPONENT_COLUMNS, GAP_COLUMN, GAP_RINGS};
+pub use first_hit::{ComponentColumns, GAP_RINGS};
 pub(super) use first_order::FirstOrderPath;
 pub(super) use thermal::ThermalPath;
 pub(super) use tracer::{PathBatch, PathTracer, write_each};

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::history::History;
+use super::history::{History, LitBands};
 use super::tracer::PathTracer;
 use crate::accel::{Hit, Ray};
 use crate::extract::Stage;
@@ -24,7 +24,7 @@ pub(in crate::transport) struct ThermalPath {
     /// Throughput in the representative bands.
     throughput: Vec<f32>,
     sampler: Sampler,
-    /// Pending emission of a surface, whose temperature depends on the shadow ray.
+    /// Pending emission of a surface, whose temperature depends on the shadow rays to all suns.
     emission: Option<(Hit, Lobe)>,
     /// Pending weight of the continuation ray.
     continuation: Option<Lobe>,
@@ -83,7 +83,10 @@ impl PathTracer for ThermalPath {
             self.history.scatter(thermal.bands.into());
         }
         if let Some((hit, emitted)) = self.emission.take() {
-            self.history.light(emitted, thermal.black_body(&hit, results.is_lit()), 1.0);
+            for (sun, is_occluded) in stage.light.suns.iter().zip(results.occluded) {
+                let radiance = thermal.black_body(&hit, !is_occluded);
+                self.history.light(emitted, radiance, 1.0, LitBands::from(&sun.bands));
+            }
         }
         let Some(direction) = self.direction.take() else { return };
         if let Some(weight) = self.continuation.take() {
@@ -101,11 +104,12 @@ impl PathTracer for ThermalPath {
         self.has_hit = true;
         let surface = stage.interaction(hit, -direction);
         let emitted = surface.absorbed_fraction();
-        if let Some(ray) = thermal.sun_ray(stage, hit, &mut self.sampler) {
+        for ray in thermal.sun_rays(stage, hit, &mut self.sampler) {
             queue.push_shadow(ray);
             self.emission = Some((*hit, emitted));
-        } else {
-            self.history.light(emitted, thermal.black_body(hit, false), 1.0);
+        }
+        if self.emission.is_none() {
+            self.history.light(emitted, thermal.black_body(hit, false), 1.0, LitBands::ALL);
         }
         if let Some(ray) = self.scatter(stage, hit, &surface) {
             self.direction = Some(ray.direction);

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::counters::{Counter, Event, Visited};
@@ -25,30 +27,45 @@ pub struct LightBeside {
 const PILOT: u64 = 64;
 
 impl LightBeside {
-    /// Estimate from a pilot run; `None` for a periodic scene, which has no sides, and without light.
+    /// Estimate from a pilot run of each sun, or of the sky alone; `None` for a periodic scene, which has no sides, and
+    /// without light.
     #[must_use]
     pub fn from_pilot_run(stage: &Stage) -> Option<Self> {
-        let is_lit = stage.light.beam.is_some() || stage.light.dome.is_some();
+        let is_lit = !stage.light.beams.is_empty() || stage.light.dome.is_some();
         if stage.periodic || !is_lit {
             return None;
         }
+        let bands = stage.light.beams.iter().map(|beam| beam.bands.clone());
+        let bands: Vec<Range<usize>> =
+            if stage.light.beams.len() > 1 { bands.collect() } else { vec![0..stage.bands] };
+        let of_beams = bands.into_iter().enumerate();
+        of_beams.map(|(beam, bands)| Self::of_beam(stage, beam, &bands)).reduce(|a, b| Self {
+            incoming: a.incoming.max(b.incoming),
+            outgoing: a.outgoing.max(b.outgoing),
+        })
+    }
+
+    /// Estimate in the bands of one of the beams.
+    fn of_beam(stage: &Stage, beam: usize, bands: &Range<usize>) -> Self {
         let plane = ReferencePlane::new(None, stage);
         let counter: Box<dyn Counter> = Box::new(BesideCounter { plane: plane.clone() });
         let kind = PhotonKind::Packet(RouletteThreshold::Low);
-        let options = PacketOptions { source: LightSource::Reflected, kind, plane };
+        let options = PacketOptions { source: LightSource::Reflected, beam, kind, plane };
         let mut film =
             photon_film(stage, options, [counter], Key::new(stage.rules.seed).path("beside"));
         film.trace(PILOT, &|_| {});
         let spread = film.spread(1);
-        let cell = |cell: usize| &spread.mean()[cell * stage.bands..(cell + 1) * stage.bands];
+        let cell = |cell: usize| {
+            &spread.mean()[cell * stage.bands..(cell + 1) * stage.bands][bands.clone()]
+        };
         let largest = |part: usize, whole: usize| {
             let fractions = cell(part).iter().zip(cell(whole)).map(|(part, whole)| part / whole);
             fractions.filter(|fraction| fraction.is_finite()).fold(0.0, f64::max)
         };
-        Some(Self {
+        Self {
             incoming: largest(BesideCounter::INCOMING_BESIDE, BesideCounter::INCOMING),
             outgoing: largest(BesideCounter::OUTGOING_BESIDE, BesideCounter::OUTGOING),
-        })
+        }
     }
 }
 

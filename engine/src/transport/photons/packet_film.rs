@@ -42,6 +42,8 @@ struct PacketBatch {
 pub struct PacketOptions {
     /// Origin of the light.
     pub source: LightSource,
+    /// Index of the sun among the beams of the stage: packets start at one alone.
+    pub beam: usize,
     /// Packets or photons.
     pub kind: PhotonKind,
     /// Light that leaves through it counts as reflected.
@@ -59,11 +61,11 @@ impl<'a> PacketTracer<'a> {
         counters: impl IntoIterator<Item = Box<dyn Counter>>,
         key: Key,
     ) -> Self {
-        let PacketOptions { source: light, kind, plane } = options;
+        let PacketOptions { source: light, beam, kind, plane } = options;
         let energy: Box<dyn Counter> =
             Box::new(EnergyCounter { surfaces: stage.models.surface_count(), plane });
         let counters = std::iter::once(energy).chain(counters).collect();
-        let source = PacketSource::new(stage);
+        let source = PacketSource::new(stage, beam);
         let emission = match light {
             LightSource::Emitted => ThermalEmission::new(stage, &source),
             LightSource::Reflected => None,
@@ -210,7 +212,7 @@ mod tests {
         let views = ViewCounter::new(cameras.to_vec()).with_roulette(source, key);
         let albedo = AlbedoCounter { plane: plane.clone() };
         let counters: [Box<dyn Counter>; 2] = [Box::new(views), Box::new(albedo)];
-        let options = PacketOptions { source, kind, plane };
+        let options = PacketOptions { source, beam: 0, kind, plane };
         let tracer = PacketTracer { batch, ..PacketTracer::new(stage, options, counters, key) };
         tracer.prepare();
         let (row, rays) = tracer.trace(3, 0..300);

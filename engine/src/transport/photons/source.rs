@@ -44,9 +44,10 @@ struct Face {
 }
 
 impl PacketSource {
-    /// The source of a stage.
+    /// Light of one of the beams of a stage, if it has any, and of the sky.
     #[must_use]
-    pub(super) fn new(stage: &Stage) -> Self {
+    pub(super) fn new(stage: &Stage, beam: usize) -> Self {
+        let beam = stage.light.beams.get(beam);
         let (low, high) = lit_box(stage);
         let size = high - low;
         let (x, y, z) = (DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z);
@@ -66,7 +67,7 @@ impl PacketSource {
             faces.push(side(low, x, DVec3::Y));
             faces.push(side(low + y, x, -DVec3::Y));
         }
-        let sun = stage.light.beam.as_ref().map_or(DVec3::Z, |beam| beam.direction);
+        let sun = beam.map_or(DVec3::Z, |beam| beam.direction);
         let (mut sun_power, mut sky_power) = (0.0, 0.0);
         for face in &mut faces {
             let area = face.u.cross(face.v).length();
@@ -79,7 +80,7 @@ impl PacketSource {
             face.sun_until /= sun_power;
             face.sky_until /= sky_power;
         }
-        let sun_share = stage.light.beam.as_ref().map_or(SpectrumId::ZERO, |beam| beam.share);
+        let sun_share = beam.map_or(SpectrumId::ZERO, |beam| beam.share);
         let sky_share = stage.light.dome.as_ref().map_or(SpectrumId::ZERO, |dome| dome.share);
         let sun_gain = sun_power / (stage.area() * sun.z);
         let sky_gain = sky_power / stage.area();
@@ -99,7 +100,7 @@ impl PacketSource {
             sun_share,
             sky_share,
             sun,
-            disc: stage.light.beam.as_ref().and_then(|beam| beam.disc),
+            disc: beam.and_then(|beam| beam.disc),
             area: stage.area(),
             back_off: 0.01 * size.max_element(),
         }

@@ -58,7 +58,7 @@ impl<'a> ThermalEmission<'a> {
 
     /// Shadow ray towards the sun, where the temperature at a point depends on it.
     fn sun_ray(&self, hit: &Hit, sampler: &mut Sampler) -> Option<Ray> {
-        self.thermal.sun_ray(self.stage, hit, sampler)
+        self.thermal.sun_rays(self.stage, hit, sampler).next()
     }
 }
 

@@ -142,7 +142,7 @@ impl<'a> DirectionsFilm<'a> {
         };
         let places = counter.cameras().iter().zip(counter.first_cells()).map(place).collect();
         let kind = PhotonKind::Packet(RouletteThreshold::High);
-        let options = PacketOptions { source, kind, plane: plane.clone() };
+        let options = PacketOptions { source, beam: 0, kind, plane: plane.clone() };
         let film = photon_film(stage, options, in_parts(counter, separates_orders), key);
         let spectra = spectrum_count(separates_orders);
         Self { film, places, has_sums_per_spectrum: true, spectra }

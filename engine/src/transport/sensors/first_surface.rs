@@ -6,7 +6,7 @@ use crate::components::View;
 use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::transport::films::{ImageTiles, ReplicateSums};
-use crate::transport::paths::{COMPONENT_COLUMNS, FirstHitPath};
+use crate::transport::paths::{ComponentColumns, FirstHitPath};
 use crate::transport::{Camera, ReferencePlane};
 
 /// Fractions of each pixel by the surface that is seen first, as columns in place of bands.
@@ -22,11 +22,11 @@ pub fn image_first_surface_film<'a>(stage: &'a Stage, camera: &Camera, key: Key)
         Camera::Fisheye(camera) => camera.upright(),
         _ => None,
     };
-    let path = move || FirstHitPath::new(upright);
-    ImageTiles::new(stage, camera.clone(), key, COMPONENT_COLUMNS, path)
+    let path = move || FirstHitPath::new(stage, upright);
+    ImageTiles::new(stage, camera.clone(), key, ComponentColumns::new(stage).len(), path)
 }
 
-/// Fractions of each view by the surface that is seen first, shape `[views, COMPONENT_COLUMNS]`, see
+/// Fractions of each view by the surface that is seen first, shape `[views, columns]`, see
 /// [`image_first_surface_film`].
 #[expect(missing_debug_implementations, reason = "its tracer has no Debug")]
 pub struct FirstSurfaceFilm<'a> {
@@ -38,9 +38,9 @@ impl<'a> FirstSurfaceFilm<'a> {
     /// No samples yet.
     #[must_use]
     pub fn new(stage: &'a Stage, views: &[View], plane: &ReferencePlane, key: Key) -> Self {
-        let columns = COMPONENT_COLUMNS + 1;
+        let columns = ComponentColumns::new(stage).len() + 1;
         let tracer = ViewTracer { stage, cameras: cameras(stage, views, plane), columns, key };
-        Self { film: tracer.film(|| FirstHitPath::new(None)) }
+        Self { film: tracer.film(move || FirstHitPath::new(stage, None)) }
     }
 
     /// The outcome of the samples so far.

@@ -37,7 +37,7 @@ impl<'a> PacketImage<'a> {
         let counter = ViewCounter::new(vec![camera.clone()]).with_roulette(source, key);
         let plane = ReferencePlane::new(None, stage);
         let kind = PhotonKind::Packet(RouletteThreshold::High);
-        let options = PacketOptions { source, kind, plane };
+        let options = PacketOptions { source, beam: 0, kind, plane };
         let sums = photon_film(stage, options, in_parts(counter, separates_orders), key);
         let (camera, coverage) = (camera.clone(), OnceLock::new());
         Self { sums, stage, camera, key: key.path("coverage"), coverage }

@@ -110,6 +110,35 @@ impl Sensor {
         }
     }
 
+    /// Returns whether light is traced on its way from the sun, and not against it from the sensor alone.
+    #[must_use]
+    pub fn is_traced_from_sun(&self) -> bool {
+        match (self, self.system()) {
+            (_, Some(system)) => matches!(system, System::Forward | System::Analog),
+            (
+                Self::Directions(Directions { views: Views::List(views), virtual_plane, .. }),
+                None,
+            ) => virtual_plane.is_none() && views.len() > 1,
+            (_, None) => true,
+        }
+    }
+
+    /// Returns whether its directions depend on the sun's azimuth.
+    #[must_use]
+    pub fn follows_sun(&self) -> bool {
+        let follows = |views: &Views| !matches!(views, Views::List(_));
+        match self {
+            Self::Directions(sensor) => follows(&sensor.views),
+            Self::Photons(sensor) => sensor.measure.iter().any(|measure| match measure {
+                PhotonMeasure::BrfViews(views) | PhotonMeasure::RadianceViews(views) => {
+                    follows(views)
+                }
+                _ => false,
+            }),
+            Self::Orthographic(_) | Self::Perspective(_) | Self::Fisheye(_) => false,
+        }
+    }
+
     /// The sensor with the quantities that a transport system can measure in a scene; `None` if there are none.
     /// The largest limit of single products holds for all that are left if it drops some.
     #[must_use]

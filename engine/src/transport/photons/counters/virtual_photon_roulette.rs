@@ -28,7 +28,7 @@ impl VirtualPhotonRoulette {
         let plane = ReferencePlane::new(None, stage);
         let albedo = Box::new(AlbedoCounter { plane: plane.clone() });
         let kind = PhotonKind::Packet(RouletteThreshold::High);
-        let options = PacketOptions { source, kind, plane };
+        let options = PacketOptions { source, beam: 0, kind, plane };
         let mut film = photon_film(stage, options, [albedo as _], key.path("stakes"));
         film.trace(PILOT, &|_| {});
         let leaves = film.spread(1);
