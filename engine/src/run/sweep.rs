@@ -61,7 +61,7 @@ impl SweepRun {
             (point.key, point.night) = (found.key.clone(), found.night.clone());
         }
         let likeness: Vec<Likeness> = found.iter().map(|found| found.likeness).collect();
-        let suns = found.into_iter().map(|found| found.sun).collect();
+        let suns: Vec<Option<Sun>> = found.into_iter().map(|found| found.sun).collect();
         let mut names = HashSet::new();
         // A list may hold a value twice.
         let is_new = |index: &usize| names.insert(points[*index].name());
