@@ -204,7 +204,7 @@ fn points_share_paths_among_suns_if_all_paths_start_at_sensors() {
         .with("sky", "Isotropic(irradiance: Constant(0.3))")
         .with("sweep", r#"Grid({ "sza": [10.0, 50.0], "saa": [0.0, 90.0] })"#);
     let image = r#""i": Orthographic(size_px: (1, 1), extent_m: (1.0, 1.0), samples_per_px: 2"#;
-    let views = r#"until: Samples(64), views: "#;
+    let views = "until: Samples(64), views: ";
     for (sensors, groups) in [
         (format!("{image})"), 1),
         (format!("{image}, system: Forward)"), 4),

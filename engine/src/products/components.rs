@@ -45,7 +45,7 @@ pub fn image_components(
         georeference: georeference(sensor, stage, context),
     };
     let columns = ComponentColumns::new(stage);
-    let row = columns.len();
+    let row = columns.count();
     // A product of some columns, and the image of their pixels.
     let product_of = |name: &str, names: &[&str], columns: &[usize], rendering| Product {
         image: Some(image(
@@ -109,7 +109,7 @@ pub fn direction_components(
     context: &Context,
 ) -> Vec<Product> {
     let columns = ComponentColumns::new(stage);
-    let row = columns.len();
+    let row = columns.count();
     match measure {
         ImageMeasure::FourComponents => {
             let of_scenes = columns_of_scenes(columns, stage, context);

@@ -31,7 +31,7 @@ impl ComponentColumns {
 
     /// Number of columns.
     #[must_use]
-    pub const fn len(self) -> usize {
+    pub const fn count(self) -> usize {
         self.gap() + 1
     }
 
@@ -73,7 +73,7 @@ impl FirstHitPath {
         let columns = ComponentColumns::new(stage);
         Self {
             columns,
-            values: vec![0.0; columns.len() + 1],
+            values: vec![0.0; columns.count() + 1],
             upright,
             cosine: 0.0,
             sampler: Sampler::new(Key::new(0), 0),
@@ -91,7 +91,7 @@ impl FirstHitPath {
             values[columns.of_sun(sun)][2 + usize::from(!is_ground)] = 1.0;
         }
         values[columns.gap()] = f32::from(is_ground && self.direction.z < 0.0);
-        values[columns.len()] = 1.0;
+        values[columns.count()] = 1.0;
     }
 }
 
@@ -136,7 +136,7 @@ impl PathTracer for FirstHitPath {
         let Self { columns, values, .. } = self;
         values.fill(0.0);
         values[columns.gap()] = 1.0;
-        values[columns.len()] = 1.0;
+        values[columns.count()] = 1.0;
         direction.z > 0.0
     }
 

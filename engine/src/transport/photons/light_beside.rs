@@ -35,11 +35,13 @@ impl LightBeside {
         if stage.periodic || !is_lit {
             return None;
         }
-        let bands = stage.light.beams.iter().map(|beam| beam.bands.clone());
-        let bands: Vec<Range<usize>> =
-            if stage.light.beams.len() > 1 { bands.collect() } else { vec![0..stage.bands] };
-        let of_beams = bands.into_iter().enumerate();
-        of_beams.map(|(beam, bands)| Self::of_beam(stage, beam, &bands)).reduce(|a, b| Self {
+        // The sky lights bands without a sun too.
+        let bands = |beam: usize| match &stage.light.beams[..] {
+            [] | [_] => 0..stage.bands,
+            beams => beams[beam].bands.clone(),
+        };
+        let beams = 0..stage.light.beams.len().max(1);
+        beams.map(|beam| Self::of_beam(stage, beam, &bands(beam))).reduce(|a, b| Self {
             incoming: a.incoming.max(b.incoming),
             outgoing: a.outgoing.max(b.outgoing),
         })

@@ -23,7 +23,7 @@ pub fn image_first_surface_film<'a>(stage: &'a Stage, camera: &Camera, key: Key)
         _ => None,
     };
     let path = move || FirstHitPath::new(stage, upright);
-    ImageTiles::new(stage, camera.clone(), key, ComponentColumns::new(stage).len(), path)
+    ImageTiles::new(stage, camera.clone(), key, ComponentColumns::new(stage).count(), path)
 }
 
 /// Fractions of each view by the surface that is seen first, shape `[views, columns]`, see
@@ -38,7 +38,7 @@ impl<'a> FirstSurfaceFilm<'a> {
     /// No samples yet.
     #[must_use]
     pub fn new(stage: &'a Stage, views: &[View], plane: &ReferencePlane, key: Key) -> Self {
-        let columns = ComponentColumns::new(stage).len() + 1;
+        let columns = ComponentColumns::new(stage).count() + 1;
         let tracer = ViewTracer { stage, cameras: cameras(stage, views, plane), columns, key };
         Self { film: tracer.film(move || FirstHitPath::new(stage, None)) }
     }
