@@ -147,8 +147,10 @@ impl Blocks {
         let mut discs = with_huge_pages(disc_leaves.len());
         let blocks = disc_leaves.par_iter().map(|leaf| disc_block(members(leaf)));
         blocks.collect_into_vec(&mut discs);
-        let has_parallelograms = primitives.planar.par_iter().any(|planar| planar.second.is_some());
-        let second_triangles = if has_parallelograms {
+        let is_apart = |planar: &PlanarPrimitive| {
+            planar.second.is_some_and(|second| second.get() != planar.first + 1)
+        };
+        let second_triangles = if primitives.planar.par_iter().any(is_apart) {
             planar_leaves.par_iter().map(|&leaf| primitives.seconds(leaves.get(leaf))).collect()
         } else {
             Vec::new()

@@ -62,7 +62,20 @@ impl TwoLevelBvh {
         let room = DVec3::splat(f64::from(max_coordinate) * (-40_f64).exp2());
         let covered = Bounds { min: covered.min - room, max: covered.max + room };
         let level = SimdLevel::detect();
-        Ok(Self { meshes, records, copies, instances, domain, bounds, covered, center, level })
+        let is_fetched_ahead = false;
+        let bvh = Self {
+            meshes,
+            records,
+            copies,
+            instances,
+            domain,
+            bounds,
+            covered,
+            center,
+            level,
+            is_fetched_ahead,
+        };
+        Ok(bvh.with_fetching_by_size())
     }
 }
 

@@ -10,7 +10,7 @@ pub(in crate::accel) struct MeshBvh {
     pub tree: WideBvh,
     pub planar: Vec<PlanarBlock>,
     pub discs: Vec<DiscBlock>,
-    /// Second triangle of each lane of each planar block; empty if there is no parallelogram.
+    /// Second triangle of each lane of each planar block; empty if that of each parallelogram follows the first.
     pub second_triangles: Vec<[u32; 8]>,
     /// Box around all primitives, not padded.
     pub bounds: Bounds32,
@@ -54,9 +54,10 @@ impl MeshBvh {
         bounds.clip(origin, direction).map(|(enter, _)| enter)
     }
 
-    /// Second triangle of a parallelogram.
-    pub(in crate::accel) fn second_triangle(&self, block: ChildRef, lane: u8) -> u32 {
-        self.second_triangles[block.index()][usize::from(lane & 7)]
+    /// Second triangle of the parallelogram in a lane.
+    pub(in crate::accel) fn second_triangle(&self, block: ChildRef, lane: u8, first: u32) -> u32 {
+        let seconds = self.second_triangles.get(block.index());
+        seconds.map_or(first + 1, |seconds| seconds[usize::from(lane & 7)])
     }
 
     /// Surface of a primitive, counted as in `Hit::primitive`.

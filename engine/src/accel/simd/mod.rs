@@ -1,5 +1,5 @@
-//! Vectors of eight `f32` lanes, dispatch over instruction sets, a stack and memory on huge pages: the only folder with
-//! `unsafe` code.
+//! Vectors of eight `f32` lanes, dispatch over instruction sets, a stack, prefetching and memory on huge pages: the only
+//! folder with `unsafe` code.
 //!
 //! A [`Kernel`] is generic over [`Isa`] and inlined into one wrapper per instruction set, which
 //! alone carries `#[target_feature]`. A value of `Avx2` or `Avx512` exists only inside its
@@ -13,12 +13,14 @@
 
 mod huge_pages;
 mod portable;
+mod prefetch;
 mod stack;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub(super) use huge_pages::with_huge_pages;
 use portable::Portable;
+pub(super) use prefetch::prefetch;
 pub(super) use stack::{Stack, StackMemory};
 
 /// Eight values, one per lane.

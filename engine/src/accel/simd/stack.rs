@@ -52,6 +52,14 @@ impl<'a> Stack<'a> {
         self.len += 1;
     }
 
+    /// Returns the newest entry, whichever hierarchy it belongs to.
+    #[inline(always)]
+    pub(in crate::accel) fn newest(&self) -> Option<u32> {
+        let newest = self.len.checked_sub(1)?;
+        // SAFETY: see `pop`.
+        Some(unsafe { self.memory.refs.get_unchecked(newest).assume_init() })
+    }
+
     /// Pushes the children that a ray hits.
     #[inline(always)]
     pub(in crate::accel) fn extend<I: Isa>(

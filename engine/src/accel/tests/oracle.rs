@@ -152,10 +152,14 @@ pub(super) fn check(
     hit.is_some()
 }
 
-/// The same scene for every instruction set of this processor.
+/// The same scene for every instruction set of this processor, with and without memory that is fetched ahead.
 pub(super) fn on_all_levels(build: impl Fn() -> TwoLevelBvh) -> Vec<TwoLevelBvh> {
-    crate::accel::simd::SimdLevel::available()
-        .into_iter()
-        .map(|level| build().with_level(level))
+    let levels = crate::accel::simd::SimdLevel::available().into_iter();
+    let pairs = levels.flat_map(|level| [(level, false), (level, true)]);
+    pairs
+        .map(|(level, is_fetched_ahead)| TwoLevelBvh {
+            is_fetched_ahead,
+            ..build().with_level(level)
+        })
         .collect()
 }

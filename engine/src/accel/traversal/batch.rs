@@ -11,8 +11,12 @@ use super::{
     trace::Traversal,
 };
 
-/// Number of rays that are traced side by side.
+/// Number of rays that are traced side by side if the geometry lies in the cache.
 const SLOTS: usize = 3;
+
+/// Number of rays that are traced side by side while memory is fetched ahead: steps of the others fill the time that
+/// this takes.
+const FETCHING_SLOTS: usize = 10;
 
 /// Rays that are traced together, and their results.
 #[derive(Debug)]
@@ -27,12 +31,26 @@ pub struct RayBatch<'a> {
     pub hits: &'a mut [Option<Hit>],
 }
 
-/// Traces rays side by side, one per slot; a slot whose ray is finished takes the next.
-///
-/// Each step of a traversal depends on the one before: it waits for a node, then for the result of its box tests.
-/// Steps of independent traversals fill that time.
+/// Traces rays side by side.
 #[inline(always)]
 pub(super) fn trace_each<I: Isa>(isa: I, bvh: &TwoLevelBvh, batch: RayBatch<'_>) {
+    if bvh.is_fetched_ahead {
+        trace_in_slots::<I, FETCHING_SLOTS, true>(isa, bvh, batch);
+    } else {
+        trace_in_slots::<I, SLOTS, false>(isa, bvh, batch);
+    }
+}
+
+/// Traces one ray per slot; a slot whose ray is finished takes the next.
+///
+/// Each step of a traversal depends on the one before: it waits for a node, then for the result of its box tests.
+/// Steps of independent traversals fill that time. With `FETCHES`, what a ray reads next is fetched while they run.
+#[inline(always)]
+fn trace_in_slots<I: Isa, const SLOTS: usize, const FETCHES: bool>(
+    isa: I,
+    bvh: &TwoLevelBvh,
+    batch: RayBatch<'_>,
+) {
     let RayBatch { shadow_rays, occluded, closest_rays, hits } = batch;
     occluded.fill(false);
     hits.fill(None);
@@ -59,7 +77,13 @@ pub(super) fn trace_each<I: Isa>(isa: I, bvh: &TwoLevelBvh, batch: RayBatch<'_>)
     let mut active = slots.iter().filter(|slot| slot.is_active).count();
     while active > 0 {
         for slot in &mut slots {
-            if !slot.is_active || slot.traversal.step(isa) {
+            if !slot.is_active {
+                continue;
+            }
+            if slot.traversal.step(isa) {
+                if FETCHES {
+                    slot.traversal.prefetch();
+                }
                 continue;
             }
             let Some(candidate) = slot.traversal.closest.candidate else {

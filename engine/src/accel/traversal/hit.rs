@@ -119,7 +119,7 @@ impl TwoLevelBvh {
                 // Beyond the diagonal, the sum of the barycentric coordinates is above 1.
                 let is_beyond = (corners[2] - corners[1]).cross(at - corners[1]).dot(front) < 0.0;
                 if is_beyond {
-                    primitive = mesh.second_triangle(candidate.block, candidate.lane);
+                    primitive = mesh.second_triangle(candidate.block, candidate.lane, primitive);
                 }
             }
             (front, ab.length_squared() * ac.length_squared())

@@ -151,7 +151,16 @@ fn blur(tile_ray: &TileRay<'_>, record: u32, distance: f64) -> f64 {
     8.0 * f64::EPSILON * stretch * (size + distance.abs())
 }
 
+/// Three coordinates of all lanes.
+#[inline(always)]
+fn load<I: Isa>(isa: I, [x, y, z]: &[Lanes; 3]) -> [I::F; 3] {
+    [isa.load(x), isa.load(y), isa.load(z)]
+}
+
 /// [`MeshRay`] in all lanes, for the tests of blocks.
+///
+/// Arrays of vectors are written out where a closure for `map` would not be inlined: it would not be compiled for the
+/// instruction set, and call each intrinsic.
 pub(super) struct WideRay<I: Isa> {
     pub origin: [I::F; 3],
     pub direction: [I::F; 3],
@@ -176,8 +185,8 @@ impl<I: Isa> WideRay<I> {
     /// the division left out.
     #[inline(always)]
     pub(super) fn planar(&self, isa: I, block: &PlanarBlock, limit: f32, keep: u32) -> (u32, u32) {
-        let [a, b, c] =
-            block.corners.each_ref().map(|corner| corner.each_ref().map(|v| isa.load(v)));
+        let [a, b, c] = &block.corners;
+        let (a, b, c) = (load(isa, a), load(isa, b), load(isa, c));
         let sub = |a: [I::F; 3], b: [I::F; 3]| {
             [isa.sub(a[0], b[0]), isa.sub(a[1], b[1]), isa.sub(a[2], b[2])]
         };
@@ -230,18 +239,24 @@ impl<I: Isa> WideRay<I> {
         limit: f32,
         keep: u32,
     ) -> (u32, u32) {
-        let load = |v: &[Lanes; 3]| v.each_ref().map(|v| isa.load(v));
-        let (center, normal) = (load(&block.center), load(&block.normal));
+        let (center, normal) = (load(isa, &block.center), load(isa, &block.normal));
         let dot = |a: [I::F; 3], b: [I::F; 3]| {
             isa.mul_add(a[0], b[0], isa.mul_add(a[1], b[1], isa.mul(a[2], b[2])))
         };
-        let to_center = [0, 1, 2].map(|i| isa.sub(center[i], self.origin[i]));
+        let [x, y, z] = self.origin;
+        let to_center = [isa.sub(center[0], x), isa.sub(center[1], y), isa.sub(center[2], z)];
         let slope = dot(normal, self.direction);
-        let t = isa.div(dot(normal, to_center), slope);
-        let off = [0, 1, 2].map(|i| isa.sub(isa.mul(self.direction[i], t), to_center[i]));
+        let inverse_slope = isa.div(isa.splat(1.0), slope);
+        let t = isa.mul(dot(normal, to_center), inverse_slope);
+        let [x, y, z] = self.direction;
+        let off = [
+            isa.mul_sub(x, t, to_center[0]),
+            isa.mul_sub(y, t, to_center[1]),
+            isa.mul_sub(z, t, to_center[2]),
+        ];
         let off = dot(off, off);
         // The distance is off by rounding over the slope, and the point by that along the ray.
-        let steep = isa.div(isa.splat(ray.distance_error), isa.abs(slope));
+        let steep = isa.mul(isa.splat(ray.distance_error), isa.abs(inverse_slope));
         let error = isa.mul_add(isa.splat(ray.length), steep, isa.splat(ray.size * ROUNDING));
         let radius = isa.load(&block.radius);
         let zero = isa.splat(0.0);

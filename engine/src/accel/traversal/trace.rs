@@ -6,13 +6,13 @@
 //! `(distance, instance, primitive)` over all primitives, and depends neither on the hierarchy nor on
 //! the instruction set nor on threads.
 
-use std::cmp::Ordering;
+use std::{cmp::Ordering, hint::select_unpredictable};
 
 use glam::DVec3;
 
 use crate::accel::{
     layout::{ChildRef, MeshBvh, TwoLevelBvh, WideNode},
-    simd::{Isa, Stack, StackMemory},
+    simd::{Isa, Stack, StackMemory, prefetch},
 };
 
 use super::{
@@ -57,6 +57,8 @@ pub(super) struct Traversal<'a, I: Isa> {
     boxes: BoxRay<I>,
     /// Nodes of that hierarchy.
     nodes: &'a [WideNode],
+    /// Its leaves.
+    leaves: LeafMemory,
     /// Distance in that space beyond which nothing counts.
     limit: f32,
     /// Number of entries of the stack that belong to the top level.
@@ -67,6 +69,32 @@ pub(super) struct Traversal<'a, I: Isa> {
     /// Ray in the space of the top level.
     world: BoxRay<I>,
     mesh: Option<EnteredMesh<'a, I>>,
+}
+
+/// Addresses of the leaves of a hierarchy; only ever used to fetch them ahead.
+#[derive(Clone, Copy)]
+struct LeafMemory {
+    /// First leaf.
+    start: *const u8,
+    /// Size of a leaf, bytes.
+    size: usize,
+}
+
+impl LeafMemory {
+    #[inline(always)]
+    fn new<T>(leaves: &[T]) -> Self {
+        Self { start: leaves.as_ptr().cast(), size: size_of::<T>() }
+    }
+
+    /// Blocks of the kind that the mesh has more of.
+    #[inline(always)]
+    fn of_mesh(mesh: &MeshBvh) -> Self {
+        if mesh.discs.len() > mesh.planar.len() {
+            Self::new(&mesh.discs)
+        } else {
+            Self::new(&mesh.planar)
+        }
+    }
 }
 
 /// Mesh whose hierarchy a ray is in.
@@ -92,6 +120,7 @@ impl<'a, I: Isa> Traversal<'a, I> {
             stack: Stack::new(memory),
             boxes: world,
             nodes: &bvh.instances.nodes,
+            leaves: LeafMemory::new(&bvh.records),
             limit: 0.0,
             base: 0,
             closest: ClosestCandidate { limit: 0.0, candidate: None },
@@ -114,6 +143,7 @@ impl<'a, I: Isa> Traversal<'a, I> {
         self.world = BoxRay::new(isa, start.as_vec3().to_array(), direction);
         self.boxes = self.world;
         self.nodes = &bvh.instances.nodes;
+        self.leaves = LeafMemory::new(&bvh.records);
         self.limit = limit_above(limit - enter);
         self.base = 0;
         self.closest = ClosestCandidate { limit, candidate: None };
@@ -152,6 +182,17 @@ impl<'a, I: Isa> Traversal<'a, I> {
         !self.any || self.closest.candidate.is_none()
     }
 
+    /// Fetches the newest entry of the stack, which the next step visits unless it is farther than the closest hit.
+    #[inline(always)]
+    pub(super) fn prefetch(&self) {
+        let Some(newest) = self.stack.newest() else { return };
+        let newest = ChildRef(newest);
+        let node = self.nodes.as_ptr().wrapping_add(newest.index()).cast();
+        let leaf = self.leaves.start.wrapping_add(newest.index() * self.leaves.size);
+        // No branch: the processor cannot predict what comes next.
+        prefetch(select_unpredictable(newest.is_inner(), node, leaf));
+    }
+
     #[inline(always)]
     fn enter_mesh(&mut self, isa: I, record: u32, start: f64) {
         let bvh = self.tile_ray.bvh;
@@ -159,6 +200,7 @@ impl<'a, I: Isa> Traversal<'a, I> {
         let Some(ray) = MeshRay::new(&self.tile_ray, record, mesh, start) else { return };
         self.boxes = BoxRay::new(isa, ray.start_near, ray.direction_near);
         self.nodes = &mesh.tree.nodes;
+        self.leaves = LeafMemory::of_mesh(mesh);
         self.limit = limit_above(self.closest.limit - ray.start).min(ray.beyond);
         self.base = self.stack.len();
         self.stack.push(mesh.tree.root.0, 0.0);
@@ -176,6 +218,7 @@ impl<'a, I: Isa> Traversal<'a, I> {
         self.mesh = None;
         self.boxes = self.world;
         self.nodes = &self.tile_ray.bvh.instances.nodes;
+        self.leaves = LeafMemory::new(&self.tile_ray.bvh.records);
         self.limit = limit_above(self.closest.limit - self.enter);
         self.base = 0;
         true
