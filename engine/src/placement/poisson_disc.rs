@@ -53,17 +53,18 @@ pub(super) fn poisson_disc(
         Buckets::new(tile.unwrap_or(bounds), tile.is_some(), distance, expected as usize);
     let mut cells = OpenCells::new(bounds, distance, expected);
     cells.active.retain(|&cell| region.may_overlap(cells.grid.rectangle(cell)));
-    let mut draws = 0..;
-    let mut next = || stream.uniform(draws.next().unwrap_or(0));
+    let mut darts = 0_u64;
     let is_full = |buckets: &Buckets| wanted.is_some_and(|wanted| buckets.points.len() >= wanted);
     for _ in 0..=MOST_CUTS {
-        for _ in 0..cells.active.len() {
+        for dart in 0..cells.active.len() {
             if is_full(&buckets) || cells.active.is_empty() {
                 break;
             }
-            let index = (next() * cells.active.len() as f64) as usize;
-            let rectangle = cells.grid.rectangle(cells.active[index]);
-            let point = rectangle.at(next(), next());
+            if dart % AHEAD == 0 {
+                (darts..).take(AHEAD).for_each(|d| buckets.touch(cells.throw(stream, d).point));
+            }
+            let Dart { index, rectangle, point } = cells.throw(stream, darts);
+            darts += 1;
             if region.contains(point) && !buckets.is_taken(point) {
                 buckets.push(point);
                 if buckets.covers(rectangle) {
@@ -87,6 +88,10 @@ pub(super) fn poisson_disc(
         _ => Ok(buckets.points),
     }
 }
+
+/// Number of darts whose surroundings are read together before they are thrown one by one: each dart waits for memory,
+/// and the processor fetches that of several at once.
+const AHEAD: usize = 8;
 
 /// Upper bound of the number of stems at least `distance` apart: `2 A / (√3 d²)`. Where the plane does not repeat,
 /// A includes a border of d/2, because discs may reach beyond the region by that much.
@@ -114,6 +119,14 @@ impl CellGrid {
     }
 }
 
+/// Point in an open cell.
+struct Dart {
+    /// Index of the cell.
+    index: usize,
+    rectangle: Rectangle,
+    point: DVec2,
+}
+
 /// Cells where there may be room.
 struct OpenCells {
     grid: CellGrid,
@@ -129,6 +142,14 @@ impl OpenCells {
         let (columns, rows) = (count.x as u32, count.y as u32);
         let active = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
         Self { active: active.collect(), grid: CellGrid { corner: bounds.min, side: size / count } }
+    }
+
+    /// Draws a point in one of the cells, of which there is at least one.
+    fn throw(&self, stream: Key, dart: u64) -> Dart {
+        let draw = |number| stream.uniform(3 * dart + number);
+        let index = (draw(0) * self.active.len() as f64) as usize;
+        let rectangle = self.grid.rectangle(self.active[index]);
+        Dart { index, rectangle, point: rectangle.at(draw(1), draw(2)) }
     }
 
     /// Cuts each into four and keeps some of these.

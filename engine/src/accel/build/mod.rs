@@ -20,7 +20,10 @@ use rayon::prelude::*;
 use crate::geometry::Bounds;
 
 use crate::accel::{
-    layout::{Bounds32, ChildRef, Domain, PeriodicCopies, TwoLevelBvh, WideBvh, slab_padding},
+    layout::{
+        Bounds32, ChildRef, Domain, MIN_FETCHED_BYTES, MeshBvh, PeriodicCopies, TwoLevelBvh,
+        WideBvh, slab_padding,
+    },
     simd::SimdLevel,
 };
 use collapse::CollapsedBvh;
@@ -61,9 +64,8 @@ impl TwoLevelBvh {
         // The boxes of the nodes are padded for f32; this is padded for f64.
         let room = DVec3::splat(f64::from(max_coordinate) * (-40_f64).exp2());
         let covered = Bounds { min: covered.min - room, max: covered.max + room };
-        let level = SimdLevel::detect();
-        let is_fetched_ahead = false;
-        let bvh = Self {
+        let mesh_bytes: usize = meshes.iter().map(MeshBvh::bytes).sum();
+        Ok(Self {
             meshes,
             records,
             copies,
@@ -72,10 +74,9 @@ impl TwoLevelBvh {
             bounds,
             covered,
             center,
-            level,
-            is_fetched_ahead,
-        };
-        Ok(bvh.with_fetching_by_size())
+            level: SimdLevel::detect(),
+            is_fetched_ahead: mesh_bytes >= MIN_FETCHED_BYTES,
+        })
     }
 }
 

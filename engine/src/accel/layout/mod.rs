@@ -15,4 +15,5 @@ pub(super) use instance::{InstanceRecord, PeriodicCopies};
 pub(super) use leaf::{DiscBlock, PARALLELOGRAM, PlanarBlock};
 pub(super) use mesh::{MeshBvh, SurfaceRange};
 pub(super) use node::{ChildRef, WideBvh, WideNode};
+pub(super) use two_level::MIN_FETCHED_BYTES;
 pub use two_level::{BvhMemory, Domain, TwoLevelBvh};
