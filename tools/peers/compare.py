@@ -1,261 +1,269 @@
-"""Compares run time and error of sunfleck, LESS 3.0.1 and Mitsuba 3.9.1 on the benchmark stand.
+"""Compares sunfleck, LESS 3.0.1, Mitsuba 3.9.1 and Embree 4.3.3 on the same scenes.
 
-    python tools/peers/compare.py [--out DIR] [--repeats N] [--quick]
+    python tools/peers/compare.py [--out DIR] [--scenes NAME ..] [--without NAME ..] [--repeats N] [--quick]
 
-On one machine, in one run, interleaved. Writes peers.csv (one row a measurement), peers_summary.csv and
-peers.svg; prints the summary. README.md says what is measured and how.
+On one machine, in one run, interleaved. Writes peers.csv (each measurement), peers_summary.csv, peers_directions.csv
+(each direction) and peers.svg; prints the summary as a table. README.md says what is measured and how.
 """
 
 import argparse
 import csv
-import json
-import math
 import os
+import platform
 import statistics
-import subprocess
-import sys
 import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
-STAND = os.path.join(ROOT, "..", "shared", "data", "stand")
-PIXELS = 256
-# Borders of the scene that rays of LESS may cross: its default, and the fewest that give the same values.
-LESS_WRAPS = {"less": 100, "less, 10 wraps": 10}
+from errors import DirectionErrors, ImageError, Truth, direction_errors, samples_times_variance
+from programs import embree
+from programs.measurement import Measurement, Worker
+from programs.sunfleck import Sunfleck
+from scenes import SCENES, Tools
+from scenes.scene import BANDS_NM, VIEW_ZENITHS_DEG
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+# Wraps of LESS: its default, and the fewest with which the values are the same.
+DEFAULT_WRAPS, FEWEST_WRAPS = 100, 10
+# An image with more than this bias shows another scene.
+LARGEST_BIAS = 0.05
 
 
-class Worker:
-    """A program that keeps its scene between measurements."""
+@dataclass(frozen=True)
+class Effort:
+    """Numbers of samples and runs."""
 
-    def __init__(self, name, script, folder, stand=STAND):
-        self.name, self.folder = name, folder
-        self.log = os.path.join(folder, f"{name}.log")
-        command = [sys.executable, os.path.join(HERE, script), stand]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(self.log, "w"), text=True)
-
-    def measure(self, what, count, seed):
-        file = os.path.join(self.folder, f"{self.name}.npy")
-        print(what, count, seed, file, file=self.process.stdin, flush=True)
-        answer = self.process.stdout.readline()
-        if not answer:
-            said = "".join(open(self.log).readlines()[-8:])
-            raise SystemExit(f"{self.name} ended:\n{said}")
-        return json.loads(answer)["seconds"], np.load(file)
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
+    samples: list[int]
+    truth_samples: int
+    packets: int
+    photons: int
+    runs: int
 
 
-class Sunfleck:
-    """sunfleck itself: a process for each measurement; seconds are those of the sensor alone, too."""
-
-    name = "sunfleck"
-
-    def __init__(self, program, folder):
-        self.program, self.folder = program, folder
-
-    def run(self, scene, **settings):
-        out = os.path.join(self.folder, "sunfleck")
-        command = [self.program, "run", os.path.join(HERE, scene), "--out", out]
-        for name, value in settings.items():
-            command += ["--set", f"{name}={value}"]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-        return out, json.load(open(os.path.join(out, "summary.json")))
-
-    def measure(self, what, count, seed):
-        if what == "image":
-            out, summary = self.run("stand.ron", samples=count, seed=seed)
-            pixels = np.fromfile(os.path.join(out, "nadir_brf.img"), dtype="<f4").astype(float)
-            return summary["runs"]["nadir"]["seconds"], pixels.reshape(PIXELS, PIXELS)
-        _, summary = self.run("stand_plane.ron", error=count, seed=seed)
-        values = np.array(summary["sensors"]["plane"]["brf"]["values"])
-        return summary["runs"]["plane"]["seconds"], values.reshape(31, 2)
+FULL = {
+    "stand": Effort([4, 8, 16, 32], 256, 65_536, 500_000, 8),
+    "spruces": Effort([4, 16], 128, 65_536, 500_000, 6),
+    "het01": Effort([4, 16], 128, 65_536, 500_000, 6),
+}
+QUICK = Effort([2, 4], 16, 8_192, 500_000, 2)
 
 
-def rmse(a, b):
-    """Relative, per value; values that are no number in either are left out."""
-    known = np.isfinite(a) & np.isfinite(b)
-    return float(np.sqrt(np.mean((a[known] - b[known]) ** 2)) / np.mean(b[known]))
+@dataclass
+class Results:
+    """Rows of the three tables."""
+
+    measurements: list[dict] = field(default_factory=list)
+    summary: list[dict] = field(default_factory=list)
+    directions: list[dict] = field(default_factory=list)
+
+    def add_measurement(self, scene: str, product: str, program: str, count: int, seed: int, one: Measurement) -> None:
+        mean = float(np.nanmean(one.values))
+        self.measurements.append(
+            dict(scene=scene, product=product, program=program, count=count, seed=seed, seconds=one.seconds,
+                 rays=one.rays or "", mean=mean)
+        )
+        print(f"  {program:20} {product:11} {count:>8} seed {seed}: {one.seconds:8.2f} s, mean {mean:.5f}", flush=True)
+
+    def add_summary(self, scene: str, product: str, program: str, count: int, seconds: list[float], noise: float,
+                    bias: float, bias_error: float, rays: int | None) -> None:
+        median = statistics.median(seconds)
+        self.summary.append(
+            dict(scene=scene, product=product, program=program, count=count, seconds=median, seconds_min=min(seconds),
+                 seconds_max=max(seconds), noise=noise, bias=bias, bias_error=bias_error,
+                 variance_times_count=noise**2 * count, rays=rays or "", efficiency=1.0 / (noise**2 * median))
+        )
 
 
-def images(programs, truth, samples, repeats):
-    rows = []
-    for repeat in range(1, repeats + 1):
-        for count in samples:
-            for program in programs:
-                seconds, pixels = program.measure("image", count, 100 * repeat + 7)
-                # Noise of the truth is none of theirs.
-                error = math.sqrt(max(rmse(pixels, truth.values) ** 2 - truth.error**2, 0.0))
-                mean = float(np.nanmean(pixels))
-                # A program that draws another scene or turns it shows here, not in its noise.
-                alike = float(np.corrcoef(np.nan_to_num(pixels).ravel(), truth.values.ravel())[0, 1])
-                if alike < 0.5 * truth.likeness(error):
-                    raise SystemExit(f"{program.name} draws another picture: correlation {alike:.3f}, not {truth.likeness(error):.3f}")
-                rows.append(
-                    dict(product="nadir image, pixels", program=program.name, repeat=repeat, samples=count,
-                         seconds=seconds, relative_error=error, mean=mean, correlation=alike)
-                )
-                print(f"{program.name:14} image {count:5} samples {seconds:8.2f} s  RMSE {100 * error:6.2f} %"
-                      f"  mean {mean:.5f}  correlation {alike:.3f}", flush=True)
-    return rows
+def main() -> None:
+    arguments = parse_arguments()
+    tools = Tools(arguments.program.resolve(), ROOT)
+    if not tools.data.is_dir():
+        raise SystemExit(f"needs the scenes' data in {tools.data}")
+    results = Results()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        loop = None if "embree" in arguments.without else embree.compile_program(folder)
+        for scene in arguments.scenes:
+            effort = QUICK if arguments.quick else FULL[scene]
+            prepared = SCENES[scene](tools)
+            prepared.save(folder / scene)
+            print(f"{prepared.title}: {sum(map(len, prepared.parts.values()))} triangles, {len(prepared.places)} times")
+            has_native = prepared.native is not None
+            del prepared
+            compare_images(results, scene, effort, arguments, folder / scene, loop, has_native)
+            compare_directions(results, scene, effort, arguments, folder / scene, has_native)
+    add_ratios(results.summary)
+    settings = f"{processor()}, {len(os.sched_getaffinity(0))} threads"
+    write(arguments.out, results, settings)
+    print_table(results.summary)
 
 
-class Truth:
-    """An image of many samples, and what its own noise amounts to."""
-
-    def __init__(self, sunfleck, samples):
-        _, a = sunfleck.measure("image", samples // 2, 1)
-        _, b = sunfleck.measure("image", samples // 2, 2)
-        self.values = 0.5 * (a + b)
-        self.error = rmse(a, b) / 2.0
-
-    def likeness(self, error):
-        """Correlation with an image that differs from this one by noise alone, of that relative error."""
-        noisy = (np.nanstd(self.values) / np.nanmean(self.values)) ** 2
-        scene = noisy - self.error**2
-        return scene / math.sqrt(noisy * (scene + error**2))
-
-
-def planes(sunfleck, less, photons, errors, repeats):
-    rows = []
-
-    def add(program, samples, seconds, values, other, scale):
-        # Two independent estimates of the same error differ by √2 of it.
-        for band, name in enumerate(["red", "nir"]):
-            off = np.abs(values[:, band] - other[:, band]) / math.sqrt(2.0) / np.mean(values[:, band])
-            error = scale * float(np.sqrt(np.mean(off**2)))
-            rows.append(
-                dict(product=f"31 directions, {name}", program=program, repeat=len(rows), samples=samples,
-                     seconds=seconds, relative_error=error, mean=float(np.mean(values[:, band])), correlation="")
-            )
-            print(f"{program:14} plane {name:4} {samples:>9} {seconds:8.2f} s  error {100 * error:6.2f} %", flush=True)
-
-    for repeat in range(1, repeats + 1):
-        for error in errors:
-            seconds, a = sunfleck.measure("plane", error, 10 * repeat)
-            _, b = sunfleck.measure("plane", error, 10 * repeat + 1)
-            add("sunfleck", error, seconds, a, b, 1.0)
-        if less and photons and repeat == 1:
-            # The seed is fixed: photons of a longer run less those of a shorter one are others.
-            for name, wraps in LESS_WRAPS.items():
-                seconds, once = less.measure(f"plane:{wraps}", photons, 1)
-                _, twice = less.measure(f"plane:{wraps}", 2 * photons, 1)
-                if np.array_equal(once, twice):
-                    raise SystemExit(f"LESS traced the same photons twice: {photons} are fewer than it traces at once")
-                add(name, photons, seconds, once, 2.0 * twice - once, 1.0)
-    return rows
-
-
-def summarise(rows):
-    """Median time and root mean square error of each number of samples, and time to errors."""
-    keys = list(dict.fromkeys((row["product"], row["program"]) for row in rows))
-    summary = []
-    for product, program in keys:
-        points = {}
-        for row in rows:
-            if (row["product"], row["program"]) == (product, program):
-                points.setdefault(row["samples"], []).append(row)
-        curve = [
-            (statistics.median(row["seconds"] for row in group),
-             math.sqrt(statistics.mean(row["relative_error"] ** 2 for row in group)))
-            for group in points.values()
-        ]
-        efficiency = statistics.median(1.0 / (error**2 * seconds) for seconds, error in curve)
-        summary.append(dict(product=product, program=program, curve=curve, efficiency=efficiency))
-    for one in summary:
-        ours = next(other for other in summary if (other["product"], other["program"]) == (one["product"], "sunfleck"))
-        one["ratio"] = ours["efficiency"] / one["efficiency"]
-    return summary
-
-
-def write(folder, rows, summary):
-    os.makedirs(folder, exist_ok=True)
-    with open(os.path.join(folder, "peers.csv"), "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys())
-        writer.writeheader()
-        writer.writerows(rows)
-    with open(os.path.join(folder, "peers_summary.csv"), "w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(["product", "program", "seconds", "relative_error", "efficiency_per_s", "sunfleck_over_it"])
-        for one in summary:
-            for seconds, error in one["curve"]:
-                writer.writerow([one["product"], one["program"], seconds, error, one["efficiency"], one["ratio"]])
-
-
-COLOURS = {"sunfleck": "#0072b2", "less": "#d55e00", "less, 10 wraps": "#e69f00", "mitsuba": "#009e73"}
-
-
-def draw(path, summary):
-    """Run time against error, as `sunfleck bench` draws it."""
-    import matplotlib
-
-    matplotlib.use("svg")
-    matplotlib.rcParams["svg.fonttype"] = "none"
-    import matplotlib.pyplot as plt
-    from matplotlib import ticker
-
-    products = list(dict.fromkeys(one["product"] for one in summary))
-    figure, panels = plt.subplots(1, len(products), figsize=(5.2 * len(products), 4.2), squeeze=False, layout="constrained")
-    for panel, product in zip(panels[0], products):
-        curves = [one for one in summary if one["product"] == product]
-        for one in curves:
-            seconds, errors = zip(*sorted(one["curve"]))
-            panel.loglog(seconds, [100 * error for error in errors], "o-", color=COLOURS[one["program"]], label=one["program"])
-        low, high = panel.get_xlim()
-        bottom, top = panel.get_ylim()
-        for decade in np.arange(-4.0, 8.0):
-            line = np.array([low, high])
-            panel.plot(line, 10.0 ** (decade / 2) / np.sqrt(line), ":", color="0.75", linewidth=0.8, zorder=0)
-        for axis in [panel.xaxis, panel.yaxis]:
-            axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
-            axis.set_minor_locator(ticker.NullLocator())
-        panel.set_xlim(low, high)
-        panel.set_ylim(bottom, top)
-        panel.set_title(product)
-        panel.set_xlabel("seconds")
-        panel.set_ylabel("relative root mean square error (%)")
-        panel.grid(color="0.92")
-        panel.legend(frameon=False)
-    figure.suptitle("Benchmark stand: run time against error (dotted: slope -1/2)")
-    figure.savefig(path)
-
-
-def main():
+def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", default=os.path.join(ROOT, "out", "peers"))
-    parser.add_argument("--program", default=os.path.join(ROOT, "target", "release", "sunfleck"))
-    parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--quick", action="store_true", help="few samples, and no directions by LESS: does it work?")
-    parser.add_argument("--without", nargs="*", default=[], choices=["less", "mitsuba"])
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "peers", help="folder for the results")
+    parser.add_argument("--program", type=Path, default=ROOT / "target" / "release" / "sunfleck")
+    parser.add_argument("--scenes", nargs="+", choices=list(SCENES), default=list(SCENES))
+    parser.add_argument("--without", nargs="+", choices=["less", "mitsuba", "embree"], default=[])
+    parser.add_argument("--repeats", type=int, default=2, help="images of each number of samples, at least 2")
+    parser.add_argument("--quick", action="store_true", help="few samples: shows that all works, no figures to quote")
     arguments = parser.parse_args()
-    if not os.path.isdir(STAND):
-        raise SystemExit(f"needs the benchmark stand in {os.path.normpath(STAND)}")
-    samples, truth, photons, errors = [4, 8, 16, 32], 512, 500_000, [0.02, 0.01, 0.005]
-    if arguments.quick:
-        samples, truth, photons, errors, arguments.repeats = [2, 4], 32, None, [0.05, 0.03], 1
-    with tempfile.TemporaryDirectory() as folder:
-        sunfleck = Sunfleck(arguments.program, folder)
-        workers = [
-            Worker(name, f"{name}_stand.py", folder)
-            for name in ["less", "mitsuba"]
-            if name not in arguments.without
+    if arguments.repeats < 2:
+        parser.error("noise needs at least 2 repeats")
+    return arguments
+
+
+def sunflecks(arguments: argparse.Namespace, folder: Path, has_native: bool) -> list[Sunfleck]:
+    """sunfleck on the triangles of all, and on its own mesh."""
+    programs = [Sunfleck("sunfleck", arguments.program.resolve(), folder)]
+    if has_native:
+        programs.append(Sunfleck("sunfleck, own mesh", arguments.program.resolve(), folder, is_native=True))
+    return programs
+
+
+def compare_images(results: Results, scene: str, effort: Effort, arguments: argparse.Namespace, folder: Path,
+                   loop: Path | None, has_native: bool) -> None:
+    programs: list = sunflecks(arguments, folder, has_native)
+    halves = [programs[0].measure("image", effort.truth_samples // 2, seed).values for seed in (1001, 1002)]
+    truth = Truth(*halves)
+    if "less" not in arguments.without:
+        programs.append(Worker("LESS", "less", folder, ["0"]))
+    if loop is not None:
+        programs.append(embree.Embree(loop, folder))
+    if "mitsuba" not in arguments.without:
+        programs.append(Worker("Mitsuba", "mitsuba", folder))
+    found: dict[tuple[str, int], list[Measurement]] = {}
+    for seed in range(1, arguments.repeats + 1):
+        for count in effort.samples:
+            for program in programs:
+                # Recording its kernels takes long: every second number of samples is enough.
+                if program.name == "Mitsuba" and count not in effort.samples[1::2]:
+                    continue
+                one = program.measure("image", count, seed)
+                results.add_measurement(scene, "image", program.name, count, seed, one)
+                found.setdefault((program.name, count), []).append(one)
+    for program in programs:
+        program.close()
+    noises: dict[str, dict[int, float]] = {}
+    for (name, count), runs in found.items():
+        error = truth.error([one.values for one in runs])
+        check_picture(scene, name, error)
+        seconds = [one.seconds for one in runs]
+        noises.setdefault(name, {})[count] = error.noise
+        results.add_summary(
+            scene, "image", name, count, seconds, error.noise, error.bias, error.detectable_bias, runs[0].rays
+        )
+    for name, noise in noises.items():
+        constant, exponent = samples_times_variance(list(noise), list(noise.values()))
+        print(f"  {name}: noise² of a pixel is {constant:.3f} / N; fitted exponent {exponent:.2f}")
+
+
+def check_picture(scene: str, name: str, error: ImageError) -> None:
+    """Ends the run if a program draws another scene; sunfleck's own mesh may differ from the triangles."""
+    if name != "sunfleck, own mesh" and error.bias > LARGEST_BIAS + error.detectable_bias:
+        percent = f"{100 * error.bias:.1f} %"
+        raise SystemExit(f"{name} draws another picture of {scene}: its pixels differ by {percent} beyond noise")
+
+
+def compare_directions(results: Results, scene: str, effort: Effort, arguments: argparse.Namespace, folder: Path,
+                       has_native: bool) -> None:
+    programs: list = sunflecks(arguments, folder, has_native)
+    counts = {program.name: effort.packets for program in programs}
+    if "less" not in arguments.without:
+        for wraps in (FEWEST_WRAPS, DEFAULT_WRAPS):
+            programs.append(Worker(f"LESS, {wraps} wraps", "less", folder, [str(wraps)]))
+            counts[programs[-1].name] = effort.photons
+    found: dict[str, list[Measurement]] = {program.name: [] for program in programs}
+    for seed in range(1, effort.runs + 1):
+        for program in programs:
+            # The values are those of fewer wraps: two runs are enough to time it.
+            if program.name == f"LESS, {DEFAULT_WRAPS} wraps" and seed > 2:
+                continue
+            one = program.measure("directions", counts[program.name], seed)
+            results.add_measurement(scene, "directions", program.name, counts[program.name], seed, one)
+            found[program.name].append(one)
+    for program in programs:
+        program.close()
+    reference = np.array([one.values for one in found["sunfleck"]])
+    for name, runs in found.items():
+        values = np.array([one.values for one in runs])
+        if name == f"LESS, {DEFAULT_WRAPS} wraps":
+            fewest = np.array([one.values for one in found[f"LESS, {FEWEST_WRAPS} wraps"]])
+            difference = float(np.max(np.abs(values / fewest[: len(values)] - 1.0)))
+            print(f"  LESS with {DEFAULT_WRAPS} and {FEWEST_WRAPS} wraps: values differ by at most {difference:.1e}")
+            values = fewest
+        errors = direction_errors(values, reference)
+        add_directions(results, scene, name, counts[name], [one.seconds for one in runs], errors, values, runs[0].rays)
+
+
+def add_directions(results: Results, scene: str, name: str, count: int, seconds: list[float], errors: DirectionErrors,
+                   values: np.ndarray, rays: int | None) -> None:
+    for band, label in enumerate(BANDS_NM):
+        results.add_summary(
+            scene, f"directions, {label}", name, count, seconds, float(errors.noise()[band]),
+            float(errors.mean_bias[band]), float(errors.mean_bias_error[band]), rays,
+        )
+        for view, zenith in enumerate(VIEW_ZENITHS_DEG):
+            results.directions.append(
+                dict(scene=scene, program=name, band=label, view_zenith_deg=zenith,
+                     brf=float(values[:, view, band].mean()), count=count,
+                     variance_times_count=float(errors.variance[view, band] * count),
+                     bias=float(errors.bias[view, band]), bias_error=float(errors.bias_error[view, band]))
+            )
+
+
+def add_ratios(summary: list[dict]) -> None:
+    """Adds each row's efficiency relative to sunfleck's: median over the numbers of samples."""
+    def efficiency(row: dict, program: str) -> float:
+        of_program = [
+            other["efficiency"] for other in summary
+            if (other["scene"], other["product"], other["program"]) == (row["scene"], row["product"], program)
         ]
-        rows = images([sunfleck, *workers], Truth(sunfleck, truth), samples, arguments.repeats)
-        less = next((worker for worker in workers if worker.name == "less"), None)
-        rows += planes(sunfleck, less, photons, errors, arguments.repeats)
-        for worker in workers:
-            worker.close()
-    summary = summarise(rows)
-    write(arguments.out, rows, summary)
-    draw(os.path.join(arguments.out, "peers.svg"), summary)
-    print(f"\n{'product':22} {'program':14} {'efficiency /s':>14} {'sunfleck over it':>17}")
-    for one in summary:
-        print(f"{one['product']:22} {one['program']:14} {one['efficiency']:14.4g} {one['ratio']:17.2f}")
-    print(f"\npeers.csv, peers_summary.csv and peers.svg in {arguments.out}")
+        return statistics.median(of_program)
+
+    for row in summary:
+        row["sunfleck_over_it"] = efficiency(row, "sunfleck") / efficiency(row, row["program"])
+
+
+def processor() -> str:
+    """Name of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+
+
+def write(folder: Path, results: Results, settings: str) -> None:
+    from chart import draw
+
+    folder.mkdir(parents=True, exist_ok=True)
+    tables = {"peers": results.measurements, "peers_summary": results.summary, "peers_directions": results.directions}
+    for name, rows in tables.items():
+        with (folder / f"{name}.csv").open("w", newline="") as file:
+            writer = csv.DictWriter(file, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+    draw(folder / "peers.svg", results.summary, settings)
+    print(f"\npeers.csv, peers_summary.csv, peers_directions.csv and peers.svg in {folder}\n")
+
+
+def print_table(summary: list[dict]) -> None:
+    """The summary as a table of Markdown."""
+    columns = ["scene", "product", "program", "samples", "seconds", "noise", "bias", "noise² x samples", "M rays/s"]
+    columns.append("efficiency of sunfleck over it")
+    print(f"| {' | '.join(columns)} |")
+    print("|---" * len(columns) + "|")
+    for row in summary:
+        is_reference = row["program"] == "sunfleck" and row["product"] != "image"
+        bias = f"{100 * row['bias']:.2f} (± {100 * row['bias_error']:.2f}) %"
+        cells = [
+            row["scene"], row["product"], row["program"], str(row["count"]), f"{row['seconds']:.2f}",
+            f"{100 * row['noise']:.2f} %", "reference" if is_reference else bias, f"{row['variance_times_count']:.3g}",
+            f"{row['rays'] / row['seconds'] / 1e6:.2f}" if row["rays"] else "", f"{row['sunfleck_over_it']:.2f}",
+        ]
+        print(f"| {' | '.join(cells)} |")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,8 @@ import sys
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
 PLACES = [
+    # As the wheel of karellen-llvm-core brings it.
+    f"{sys.prefix}/lib/libLLVM*.so*",
     "/usr/lib/*-linux-gnu/libLLVM*.so*",
     "/usr/lib/llvm-*/lib/libLLVM*.so*",
     "/usr/lib64/libLLVM*.so*",
@@ -57,5 +59,5 @@ def choose():
     tried = ", ".join(sorted(found)) or "none found"
     raise SystemExit(
         f"Mitsuba finds no LLVM that it works with on this machine (tried: {tried}).\n"
-        f"Install one of version 16 or newer, such as Debian's libllvm19, or set {VARIABLE} to its libLLVM.so"
+        f"Install one of version 17 or newer, such as Debian's libllvm19 or pip's karellen-llvm-core, or set {VARIABLE} to its libLLVM.so"
     )

@@ -1,0 +1,1 @@
+"""Programs of the comparison. Each measures "image" and "directions" of a scene and says how long that took."""
