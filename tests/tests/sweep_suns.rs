@@ -172,6 +172,46 @@ fn points_of_other_suns_and_optics_agree_with_runs_of_their_own() {
     assert!(excess.abs() < 5.0, "{squares} of {count}");
 }
 
+/// *Scene*: the trees at sensors that start paths and at sensors of photons in turn, at points of suns and optics. *Expected*:
+/// all points share paths; sensors keep their order; and values of photons are those of points of one sun that share
+/// paths without the others, but for rounding.
+#[test]
+fn sensors_of_photons_are_traced_sun_by_sun() {
+    let sensors = r#"
+        "brf": Directions(views: List([(0.0, 0.0), (45.0, 90.0)]), until: Samples(2000)),
+        "image": Orthographic(size_px: (4, 4), extent_m: (5.0, 5.0), samples_per_px: 8, measure: [Brf, FourComponents]),
+        "map": Photons(per_m2: 40.0, measure: [Albedo, Fapar(layer_m: 1.0)]),
+        "fisheye": Fisheye(position_m: (2.5, 2.5, 0.4), size_px: (4, 4), samples_per_px: 8, measure: [Radiance])"#;
+    let scene = trees()
+        .with("sky", "Fraction([0.3, 0.1, 0.0])")
+        .with("sensors", sensors)
+        .with("params", r#""sza": 30.0, "saa": 40.0, "s": 0.1"#)
+        .with("materials", r#"
+            "soil": Lambertian(reflectance: Bands(["=s", 0.3, 0.05]), temperature: SunlitShaded(sunlit_k: 320.0, shaded_k: 290.0)),
+            "leaf": Leaf(reflectance: Bands([0.05, 0.5, 0.02]), transmittance: Bands([0.03, 0.45, 0.0]), temperature: Uniform(300.0))"#);
+    let grid = |suns: &str| format!(r#"Grid({{ "s": [0.1, 0.2], "sza": {suns} }})"#);
+    let (groups, reports) = scene.clone().with("sweep", grid("[15.0, 40.0, 70.0]")).sweep();
+    assert_eq!(groups, [[0, 3, 1, 4, 2, 5]]);
+    for (place, zenith) in [15.0, 40.0, 70.0].into_iter().enumerate() {
+        let (_, alone) = scene.clone().with("sweep", grid(&format!("[{zenith:?}]"))).sweep();
+        for (alone, report) in alone.iter().zip([&reports[place], &reports[place + 3]]) {
+            let names = |report: &Report| -> Vec<String> {
+                report.sensors.iter().map(|sensor| sensor.name.clone()).collect()
+            };
+            assert_eq!(names(report), ["brf", "image", "map", "fisheye"]);
+            assert_eq!(report.irradiance, alone.irradiance);
+            let (alone, joined) = (entries(alone), entries(report));
+            assert_eq!(alone.len(), joined.len());
+            for ((name, alone), (_, joined)) in alone.iter().zip(&joined) {
+                for (a, b) in alone.iter().zip(joined) {
+                    let is_near = (a.value - b.value).abs() <= 1e-5 * a.value.abs() + 1e-9;
+                    assert!(is_near || a.value.is_nan(), "{zenith} {name}: {a:?} {b:?}");
+                }
+            }
+        }
+    }
+}
+
 /// *Scene*: 70 suns in two bands, more bands than there are representative ones. *Expected*: groups of at most 64 suns, of about
 /// the same size; and some points as in runs of their own but for rounding.
 #[test]
@@ -196,10 +236,10 @@ fn suns_do_not_use_up_representative_bands() {
     }
 }
 
-/// Light that starts at the sun, and directions that follow it, are not shared among suns; what starts at sensors is, at
-/// night too.
+/// Suns share paths if some sensor starts any; directions that follow the sun need its azimuth. Points at night share paths
+/// too.
 #[test]
-fn points_share_paths_among_suns_if_all_paths_start_at_sensors() {
+fn points_share_paths_among_suns_if_some_start_at_sensors() {
     let scene = with_sun(SceneText::bare(0.3, "size_m: (2.0, 2.0)"), "")
         .with("sky", "Isotropic(irradiance: Constant(0.3))")
         .with("sweep", r#"Grid({ "sza": [10.0, 50.0], "saa": [0.0, 90.0] })"#);
@@ -208,7 +248,7 @@ fn points_share_paths_among_suns_if_all_paths_start_at_sensors() {
     for (sensors, groups) in [
         (format!("{image})"), 1),
         (format!("{image}, system: Forward)"), 4),
-        (format!(r#"{image}), "p": Photons(per_m2: 9.0, measure: [Albedo])"#), 4),
+        (format!(r#"{image}), "p": Photons(per_m2: 9.0, measure: [Albedo])"#), 1),
         (format!(r#""d": Directions({views} List([(0.0, 0.0), (9.0, 0.0)]))"#), 4),
         (format!(r#""d": Directions({views} List([(0.0, 0.0)]))"#), 1),
         (

@@ -111,6 +111,12 @@ impl SceneOptics {
         self.sky.as_ref().is_some_and(gives_light)
     }
 
+    /// Places of joined scenes of the same sun.
+    pub fn suns_of_scenes(&self, scenes: usize) -> impl Iterator<Item = Range<usize>> {
+        let place = move |band: usize| band * scenes / self.bands;
+        self.suns.iter().map(move |sun| place(sun.bands.start)..place(sun.bands.end))
+    }
+
     /// The bands of all of these, one behind the other. Neighbours of the same sun share it.
     ///
     /// # Panics

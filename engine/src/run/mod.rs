@@ -60,7 +60,7 @@ use clock::Clock;
 use pool::in_pool;
 use provenance::FileHashes;
 use reading::{folder_of, read};
-use reports::{CommonResults, reports};
+use reports::{CommonResults, SharedReports, reports};
 use sensors::MeasureContext;
 use settled::SettledScene;
 use staging::staged;
@@ -136,7 +136,8 @@ fn run_in(
     Ok(reports.pop().expect("a report for each scene"))
 }
 
-/// Measures scenes that differ in their optics and their suns alone, on the same paths.
+/// Measures scenes that differ in their optics and their suns alone, on the same paths; sensors whose light is traced from
+/// the sun, sun by sun.
 fn measure_scenes(
     world: &mut SceneWorld,
     scenes: &[SettledScene],
@@ -153,14 +154,26 @@ fn measure_scenes(
     let context = joined_context(scenes);
     progress.stage("tracing");
     let measured = MeasureContext { stage: &stage, context: &context };
-    let unsaved = sensors::measure_sensors(&mut world.world, measured, options, store, progress)?;
-    let sensors = sensors::take_reports(&mut world.world);
+    let (by_sun, shared): (Vec<_>, Vec<_>) = sensors::in_order(&world.world)
+        .into_iter()
+        .partition(|one| stage.light.suns.len() > 1 && sensors::is_traced_from_sun(&one.sensor));
+    let all = &mut world.world;
+    let unsaved = sensors::measure_sensors(all, &shared, measured, options, store, progress)?;
+    let mut shared = vec![SharedReports::take(&mut world.world, 0..scenes.len(), context.clone())];
+    for suns in optics.suns_of_scenes(scenes.len()).filter(|_| !by_sun.is_empty()) {
+        let (optics, context) =
+            (joined_optics(&scenes[suns.clone()]), joined_context(&scenes[suns.clone()]));
+        let stage = staged(world, &scenes[0].scene, &optics, options.free_memory())?;
+        let measured = MeasureContext { stage: &stage, context: &context };
+        sensors::measure_sensors(&mut world.world, &by_sun, measured, options, store, progress)?;
+        shared.push(SharedReports::take(&mut world.world, suns, context));
+    }
     clock.lap("trace");
     let common = CommonResults {
         world: &world.world,
         stage: &stage,
         context: &context,
-        sensors,
+        sensors: shared,
         notes,
         warnings: unsaved.into_iter().collect(),
         seconds: clock.seconds(),

@@ -1,5 +1,7 @@
 //! Reports of scenes that were measured on the same paths.
 
+use std::ops::Range;
+
 use hecs::World;
 use rayon::prelude::*;
 
@@ -15,12 +17,27 @@ pub(super) struct CommonResults<'a> {
     pub(super) world: &'a World,
     pub(super) stage: &'a Stage,
     pub(super) context: &'a Context,
-    /// Reports of the sensors, of the bands of all scenes.
-    pub(super) sensors: Vec<SensorReport>,
+    pub(super) sensors: Vec<SharedReports>,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
     pub(super) stages: Vec<(String, f64)>,
     pub(super) seconds: f64,
+}
+
+/// Reports of sensors that some of the scenes share.
+pub(super) struct SharedReports {
+    /// Places of these scenes.
+    scenes: Range<usize>,
+    /// Bands of these scenes.
+    context: Context,
+    sensors: Vec<SensorReport>,
+}
+
+impl SharedReports {
+    /// Moves the reports out of the world.
+    pub(super) fn take(world: &mut World, scenes: Range<usize>, context: Context) -> Self {
+        Self { scenes, context, sensors: sensors::take_reports(world) }
+    }
 }
 
 /// A report for each scene. Time is shared evenly among them; rays and samples are those that each result is made
@@ -30,7 +47,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
     let share = 1.0 / count as f64;
     let warnings = common_warnings(&common);
     let sensors = std::mem::take(&mut common.sensors);
-    let sensors = sensors_by_scene(sensors, scenes, &common);
+    let sensors = sensors_by_scene(sensors, scenes, common.world);
     let own: Vec<&str> = scenes.iter().map(|settled| settled.hash.as_str()).collect();
     let hashes = if let [only] = own[..] { vec![only.to_owned()] } else { joint_hashes(&own) };
     let report = |((settled, hash), sensors): ((&SettledScene, String), Vec<SensorReport>)| {
@@ -59,35 +76,42 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
     scenes.iter().zip(hashes).zip(sensors).map(report).collect()
 }
 
-/// Reports of the sensors for each scene.
+/// Reports of the sensors for each scene, in document order.
 fn sensors_by_scene(
-    sensors: Vec<SensorReport>,
+    mut shared: Vec<SharedReports>,
     scenes: &[SettledScene],
-    common: &CommonResults<'_>,
+    world: &World,
 ) -> Vec<Vec<SensorReport>> {
     // Images are large.
     if scenes.len() == 1 {
-        return vec![sensors];
+        return shared.drain(..).map(|shared| shared.sensors).collect();
     }
+    let names: Vec<String> = sensors::in_order(world).into_iter().map(|one| one.name).collect();
     let of_scene = |(index, settled): (usize, &SettledScene)| {
-        let sensors = sensors.iter();
-        sensors.map(|sensor| of_scene(sensor, index, common, &settled.context)).collect()
+        let own = |name: &String| {
+            let of_index = shared.iter().filter(|shared| shared.scenes.contains(&index));
+            let mut reports = of_index
+                .flat_map(|shared| shared.sensors.iter().map(move |report| (shared, report)));
+            let (shared, report) = reports.find(|(_, report)| report.name == *name)?;
+            Some(of_scene(report, index - shared.scenes.start, &shared.context, &settled.context))
+        };
+        names.iter().filter_map(own).collect()
     };
     scenes.par_iter().enumerate().map(of_scene).collect()
 }
 
-/// Report of one scene from that of all.
+/// Report of one scene from that of all that share it.
 fn of_scene(
     report: &SensorReport,
     scene: usize,
-    common: &CommonResults<'_>,
+    shared: &Context,
     context: &Context,
 ) -> SensorReport {
-    let scenes = common.context.scenes;
+    let scenes = shared.scenes;
     let product = |product: &Product| {
         let product = product.of_scene(scene, scenes);
         // Some scenes may have light of the sky, and others none.
-        match product.name.strip_prefix(common.context.factor()) {
+        match product.name.strip_prefix(shared.factor()) {
             Some(kind) => Product { name: format!("{}{kind}", context.factor()), ..product },
             None => product,
         }
@@ -120,9 +144,9 @@ fn common_warnings(common: &CommonResults<'_>) -> Vec<String> {
 const BALANCE: f64 = 1e-9;
 
 /// Warnings about sensors whose energy balance does not close.
-fn unbalanced(reports: &[SensorReport]) -> impl Iterator<Item = String> {
+fn unbalanced(shared: &[SharedReports]) -> impl Iterator<Item = String> {
     let off = |report: &&SensorReport| report.energy_imbalance.is_some_and(|off| off > BALANCE);
-    reports.iter().filter(off).map(|report| {
+    shared.iter().flat_map(|shared| &shared.sensors).filter(off).map(|report| {
         let off = report.energy_imbalance.unwrap_or(f64::NAN);
         format!(
             "sensors.{}: {off:.1e} of the energy is not accounted for: this is a bug of sunfleck",

@@ -43,26 +43,37 @@ pub(super) fn in_order(world: &World) -> Vec<SensorEntity> {
     sensors.into_iter().map(owned).collect()
 }
 
-/// Measures all sensors in document order; returns a warning if the checkpoint could not be saved. Reads [`ResolvedSensor`];
-/// writes [`SensorReport`].
+/// Measures sensors in document order; returns a warning if the checkpoint could not be saved. Writes [`SensorReport`].
 pub(super) fn measure_sensors(
     world: &mut World,
+    sensors: &[SensorEntity],
     measured: MeasureContext<'_>,
     options: &Options,
     store: &mut CheckpointStore,
     progress: &dyn Progress,
 ) -> Result<Option<String>, Failure> {
-    let sensors = in_order(world);
-    check(&sensors, measured, options, store)?;
-    for one in &sensors {
+    check(sensors, measured, options, store)?;
+    for one in sensors {
         // Whatever is absent already need not be removed.
         drop(world.remove_one::<SensorReport>(one.entity));
     }
-    for one in &sensors {
+    for one in sensors {
         let report = measure(one, measured, options, store, progress)?;
         world.insert_one(one.entity, report).expect("sensors exist");
     }
     store.finish()
+}
+
+/// Returns whether light is traced on its way from the sun for some of what a sensor measures.
+pub(super) fn is_traced_from_sun(sensor: &ResolvedSensor) -> bool {
+    let is_from_sun = |system| matches!(system, System::Forward | System::Analog);
+    match sensor {
+        ResolvedSensor::Image(image) => is_from_sun(image.system),
+        ResolvedSensor::Directions(directions) => [LightSource::Reflected, LightSource::Emitted]
+            .into_iter()
+            .any(|source| is_from_sun(system_of(directions, source))),
+        ResolvedSensor::Photons(_) => true,
+    }
 }
 
 /// Moves the reports of all sensors out of the world, in document order.

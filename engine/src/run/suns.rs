@@ -8,13 +8,13 @@ use crate::document::{Scene, Sensor, Spectrum, Sun};
 /// more suns a path's own rays cost next to nothing anyway.
 const MOST_SUNS: usize = 64;
 
-/// The sun as far as it decides the paths of a scene: where they start at sensors, its position does not.
+/// The sun as far as it decides the paths of a scene: where some start at sensors, its position does not.
 pub(super) fn sun_of_paths(scene: &Scene) -> Option<Sun> {
     let sun = Sun { irradiance: Spectrum::Constant(1.0), ..scene.sun.clone()? };
     let sensors = || scene.sensors.values();
     let azimuth = sensors().any(Sensor::follows_sun).then(|| sun.known_azimuth_deg()).flatten();
     let is_up = sun.angles_deg().is_some();
-    if is_up && sensors().any(Sensor::is_traced_from_sun) {
+    if is_up && sensors().all(Sensor::is_traced_from_sun) {
         return Some(sun);
     }
     let azimuth_deg = azimuth.unwrap_or(0.0);

@@ -25,7 +25,7 @@ use crate::products::{Day, Night, Report, SweepPoint};
 /// Random streams have the seed and the sensor's path as keys, so each point is traced with the same
 /// numbers: differences between points have far less noise than the points themselves. Points that differ in
 /// spectra, temperatures or irradiance alone are traced on the same paths, as if their bands were those of one scene, and
-/// so are those that differ in the sun's position if all paths start at sensors.
+/// so are those that differ in the sun's position if some paths start at sensors.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
 pub struct SweepRun {
     file: PathBuf,
@@ -248,7 +248,7 @@ fn geometry_of(scene: &Scene) -> Scene {
     }
 }
 
-/// Scene without values by band, and without the sun's position if no path starts there: points that are equal in it
+/// Scene without values by band, and without the sun's position if paths start at sensors: points that are equal in it
 /// are traced on the same paths. `None` for a point that is
 /// traced alone: because a sensor has a limit of time, or photons that carry one band each.
 fn paths_of(scene: &Scene) -> Option<Scene> {
