@@ -64,6 +64,7 @@ class Embree:
         write_scene(Scene.read(folder), folder / "embree.bin")
         times = {name: min(self.run(name, 1, seed).seconds for seed in (1, 2)) for name in INSTRUCTION_SETS}
         self.instructions = min(times, key=times.__getitem__)
+        print(f"  Embree traces with {self.instructions}")
 
     def run(self, instructions: str, samples: int, seed: int) -> Measurement:
         image = self.folder / "embree_image.bin"
