@@ -46,6 +46,7 @@ pub mod products;
 pub mod run;
 pub mod sampling;
 pub mod scattering;
+pub mod scratch;
 pub mod spawn;
 pub mod spectral;
 pub mod statistics;

@@ -58,7 +58,8 @@ fn in_band(product: &Product, band: usize) -> Vec<Estimate> {
 /// Pixels of a product in one of its bands.
 fn pixels_in_band(product: &Product, band: usize) -> Vec<Estimate> {
     let image = product.image.as_ref().expect("pixels");
-    let pairs = image.values.iter().zip(&image.standard_error);
+    let pixels = image.load().expect("pixels can be read");
+    let pairs = pixels.values.iter().zip(&pixels.standard_error);
     let in_band = pairs.skip(band).step_by(image.bands.len());
     in_band.map(|(&value, &error)| Estimate { value: value.into(), error: error.into() }).collect()
 }

@@ -33,8 +33,9 @@ fn image<'a>(report: &'a Report, sensor: &str) -> &'a Image {
 /// Middle of the light in an image: across and down, from 0 to 1; with its pixel's size.
 fn middle(image: &Image) -> ([f64; 2], f64) {
     let (mut sum, mut at) = (0.0, [0.0; 2]);
-    for (index, &value) in image.values.iter().enumerate() {
-        let value = f64::from(value.max(0.0) * image.coverage[index]);
+    let pixels = image.load().expect("pixels can be read");
+    for (index, &value) in pixels.values.iter().enumerate() {
+        let value = f64::from(value.max(0.0) * pixels.coverage[index]);
         let (column, row) = (index % image.width, index / image.width);
         sum += value;
         at[0] += value * (column as f64 + 0.5) / image.width as f64;
@@ -207,7 +208,7 @@ fn a_camera_stands_in_any_tile_of_a_periodic_scene() {
     );
     // 10 m west; the axis points 0.5 m north of it, so that it lies to the left by 0.05 of tan 5°.
     // Copies beyond lie behind it or are small: it has the brightest pixel.
-    let image = image(&report, "far");
+    let image = image(&report, "far").load().expect("pixels can be read");
     let brightness = |&index: &usize| image.values[index].max(0.0) * image.coverage[index];
     let brightest = (0..image.values.len())
         .max_by(|a, b| brightness(a).total_cmp(&brightness(b)))
@@ -244,7 +245,7 @@ fn a_fisheye_sees_an_even_sky_and_nothing_beside_its_disc() {
                 r#""up": Fisheye(size_px: (40, 32), {UP}, projection: {projection}, measure: [Radiance, Brf])"#
             ),
         );
-        let sky = image(&report, "up");
+        let sky = image(&report, "up").load().expect("pixels can be read");
         for (index, &coverage) in sky.coverage.iter().enumerate() {
             for (band, e) in [(0, 2.0), (1, 3.0)] {
                 let value = f64::from(sky.values[2 * index + band]);
@@ -314,7 +315,7 @@ fn pixels_half_beside_the_scene_are_not_mixed() {
     // Irradiance 0.5 of a sun of 1 at 60°, π L = ρ E; the share of the sky is a random choice.
     let radiance = 0.5 * 0.5 * FRAC_1_PI;
     for sensor in ["view", "map", "eye"] {
-        let image = image(&report, sensor);
+        let image = image(&report, sensor).load().expect("pixels can be read");
         let mut kinds = [0; 3];
         for (pixel, &coverage) in image.coverage.iter().enumerate() {
             let (value, error) = (image.values[pixel], f64::from(image.standard_error[pixel]));
@@ -331,7 +332,7 @@ fn pixels_half_beside_the_scene_are_not_mixed() {
         assert!(kinds.iter().all(|&count| count > 0), "{sensor} has all kinds: {kinds:?}");
     }
     // The sky of 0.4 over π is seen above the horizon.
-    let sky = image(&report, "sky");
+    let sky = image(&report, "sky").load().expect("pixels can be read");
     let top = f64::from(sky.values[15]);
     assert!((top / (0.5 * 0.4 * FRAC_1_PI) - 1.0).abs() < 1e-6, "{top}");
 }
@@ -353,8 +354,9 @@ fn an_image_may_cover_the_whole_scene_and_count_samples_by_area() {
     }
     let of = |name: &str| report.sensors.iter().find(|s| s.name == name).expect("a sensor");
     assert_eq!(of("map").samples, 50 * 40, "pixels are 8 m²");
-    assert!(image(&report, "map").coverage.iter().all(|&coverage| coverage >= 1.0));
-    let askew = &image(&report, "askew").coverage;
+    let map = image(&report, "map").load().expect("pixels can be read");
+    assert!(map.coverage.iter().all(|&coverage| coverage >= 1.0));
+    let askew = image(&report, "askew").load().expect("pixels can be read").coverage;
     let share = askew.iter().map(|&c| f64::from(c)).sum::<f64>() / askew.len() as f64;
     assert!((share - 0.5).abs() < 2e-3, "{share}");
 }

@@ -44,8 +44,10 @@ fn a_sheet_hides_half_of_the_ground_and_shades_half_of_the_rest() {
     }
     // Columns from west to east: sheet, sheet, sunlit ground, shaded ground.
     let class = product(&report, "image", "dominant_component").image.as_ref().expect("pixels");
+    let class = class.load().expect("pixels can be read");
     assert_eq!(class.values, [2.0, 2.0, 1.0, 3.0]);
     let shares = product(&report, "image", "four_components").image.as_ref().expect("pixels");
+    let shares = shares.load().expect("pixels can be read");
     assert_eq!(shares.values[..4], [0.0, 1.0, 0.0, 0.0]);
     assert_eq!(shares.values[12..], [0.0, 0.0, 1.0, 0.0]);
 }

@@ -72,8 +72,9 @@ fn gap(report: &Report, sensor: &str, name: &str) -> f64 {
     };
     assert!(parts.iter().all(|part| part.values.iter().any(|value| *value > 0.0)), "{name}");
     let pixels = |product: &Product| -> Vec<f64> {
-        let image = product.image.as_ref().map_or(&[][..], |image| &image.values);
-        image.iter().map(|&value| f64::from(value)).collect()
+        let image = product.image.iter();
+        let values = image.flat_map(|image| image.load().expect("pixels can be read").values);
+        values.map(f64::from).collect()
     };
     // Pixels are reported as f32.
     assert!(whole.image.is_none() || sums(&pixels) < 3e-7, "{sensor}, {name}");

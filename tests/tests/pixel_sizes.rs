@@ -56,7 +56,9 @@ fn whole_pixels_of_a_side_are_the_same_image_as_their_number() {
         assert_eq!(found_image.width, expected_image.width, "{by_side}");
         assert_eq!(found_image.height, expected_image.height, "{by_side}");
         let close = |(a, b): (&f32, &f32)| (a - b).abs() < 1e-6;
-        assert!(found_image.values.iter().zip(&expected_image.values).all(close), "{by_side}");
+        let [found_values, expected_values] = [found_image, expected_image]
+            .map(|image| image.load().expect("pixels can be read").values);
+        assert!(found_values.iter().zip(&expected_values).all(close), "{by_side}");
         assert!(grown(&found).is_empty(), "{:?}", found.notes);
     }
 }
@@ -91,7 +93,8 @@ fn a_footprint_grows_to_whole_pixels_around_its_middle() {
 fn what_grew_over_the_edge_of_an_isolated_ground_has_no_data_there() {
     let report = traced("Isolated", "pixel_m: 0.7, cover: WholeScene", &Options::default());
     let report = report.expect("an image");
-    let coverage: f64 = image(&report).coverage.iter().map(|&part| f64::from(part)).sum();
+    let coverage = image(&report).load().expect("pixels can be read").coverage;
+    let coverage: f64 = coverage.iter().map(|&part| f64::from(part)).sum();
     let expected = 240.0 / (0.7 * 0.7);
     assert!((coverage / expected - 1.0).abs() < 0.03, "{coverage} of {expected} pixels");
 }

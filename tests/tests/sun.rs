@@ -111,6 +111,7 @@ fn a_disc_casts_the_penumbra_of_an_edge() {
         .measure();
     let image = product(&report, "photons", "downwelling_terrain").image.as_ref().expect("a map");
     assert_eq!((image.width, image.height), (100, 100));
+    let values = image.load().expect("pixels can be read").values;
     // A point of the disc at sin θ shifts the shadow by h tan θ: to 1e-3 of the width the same.
     let width = 4.0 * 2_f64.to_radians().tan();
     let lit = |x: f64| {
@@ -119,7 +120,7 @@ fn a_disc_casts_the_penumbra_of_an_edge() {
     };
     let mut inside = 0;
     for column in 0..image.width {
-        let rows = (0..image.height).map(|row| f64::from(image.values[row * 100 + column]));
+        let rows = (0..image.height).map(|row| f64::from(values[row * 100 + column]));
         let rows: Vec<f64> = rows.collect();
         let mean = rows.iter().sum::<f64>() / 100.0;
         let variance = rows.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / 99.0;

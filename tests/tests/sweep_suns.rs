@@ -60,7 +60,8 @@ fn lambertian_faces_have_the_reflectance_of_the_incidence_of_each_sun() {
             let single = if slope > 0.0 { "brf_co_sgl" } else { "brf_uc" };
             for (sensor, name) in [("image", "brf"), ("first", single), ("plain", "brf")] {
                 let brf = product(report, sensor, name);
-                let pixels = &brf.image.as_ref().expect("pixels").values;
+                let image = brf.image.as_ref().expect("pixels");
+                let pixels = image.load().expect("pixels can be read").values;
                 assert!(pixels.iter().all(|&pixel| near(pixel.into(), expected)), "{brf:?}");
             }
             let radiance = product(report, "image", "radiance").values[0];
@@ -96,6 +97,7 @@ fn entries(report: &Report) -> Vec<(String, Vec<Estimate>)> {
         let mut all: Vec<Estimate> =
             values.map(|(&value, &error)| Estimate { value, error }).collect();
         if let Some(image) = &product.image {
+            let image = image.load().expect("pixels can be read");
             let pixels = image.values.iter().zip(&image.standard_error);
             all.extend(pixels.map(|(&v, &e)| Estimate { value: v.into(), error: e.into() }));
         }

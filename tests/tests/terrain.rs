@@ -76,7 +76,7 @@ fn a_slope_is_lit_by_the_cosine_of_its_own_angle() {
     let cosine = sun.cos() * slope.cos() + sun.sin() * slope.sin() * relative.cos();
     let expected = 0.2 * cosine / sun.cos();
     let brf = product(&report, "image", "brf").image.as_ref().expect("an image");
-    for value in &brf.values {
+    for value in &brf.load().expect("pixels can be read").values {
         assert!((f64::from(*value) / expected - 1.0).abs() < 1e-5, "{value} for {expected}");
     }
     let absorbed = Estimate::of(product(&report, "photons", "fapar_material"), 0);
@@ -149,7 +149,7 @@ fn a_land_cover_gives_each_cell_its_material() {
     let text = scene(&terrain(r#"{ "1": "soil", "4": "snow" }"#), "Isolated", image);
     let report = run(path, &text);
     let brf = product(&report, "image", "brf").image.as_ref().expect("an image");
-    for (pixel, value) in brf.values.iter().enumerate() {
+    for (pixel, value) in brf.load().expect("pixels can be read").values.iter().enumerate() {
         let (column, row) = (pixel % 10, pixel / 10);
         let expected = if column < 3 || row < 3 { 0.2 } else { 1.0 };
         assert!((f64::from(*value) / expected - 1.0).abs() < 1e-5, "{column}, {row}: {value}");

@@ -57,6 +57,7 @@ fn an_isothermal_scene_looks_black_whatever_its_emissivity() {
     let image = product(&report, "image", "brightness_temperature");
     let pixels = image.image.as_ref().expect("pixels");
     assert_eq!(pixels.bands, ["tir", "line"]);
+    let pixels = pixels.load().expect("pixels can be read");
     assert_eq!(pixels.values.len(), 32);
     for (kelvin, error) in pixels.values.iter().zip(&pixels.standard_error) {
         // 32 pixels of 32 randomisations each: one in 1000 such images has |t| > 4.7.
@@ -123,6 +124,7 @@ fn sunlit_and_shaded_ground_have_their_own_temperatures() {
     let image = product(&report, "image", "radiance").image.as_ref().expect("pixels");
     let kelvin =
         product(&report, "image", "brightness_temperature").image.as_ref().expect("pixels");
+    let [image, kelvin] = [image, kelvin].map(|image| image.load().expect("pixels can be read"));
     // The screen is black: its upper side is sunlit wherever it is seen.
     for column in 0..2 {
         assert!((kelvin.values[column] - 310.0).abs() < 1e-3, "{:?}", kelvin.values);
@@ -264,6 +266,7 @@ fn orders_beside_emission_leave_the_radiance_of_pixels_as_it_is() {
         .measure();
     let truth = [0.7 * planck(4_000.0, 300.0) + 0.3 * 0.01 * 0.5 / PI, 0.1 * 0.5 / PI];
     let image = product(&report, "image", "radiance").image.as_ref().expect("pixels");
+    let image = image.load().expect("pixels can be read");
     assert_eq!(image.values.len(), 12);
     for (index, value) in image.values.iter().enumerate() {
         let ratio = f64::from(*value) / truth[index % 2];

@@ -38,6 +38,7 @@ fn every_public_tree_stands_in_its_picture() {
             let text = scene(&file, reader, unit_m, highest);
             let report = measure(&text, Path::new("/"), &Options::default());
             let image = product(&report, "view", "brf").image.as_ref().expect("an image");
+            let image = image.load().expect("pixels can be read");
             let (ground, seen) = (0.5, image.values.len());
             let other = image.values.iter().filter(|&&value| (value - ground).abs() > 0.02).count();
             let share = other as f64 / seen as f64;

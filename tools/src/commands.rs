@@ -9,6 +9,7 @@ use anyhow::{Context as _, bail};
 use sunfleck::output::{PointTables, Results, SweepTable, Written};
 use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::run::Partition;
+use sunfleck::scratch::ScratchSpace;
 use sunfleck::{document, output, run};
 
 use crate::arguments::{
@@ -105,6 +106,7 @@ fn merge(arguments: &Merge) -> anyhow::Result<()> {
         document: arguments.scene.options(),
         quality: arguments.quality,
         unite: arguments.files.clone(),
+        scratch: ScratchSpace::within(&arguments.folder()),
         ..run::Options::default()
     };
     results(&arguments.scene, &options, &arguments.out, &arguments.folder())
@@ -249,6 +251,8 @@ fn run_options(arguments: &Run) -> run::Options {
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
         memory: arguments.memory,
+        // Beside the results: a folder for temporary files may be in memory.
+        scratch: ScratchSpace::within(&arguments.folder("")),
         sensors: arguments.sensors.clone(),
         ..run::Options::default()
     }

@@ -348,7 +348,8 @@ fn a_full_disk_leaves_the_results_that_were_there() {
         assert_eq!(out.status.code(), Some(1), "{out:?}");
         let text = String::from_utf8(out.stderr).unwrap();
         assert!(
-            text.starts_with(&format!("error: cannot write {folder}/img_brf.exr: File too large")),
+            text.starts_with(&format!("error: cannot write {folder}/img_brf."))
+                && text.contains(": File too large"),
             "{text}"
         );
         assert_eq!(place.names(""), ["big.ron", "long.ron", "mid.ron", "o"]);

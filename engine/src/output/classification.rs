@@ -1,8 +1,11 @@
 //! Classes as ENVI classification files: bytes, with names and colours in the header.
 
 use std::fmt::Write as _;
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, Read as _, Seek as _, SeekFrom};
+use std::ops::Range;
 
+use super::band_rows::BandRows;
 use crate::products::{Class, Image, Rendering};
 
 /// The classes of an image, if it holds numbers of classes.
@@ -14,13 +17,23 @@ pub(super) fn classes_of(image: &Image) -> Option<&[Class]> {
     }
 }
 
-/// Writes the number of each pixel's class, 0 where it has none.
-pub(super) fn write_pixels(image: &Image, file: &mut impl Write) -> io::Result<()> {
+/// The number of each pixel's class, 0 where it has none.
+pub(super) fn bytes(block: &BandRows) -> Vec<u8> {
     let number = |value: &f32| if value.is_finite() { value.clamp(0.0, 255.0) as u8 } else { 0 };
-    for row in image.values.chunks_exact(image.width) {
-        file.write_all(&row.iter().map(number).collect::<Vec<u8>>())?;
-    }
-    Ok(())
+    block.values(0).iter().map(number).collect()
+}
+
+/// Reads the numbers of rows back; NaN where a pixel has no class.
+pub(super) fn read_rows(
+    image: &Image,
+    rows: Range<usize>,
+    mut file: &File,
+) -> io::Result<Vec<f32>> {
+    let mut bytes = vec![0; rows.len() * image.width];
+    file.seek(SeekFrom::Start((rows.start * image.width) as u64))?;
+    file.read_exact(&mut bytes)?;
+    let number = |byte| if byte == 0 { f32::NAN } else { f32::from(byte) };
+    Ok(bytes.into_iter().map(number).collect())
 }
 
 /// Lines of a header that name the classes and their colours.

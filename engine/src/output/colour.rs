@@ -1,6 +1,10 @@
 //! Colours: spectra to what a person would see.
 
-use crate::products::{Channels, Image};
+use std::io;
+
+use super::picture_input::PictureInput;
+use crate::products::Channels;
+use crate::statistics::values_at_ranks;
 
 /// Share of the pixels that an automatic exposure leaves below full brightness.
 const BELOW: f64 = 0.99;
@@ -35,50 +39,56 @@ impl Mixture {
         Self { weights }
     }
 
-    fn linear(&self, pixel: &[f32]) -> [f64; 3] {
+    /// Bands that take part; others may be without data.
+    pub(super) fn bands(&self) -> Vec<usize> {
+        let counts = |band: &usize| self.weights[*band].iter().any(|&one| one.abs() > 0.0);
+        (0..self.weights.len()).filter(counts).collect()
+    }
+
+    /// Linear sRGB of a pixel that holds the values of its bands.
+    fn linear(&self, pixel: impl Iterator<Item = (usize, f32)>) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (weight, &value) in self.weights.iter().zip(pixel) {
-            // Bands that take no part may be without data.
-            if weight.iter().any(|&one| one.abs() > 0.0) {
-                for (sum, weight) in sum.iter_mut().zip(weight) {
-                    *sum += weight * f64::from(value);
-                }
+        for (band, value) in pixel {
+            for (sum, weight) in sum.iter_mut().zip(self.weights[band]) {
+                *sum += weight * f64::from(value);
             }
         }
         sum
     }
 
     /// The gain at which nearly all pixels are below full brightness.
-    pub(super) fn automatic(&self, image: &Image) -> f64 {
-        let mut seen: Vec<f64> = pixels(image)
-            .map(|(pixel, _)| self.linear(pixel).into_iter().fold(0.0, f64::max))
-            .filter(|value| value.is_finite() && *value > 0.0)
-            .collect();
-        if seen.is_empty() {
-            return 1.0;
-        }
-        let index = (BELOW * (seen.len() - 1) as f64).round() as usize;
-        seen.select_nth_unstable_by(index, f64::total_cmp).1.recip()
+    pub(super) fn automatic(&self, input: &PictureInput<'_>) -> io::Result<f64> {
+        let bands = self.bands();
+        let rank = |count| [(BELOW * (count - 1) as f64).round() as u64];
+        let brightest = values_at_ranks(rank, |each| {
+            for rows in input.image.blocks() {
+                let count = rows.len() * input.image.width;
+                let values: Vec<Vec<f32>> = bands
+                    .iter()
+                    .map(|&band| input.band(band, rows.clone()))
+                    .collect::<io::Result<_>>()?;
+                let pixel = |at: usize| bands.iter().zip(&values).map(move |(&b, v)| (b, v[at]));
+                (0..count)
+                    .map(|at| self.linear(pixel(at)).into_iter().fold(0.0, f64::max))
+                    .filter(|value| value.is_finite() && *value > 0.0)
+                    .for_each(&mut *each);
+            }
+            io::Result::Ok(())
+        })?;
+        Ok(brightest.map_or(1.0, |[value]| value.recip()))
     }
 
-    /// Red, green, blue and opacity of all pixels, shape `[rows, columns, 4]`.
-    pub(super) fn rgba(&self, image: &Image, gain: f64) -> Vec<u8> {
+    /// Red, green and blue of a pixel; `None` without data.
+    pub(super) fn rgb(
+        &self,
+        pixel: impl Iterator<Item = (usize, f32)>,
+        gain: f64,
+    ) -> Option<[u8; 3]> {
         let byte = |fraction: f64| (255.0 * fraction.clamp(0.0, 1.0)).round() as u8;
-        pixels(image)
-            .flat_map(|(pixel, coverage)| {
-                let linear = self.linear(pixel);
-                if !linear.iter().all(|value| value.is_finite()) {
-                    return [0; 4];
-                }
-                let [r, g, b] = linear.map(|value| byte(transfer(gain * value)));
-                [r, g, b, byte(coverage.into())]
-            })
-            .collect()
+        let linear = self.linear(pixel);
+        let is_known = linear.iter().all(|value| value.is_finite());
+        is_known.then(|| linear.map(|value| byte(transfer(gain * value))))
     }
-}
-
-fn pixels(image: &Image) -> impl Iterator<Item = (&[f32], f32)> {
-    image.values.chunks_exact(image.bands.len().max(1)).zip(image.coverage.iter().copied())
 }
 
 /// Linear sRGB of a reflectance factor of 1 in each band, lit by D65; all bands together are white.
@@ -178,24 +188,18 @@ fn d65(wavelength: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::products::Rendering;
+    use crate::output::picture_input::tests::{image, input};
 
     fn wavelengths() -> Vec<f64> {
         (0..21).map(|step| 380.0 + 20.0 * f64::from(step)).collect()
     }
 
-    fn image(values: Vec<f32>, bands: usize) -> Image {
-        let pixels = values.len() / bands;
-        Image {
-            width: pixels,
-            height: 1,
-            bands: vec![String::new(); bands],
-            standard_error: vec![0.0; values.len()],
-            values,
-            coverage: vec![1.0; pixels],
-            rendering: Rendering::Quicklook,
-            georeference: None,
-        }
+    fn linear(mixture: &Mixture, pixel: &[f32]) -> [f64; 3] {
+        mixture.linear(mixture.bands().into_iter().map(|band| (band, pixel[band])))
+    }
+
+    fn rgb(mixture: &Mixture, pixel: &[f32], gain: f64) -> Option<[u8; 3]> {
+        mixture.rgb(mixture.bands().into_iter().map(|band| (band, pixel[band])), gain)
     }
 
     #[test]
@@ -219,12 +223,14 @@ mod tests {
         let white: Vec<f64> = wavelengths.iter().map(|w| w / 500.0).collect();
         let mixture = Mixture::new(Channels::Cie, &wavelengths, &white);
         let full: Vec<f32> = white.iter().map(|&w| w as f32).collect();
-        let linear = mixture.linear(&full);
+        let linear = linear(&mixture, &full);
         assert!(linear.iter().all(|value| (value - 1.0).abs() < 1e-4), "{linear:?}");
         let half: Vec<f32> = full.iter().map(|w| 0.5 * w).collect();
-        assert_eq!(mixture.rgba(&image(half.clone(), 21), 1.0), [188, 188, 188, 255]);
-        assert_eq!(mixture.rgba(&image(half.clone(), 21), 1_f64.exp2()), [255, 255, 255, 255]);
-        assert!((mixture.automatic(&image(half, 21)) - 2.0).abs() < 1e-3);
+        assert_eq!(rgb(&mixture, &half, 1.0), Some([188; 3]));
+        assert_eq!(rgb(&mixture, &half, 1_f64.exp2()), Some([255; 3]));
+        let image = image(&[""; 21], half);
+        let gain = mixture.automatic(&input(&image, &wavelengths)).expect("pixels");
+        assert!((gain - 2.0).abs() < 1e-3);
     }
 
     #[test]
@@ -234,7 +240,7 @@ mod tests {
         let strongest = |nm: f64| {
             let pixel: Vec<f32> =
                 wavelengths.iter().map(|w| f32::from(u8::from((w - nm).abs() < 1.0))).collect();
-            let linear = mixture.linear(&pixel);
+            let linear = linear(&mixture, &pixel);
             (0..3).max_by(|&a, &b| linear[a].total_cmp(&linear[b]))
         };
         assert_eq!([440.0, 540.0, 640.0].map(strongest), [Some(2), Some(1), Some(0)]);
@@ -243,11 +249,10 @@ mod tests {
     #[test]
     fn chosen_bands_are_the_channels_and_no_data_is_transparent() {
         let mixture = Mixture::new(Channels::Bands([2, 0, 1]), &[0.0; 4], &[1.0, 2.0, 4.0, 0.0]);
-        let linear = mixture.linear(&[0.5, 0.5, 1.0, f32::NAN]);
+        let linear = linear(&mixture, &[0.5, 0.5, 1.0, f32::NAN]);
         let off = linear.iter().zip([0.25, 0.5, 0.25]).map(|(found, known)| (found - known).abs());
         assert!(off.sum::<f64>() < 1e-12, "{linear:?}");
-        let picture =
-            mixture.rgba(&image(vec![1.0, 0.0, 4.0, 0.0, f32::NAN, 0.0, 0.0, 0.0], 4), 1.0);
-        assert_eq!(picture, [255, 255, 0, 255, 0, 0, 0, 0]);
+        assert_eq!(rgb(&mixture, &[1.0, 0.0, 4.0, 0.0], 1.0), Some([255, 255, 0]));
+        assert_eq!(rgb(&mixture, &[f32::NAN, 0.0, 0.0, 0.0], 1.0), None);
     }
 }

@@ -1,10 +1,13 @@
 //! Colour composites: bands of an image as red, green and blue, stretched between percentiles.
 
+use std::io;
+
 use super::legend::{Bar, Entries, Legend};
-use crate::products::Image;
+use super::picture_input::PictureInput;
+use crate::statistics::values_at_ranks;
 
 /// Percentiles that become black and full brightness, as fractions.
-const STRETCH: (f64, f64) = (0.01, 0.99);
+const STRETCH: [f64; 2] = [0.01, 0.99];
 /// Minimum full brightness of a false colour, relative to that of the brightest.
 const FAINTEST: f32 = 0.5;
 /// Wavelengths that red, green and blue stand for where the image reaches the near infrared, nm:
@@ -51,32 +54,28 @@ impl Composite {
         }
     }
 
-    pub(super) fn stretches(&self, image: &Image) -> [Stretch; 3] {
-        let of = |band: Option<usize>| {
-            band.map_or(Stretch::NONE, |band| Stretch::between_percentiles(image, band))
-        };
-        let [r, g, b] = self.bands.map(of);
+    pub(super) fn stretches(&self, input: &PictureInput<'_>) -> io::Result<[Stretch; 3]> {
+        let [r, g, b] = self.bands.map(|band| {
+            band.map_or(Ok(Stretch::NONE), |band| Stretch::between_percentiles(input, band))
+        });
+        let [r, g, b] = [r?, g?, b?];
         let shown = [r, g, b].into_iter().zip(self.bands).filter(|(_, band)| band.is_some());
         let shown: Vec<Stretch> = shown.map(|(stretch, _)| stretch).collect();
         if shown.is_empty() {
-            return [r, g, b];
+            return Ok([r, g, b]);
         }
         let low = shown.iter().map(|one| one.low).fold(f32::INFINITY, f32::min);
         let high = shown.iter().map(|one| one.high).fold(f32::NEG_INFINITY, f32::max);
         if self.is_natural {
-            return [Stretch { low, high }; 3];
+            return Ok([Stretch { low, high }; 3]);
         }
         // A dim band stretched in full would drown the others: bare soil in cyan.
-        [r, g, b].map(|one| Stretch { high: one.high.max(FAINTEST * high), ..one })
+        Ok([r, g, b].map(|one| Stretch { high: one.high.max(FAINTEST * high), ..one }))
     }
 
     /// A bar for each band that is shown, in the colours that it has where the others are dark.
-    pub(super) fn legend(
-        &self,
-        image: &Image,
-        wavelengths: &[f64],
-        stretches: &[Stretch; 3],
-    ) -> Legend {
+    pub(super) fn legend(&self, input: &PictureInput<'_>, stretches: &[Stretch; 3]) -> Legend {
+        let PictureInput { image, wavelengths, lit, .. } = input;
         let mut bars: Vec<Bar> = Vec::new();
         let mut shown: Vec<usize> = Vec::new();
         for (channel, (band, stretch)) in self.bands.into_iter().zip(stretches).enumerate() {
@@ -92,14 +91,8 @@ impl Composite {
             bars.push(Bar { name, wavelength, channels, low: stretch.low, high: stretch.high });
             shown.push(band);
         }
-        let has_data = image.values.iter().any(|value| value.is_finite());
-        let is_dark = |(band, name): (usize, &String)| {
-            let mut values = image.values.iter().skip(band).step_by(image.bands.len());
-            // Pixels without data are neither dark nor lit.
-            let is_dark = has_data && values.all(|value| !value.is_finite() || *value == 0.0);
-            is_dark.then(|| name.clone())
-        };
-        let dark = image.bands.iter().enumerate().filter_map(is_dark).collect();
+        let dark = image.bands.iter().zip(lit.dark()).filter(|(_, is_dark)| *is_dark);
+        let dark = dark.map(|(name, _)| name.clone()).collect();
         Legend { entries: Entries::Bars(bars), dark }
     }
 }
@@ -115,25 +108,19 @@ impl Stretch {
     /// Stretch of a channel that shows nothing.
     const NONE: Self = Self { low: 0.0, high: 1.0 };
 
-    fn between_percentiles(image: &Image, band: usize) -> Self {
-        let all = image.values.iter().skip(band).step_by(image.bands.len().max(1));
-        let mut seen: Vec<f32> = all.copied().filter(|value| value.is_finite()).collect();
-        if seen.is_empty() {
-            return Self::NONE;
-        }
-        let last = seen.len() - 1;
-        let mut percentile = |share: f64| {
-            let index = (share * last as f64).round() as usize;
-            *seen.select_nth_unstable_by(index, f32::total_cmp).1
+    fn between_percentiles(input: &PictureInput<'_>, band: usize) -> io::Result<Self> {
+        let ranks = |count| STRETCH.map(|share| (share * (count - 1) as f64).round() as u64);
+        let found = values_at_ranks(ranks, |each| input.visit_band(band, each))?;
+        let Some([low, high]) = found.map(|all| all.map(|value| value as f32)) else {
+            return Ok(Self::NONE);
         };
-        let (low, high) = (percentile(STRETCH.0), percentile(STRETCH.1));
         // A plain image is neither black nor white; differences in its last digits are no picture.
         let plain = high - low <= 1e-5 * high.abs();
-        if plain {
+        Ok(if plain {
             Self { low: 0.0, high: (2.0 * high).max(f32::MIN_POSITIVE) }
         } else {
             Self { low, high }
-        }
+        })
     }
 
     /// `value` in [0, 1].

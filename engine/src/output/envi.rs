@@ -1,14 +1,20 @@
 //! ENVI rasters: float32, band sequential, little-endian, with a text header beside the pixels.
 
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, Read as _, Seek, SeekFrom, Write};
+use std::ops::Range;
 
 use super::Source;
+use super::band_rows::BandRows;
 use super::classification::{self, classes_of};
 use crate::components::Projection;
 use crate::products::Image;
 
 /// Stands for "nothing was seen". Readers disagree on NaN; no product of light is negative.
 const NO_DATA: f32 = -9999.0;
+
+/// Size of a value, bytes.
+const VALUE: usize = size_of::<f32>();
 
 /// One of the rasters of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,40 +25,55 @@ pub(super) enum Raster {
     Errors,
 }
 
-/// Writes the pixels, shape `[bands, rows, columns]`.
-pub(super) fn write_pixels(image: &Image, raster: Raster, file: &mut impl Write) -> io::Result<()> {
+/// Writes rows of all bands to their places; the file has shape `[bands, rows, columns]`.
+pub(super) fn write_rows(
+    image: &Image,
+    raster: Raster,
+    block: &BandRows,
+    file: &mut (impl Write + Seek),
+) -> io::Result<()> {
     if raster == Raster::Values && classes_of(image).is_some() {
-        return classification::write_pixels(image, file);
+        return file.write_all(&classification::bytes(block));
     }
-    let bands = image.bands.len();
-    let values = match raster {
-        Raster::Values => &image.values,
-        Raster::Errors => &image.standard_error,
+    let mut bytes = Vec::with_capacity(block.coverage.len() * VALUE);
+    let mut write = |band: usize, values: &[f32]| {
+        bytes.clear();
+        let shown = |&value: &f32| if value.is_finite() { value } else { NO_DATA };
+        bytes.extend(values.iter().flat_map(|value| shown(value).to_le_bytes()));
+        let place = (band * image.height + block.rows.start) * image.width * VALUE;
+        file.seek(SeekFrom::Start(place as u64))?;
+        file.write_all(&bytes)
     };
-    for band in 0..bands {
-        write_band(&values[band..], bands, image.width, file)?;
+    for band in 0..block.bands() {
+        let values = match raster {
+            Raster::Values => block.values(band),
+            Raster::Errors => block.standard_error(band),
+        };
+        write(band, values)?;
     }
     match raster {
         Raster::Values => Ok(()),
-        Raster::Errors => write_band(&image.coverage, 1, image.width, file),
+        Raster::Errors => write(block.bands(), &block.coverage),
     }
 }
 
-/// Writes every `step`-th value, row by row.
-fn write_band(values: &[f32], step: usize, width: usize, file: &mut impl Write) -> io::Result<()> {
-    let mut row_bytes = Vec::with_capacity(width * size_of::<f32>());
-    for row in values.chunks(width * step) {
-        row_bytes.clear();
-        for &value in row.iter().step_by(step) {
-            let value = if value.is_finite() { value } else { NO_DATA };
-            row_bytes.extend_from_slice(&value.to_le_bytes());
-        }
-        file.write_all(&row_bytes)?;
-    }
-    Ok(())
+/// Reads rows of a band of a raster without classes back; NaN where there are no data.
+pub(super) fn read_rows(
+    image: &Image,
+    band: usize,
+    rows: Range<usize>,
+    mut file: &File,
+) -> io::Result<Vec<f32>> {
+    let mut bytes = vec![0; rows.len() * image.width * VALUE];
+    let place = (band * image.height + rows.start) * image.width * VALUE;
+    file.seek(SeekFrom::Start(place as u64))?;
+    file.read_exact(&mut bytes)?;
+    let values = bytes.as_chunks().0.iter().map(|&bytes| f32::from_le_bytes(bytes));
+    let known = |value: f32| if value.to_bits() == NO_DATA.to_bits() { f32::NAN } else { value };
+    Ok(values.map(known).collect())
 }
 
-/// Writes the header that goes with [`write_pixels`].
+/// Writes the header that goes with [`write_rows`].
 pub(super) fn write_header(
     source: &Source<'_>,
     image: &Image,

@@ -5,6 +5,7 @@
 //! or height. They take the place of older results all at once (`staging`, `swap`).
 
 mod axes;
+mod band_rows;
 mod chart;
 mod classification;
 mod colour;
@@ -14,6 +15,8 @@ mod destination;
 mod envi;
 mod exr;
 mod figure;
+mod image_files;
+mod layout;
 mod legend;
 mod lettering;
 mod lines;
@@ -21,6 +24,7 @@ mod manifest;
 mod names;
 mod partial;
 mod picture;
+mod picture_input;
 mod ply;
 mod point_tables;
 mod results;
@@ -37,8 +41,6 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use envi::Raster;
-
 use crate::products::{Image, Product, Report};
 
 pub use axes::{AxisCells, AxisColumns, ProductCells};
@@ -46,7 +48,6 @@ pub use daily::{DailySums, daily_sums};
 pub use names::folder_name;
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
-pub use picture::RgbaPicture;
 pub use point_tables::PointTables;
 pub use results::{Results, Written};
 pub use rows::{harmless, number};
@@ -74,11 +75,19 @@ pub enum OutputError {
     Write { path: PathBuf, source: io::Error },
     #[error("cannot read {} again", path.display())]
     Read { path: PathBuf, source: io::Error },
+    #[error("cannot read the pixels of {sensor}.{product} from their temporary file")]
+    Pixels { sensor: String, product: String, source: io::Error },
     #[error("{sensor}.{product} has {found} {what}, but its axes say {expected}")]
     Shape { sensor: String, product: String, what: &'static str, expected: usize, found: usize },
 }
 
 impl OutputError {
+    /// Error of reading the pixels of a product.
+    fn pixels(source: &Source<'_>) -> impl FnOnce(io::Error) -> Self {
+        let (sensor, product) = (source.sensor.to_owned(), source.product.name.clone());
+        move |source| Self::Pixels { sensor, product, source }
+    }
+
     /// Returns true if another file or folder has the name of a result.
     fn is_in_the_way(&self) -> bool {
         matches!(self, Self::Taken { .. } | Self::Foreign { .. } | Self::OfAnother { .. })
@@ -105,8 +114,8 @@ fn put_products(
     for (sensor, planned) in report.sensors.iter().zip(plan) {
         let mut size = 0;
         for (product, names) in sensor.products.iter().zip(&planned.products) {
-            check_shape(&sensor.name, product)?;
             let source = Source { report, sensor: &sensor.name, product };
+            check_shape(&source)?;
             size += match (&product.faces, &product.image) {
                 (Some(faces), _) => {
                     staging.file(&names.ply(), |file| ply::write(&source, faces, file))?
@@ -115,46 +124,12 @@ fn put_products(
                     staging.file(&names.csv(), |file| rows::write(&source, file))?
                         + put_chart(&source, &names.svg(), staging)?
                 }
-                (None, Some(image)) => put_image(&source, image, names, staging)?,
+                (None, Some(image)) => image_files::put(&source, image, names, staging)?,
             };
         }
         sizes.push(size);
     }
     Ok(sizes)
-}
-
-/// Writes the files of an image; returns their size in bytes.
-fn put_image(
-    source: &Source<'_>,
-    image: &Image,
-    names: &names::ProductNames,
-    staging: &mut staging::Staging,
-) -> Result<u64, OutputError> {
-    let mut size = staging.file(&names.exr(), |file| exr::write(source, image, file))?;
-    for (name, raster) in [(names.img(), Raster::Values), (names.errors(), Raster::Errors)] {
-        size += staging.file(&name, |file| envi::write_pixels(image, raster, file))?;
-        let header = names::header(&name);
-        size += staging.file(&header, |file| envi::write_header(source, image, raster, file))?;
-    }
-    Ok(size + put_pictures(source, image, [&names.png(), &names.bare()], staging)?)
-}
-
-/// Writes the pictures of an image with and without a legend; returns their size in bytes.
-fn put_pictures(
-    source: &Source<'_>,
-    image: &Image,
-    [framed, bare]: [&str; 2],
-    staging: &mut staging::Staging,
-) -> Result<u64, OutputError> {
-    let (picture, legend) = RgbaPicture::with_legend(image, &source.wavelengths(image));
-    let caption = figure::Caption {
-        title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
-        scene: &source.report.scene,
-        unit: &source.product.unit,
-    };
-    let figure = figure::Figure::new((&picture, &legend), image, &caption);
-    let bytes = staging.file(framed, |file| figure.encode(&source.provenance(), file))?;
-    Ok(bytes + staging.file(bare, |file| picture.encode(&source.provenance(), file))?)
 }
 
 /// Writes a chart of values by direction or height; returns its size in bytes, 0 without a chart.
@@ -208,6 +183,15 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
+    /// Returns an error unless a number is the one that the product's axes say.
+    fn equal(&self, what: &'static str, expected: usize, found: usize) -> Result<(), OutputError> {
+        if expected == found {
+            return Ok(());
+        }
+        let (sensor, product) = (self.sensor.to_owned(), self.product.name.clone());
+        Err(OutputError::Shape { sensor, product, what, expected, found })
+    }
+
     /// Keys and values that every file contains.
     fn provenance(&self) -> Vec<(&'static str, String)> {
         // A line break in a title must not end a comment line.
@@ -238,37 +222,29 @@ impl Source<'_> {
     }
 }
 
-fn check_shape(sensor: &str, product: &Product) -> Result<(), OutputError> {
-    let equal = |what, expected, found| {
-        if expected == found {
-            return Ok(());
-        }
-        let (sensor, product) = (sensor.to_owned(), product.name.clone());
-        Err(OutputError::Shape { sensor, product, what, expected, found })
-    };
+/// Checks the shape of all values but pixels, which are checked when they are read.
+fn check_shape(source: &Source<'_>) -> Result<(), OutputError> {
+    let product = source.product;
     for dimension in &product.dimensions {
         let points = length(dimension);
         for axis in dimension {
-            equal("points on parallel axes", points, axis.points.len())?;
+            source.equal("points on parallel axes", points, axis.points.len())?;
         }
     }
     let values = product.dimensions.iter().map(|dimension| length(dimension)).product();
-    equal("values", values, product.values.len())?;
-    equal("standard errors", values, product.standard_error.len())?;
+    source.equal("values", values, product.values.len())?;
+    source.equal("standard errors", values, product.standard_error.len())?;
     if let Some(faces) = &product.faces {
         let values = faces.inventory.faces().count() * faces.bands.len();
-        equal("values of faces", values, faces.values.len())?;
-        equal("standard errors of faces", values, faces.standard_error.len())?;
+        source.equal("values of faces", values, faces.values.len())?;
+        source.equal("standard errors of faces", values, faces.standard_error.len())?;
     }
-    let Some(image) = &product.image else { return Ok(()) };
-    let pixels = image.width * image.height;
-    let samples = pixels * image.bands.len();
-    if samples == 0 {
-        equal("pixels and bands at least", 1, 0)?;
+    match &product.image {
+        Some(image) if image.width * image.height * image.bands.len() == 0 => {
+            source.equal("pixels and bands at least", 1, 0)
+        }
+        _ => Ok(()),
     }
-    equal("image values", samples, image.values.len())?;
-    equal("image standard errors", samples, image.standard_error.len())?;
-    equal("image coverages", pixels, image.coverage.len())
 }
 
 /// Points along a dimension.

@@ -1,50 +1,62 @@
 //! Pictures: eight bits per channel, stretched, transparent where there are no data.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::ops::Range;
 
-use super::composite::Composite;
+use rayon::prelude::*;
+
+use super::colour::Mixture;
+use super::composite::{Composite, Stretch};
 use super::legend::Legend;
-use super::{OutputError, colour, put_file};
-use crate::products::{Channels, Class, Image, Rendering};
+use super::picture_input::PictureInput;
+use crate::products::{Channels, Class, Rendering};
 
 /// Exponent of the display.
 pub(super) const GAMMA: f32 = 2.2;
 
-/// An sRGB picture with opacity.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RgbaPicture {
-    /// Columns.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Red, green, blue and opacity, shape `[rows, columns, 4]`; row 0 is the top.
-    pub rgba: Vec<u8>,
+/// An sRGB picture with opacity, painted some rows at a time.
+#[derive(Debug)]
+pub(super) struct Picture<'a> {
+    input: &'a PictureInput<'a>,
+    colours: Colours<'a>,
+    /// Bands that are read.
+    bands: Vec<usize>,
+    pub(super) legend: Legend,
 }
 
-impl RgbaPicture {
-    /// Picture of `image` as its rendering says, with its legend.
+/// Rule by which pixels are coloured.
+#[derive(Debug)]
+enum Colours<'a> {
+    /// A place among the bands that are read and a stretch for red, green and blue; no place without data.
+    Composite([Option<usize>; 3], [Stretch; 3]),
+    Classes(&'a [Class]),
+    Shares(&'a [Class]),
+    Mixture(Mixture, f64),
+}
+
+impl<'a> Picture<'a> {
+    /// Picture as the rendering of an image says, with its legend.
     ///
-    /// - `wavelengths`: of the image's bands, nm; NaN where unknown
-    #[must_use]
-    pub(super) fn with_legend(image: &Image, wavelengths: &[f64]) -> (Self, Legend) {
-        let has_data = bands_with_data(image);
+    /// # Errors
+    /// If the pixels cannot be read.
+    pub(super) fn new(input: &'a PictureInput<'a>) -> io::Result<Self> {
+        let PictureInput { image, wavelengths, lit, .. } = input;
+        let has_data = lit.with_data();
         match &image.rendering {
-            Rendering::Quicklook => {
-                Self::composite(image, wavelengths, &Composite::new(wavelengths, &has_data))
-            }
+            Rendering::Quicklook => Self::composite(input, &Composite::new(wavelengths, &has_data)),
             Rendering::Classes(classes) => {
-                let colour = |pixel: &[f32]| class_of(pixel, classes).map(|class| class.colour);
-                (Self::painted(image, colour), Legend::classes(classes, "largest share of a pixel"))
+                let legend = Legend::classes(classes, "largest share of a pixel");
+                Ok(Self { input, colours: Colours::Classes(classes), bands: vec![0], legend })
             }
             Rendering::Shares(classes) => {
-                let colour = |pixel: &[f32]| mixed(pixel, classes);
-                (Self::painted(image, colour), Legend::classes(classes, "mixed by their shares"))
+                let (colours, bands) = (Colours::Shares(classes), (0..image.bands.len()).collect());
+                let legend = Legend::classes(classes, "mixed by their shares");
+                Ok(Self { input, colours, bands, legend })
             }
             Rendering::Colours { channels: Channels::Bands(bands), exposure: None, .. } => {
                 let bands = bands.map(|band| band.min(image.bands.len().saturating_sub(1)));
                 let bands = bands.map(|band| Some(band).filter(|band| has_data[*band]));
-                Self::composite(image, wavelengths, &Composite { bands, is_natural: true })
+                Self::composite(input, &Composite { bands, is_natural: true })
             }
             Rendering::Colours { channels, exposure, white } => {
                 let mut white = white.clone();
@@ -53,105 +65,121 @@ impl RgbaPicture {
                 {
                     *white = 0.0;
                 }
-                let mixture = colour::Mixture::new(*channels, wavelengths, &white);
-                let gain = exposure.map_or_else(|| mixture.automatic(image), f64::exp2);
-                let rgba = mixture.rgba(image, gain);
-                let picture = Self { width: image.width, height: image.height, rgba };
-                (picture, Legend::exposed(image, *channels, gain))
+                let mixture = Mixture::new(*channels, wavelengths, &white);
+                let gain = match exposure {
+                    Some(stops) => stops.exp2(),
+                    None => mixture.automatic(input)?,
+                };
+                let (bands, legend) = (mixture.bands(), Legend::exposed(image, *channels, gain));
+                Ok(Self { input, colours: Colours::Mixture(mixture, gain), bands, legend })
             }
         }
     }
 
-    /// Picture of `image` as its rendering says.
+    /// Picture of one to three bands, stretched between the 1st and 99th percentiles. Opacity is the coverage.
+    fn composite(input: &'a PictureInput<'a>, composite: &Composite) -> io::Result<Self> {
+        let stretches = composite.stretches(input)?;
+        let legend = composite.legend(input, &stretches);
+        let mut bands: Vec<usize> = composite.bands.into_iter().flatten().collect();
+        bands.sort_unstable();
+        bands.dedup();
+        let place = |band: usize| bands.iter().position(|&other| other == band);
+        let places = composite.bands.map(|band| band.and_then(place));
+        Ok(Self { input, colours: Colours::Composite(places, stretches), bands, legend })
+    }
+
+    /// Columns and rows.
+    pub(super) const fn size(&self) -> (usize, usize) {
+        (self.input.image.width, self.input.image.height)
+    }
+
+    /// Blocks of rows that it is painted in.
+    pub(super) fn blocks(&self) -> impl ExactSizeIterator<Item = Range<usize>> {
+        self.input.image.blocks()
+    }
+
+    /// Red, green, blue and opacity of some rows, shape `[rows, columns, 4]`.
     ///
-    /// - `wavelengths`: of the image's bands, nm; NaN where unknown
-    #[must_use]
-    pub fn new(image: &Image, wavelengths: &[f64]) -> Self {
-        Self::with_legend(image, wavelengths).0
+    /// # Errors
+    /// If the pixels cannot be read.
+    pub(super) fn paint(&self, rows: Range<usize>) -> io::Result<Vec<u8>> {
+        let coverage = self.input.coverage(rows.clone())?;
+        let read = self.bands.iter().map(|&band| self.input.band(band, rows.clone()));
+        let values: Vec<Vec<f32>> = read.collect::<io::Result<_>>()?;
+        let mut rgba = vec![0; 4 * coverage.len()];
+        rgba.par_chunks_exact_mut(4).zip(&coverage).enumerate().with_min_len(256).for_each(
+            |(pixel, (rgba, &coverage))| {
+                if let Some([r, g, b]) = self.colour(pixel, &values) {
+                    rgba.copy_from_slice(&[r, g, b, self.opacity(coverage)]);
+                }
+            },
+        );
+        Ok(rgba)
     }
 
-    /// Picture of one to three bands of `image` that have data, stretched between the 1st and 99th
-    /// percentiles. Opacity is the coverage.
-    ///
-    /// - `wavelengths`: of the image's bands, nm; NaN where unknown
-    #[must_use]
-    pub fn quicklook(image: &Image, wavelengths: &[f64]) -> Self {
-        let composite = Composite::new(wavelengths, &bands_with_data(image));
-        Self::composite(image, wavelengths, &composite).0
-    }
-
-    /// Colours each pixel by its values, transparent where it has no colour. Opacity is the coverage.
-    fn painted(image: &Image, colour: impl Fn(&[f32]) -> Option<[u8; 3]>) -> Self {
-        let pixels = image.values.chunks_exact(image.bands.len().max(1)).zip(&image.coverage);
-        let rgba = pixels.flat_map(|(pixel, &coverage)| match colour(pixel) {
-            Some([r, g, b]) => [r, g, b, byte(coverage)],
-            None => [0; 4],
-        });
-        Self { width: image.width, height: image.height, rgba: rgba.collect() }
-    }
-
-    fn composite(image: &Image, wavelengths: &[f64], composite: &Composite) -> (Self, Legend) {
-        let bands = image.bands.len();
-        let stretches = composite.stretches(image);
-        let legend = composite.legend(image, wavelengths, &stretches);
-        let mut rgba = Vec::with_capacity(4 * image.width * image.height);
-        let pixels = image.values.chunks_exact(bands.max(1)).zip(&image.coverage);
-        for (pixel, &coverage) in pixels {
-            let chosen = composite.bands.map(|band| band.map_or(0.0, |band| pixel[band]));
-            let is_empty = composite.bands.iter().all(Option::is_none);
-            if is_empty || !chosen.iter().all(|value| value.is_finite()) {
-                rgba.extend([0; 4]);
-                continue;
+    /// Colour of a pixel of some rows; `None` if it has none and is transparent.
+    fn colour(&self, pixel: usize, values: &[Vec<f32>]) -> Option<[u8; 3]> {
+        let mut all = values.iter().map(|values| values[pixel]);
+        match &self.colours {
+            Colours::Composite(places, stretches) => {
+                let chosen = places.map(|place| place.map_or(0.0, |at| values[at][pixel]));
+                if places.iter().all(Option::is_none) || !chosen.iter().all(|v| v.is_finite()) {
+                    return None;
+                }
+                let channel = |at: usize| byte(stretches[at].apply(chosen[at]).powf(GAMMA.recip()));
+                Some([0, 1, 2].map(channel))
             }
-            for (value, stretch) in chosen.into_iter().zip(&stretches) {
-                rgba.push(byte(stretch.apply(value).powf(GAMMA.recip())));
+            Colours::Classes(classes) => class_of(all.next(), classes).map(|class| class.colour),
+            Colours::Shares(classes) => mixed(&all.collect::<Vec<f32>>(), classes),
+            Colours::Mixture(mixture, gain) => {
+                mixture.rgb(self.bands.iter().copied().zip(all), *gain)
             }
-            rgba.push(byte(coverage));
         }
-        (Self { width: image.width, height: image.height, rgba }, legend)
     }
 
-    /// Writes a PNG with `texts` (keyword, text) as its metadata.
-    ///
-    /// # Errors
-    /// If `file` cannot be written, or `rgba` is not of the picture's shape.
-    pub fn encode(&self, texts: &[(&str, String)], file: &mut impl Write) -> io::Result<()> {
-        let (size, colour) = ((self.width, self.height), png::ColorType::Rgba);
-        encode_png(&Pixels { size, colour, bytes: &self.rgba }, texts, file)
+    fn opacity(&self, coverage: f32) -> u8 {
+        match self.colours {
+            Colours::Mixture(..) => (255.0 * f64::from(coverage).clamp(0.0, 1.0)).round() as u8,
+            _ => byte(coverage),
+        }
     }
 
-    /// Writes a PNG to `path`, whose folder is made if it does not exist.
+    /// Writes a PNG with `texts` (keyword, text) as its metadata; returns which of its pixels show something.
     ///
     /// # Errors
-    /// If the file cannot be written; then no part of it is left.
-    pub fn save(&self, path: &Path) -> Result<(), OutputError> {
-        put_file(path, |file| {
-            let mut file = io::BufWriter::new(file);
-            self.encode(&[], &mut file)?;
-            file.flush()
-        })
+    /// If `file` cannot be written, or the pixels cannot be read.
+    pub(super) fn encode(
+        &self,
+        texts: &[(&str, String)],
+        file: &mut impl Write,
+    ) -> io::Result<ShownPixels> {
+        let mut shown = ShownPixels { has_holes: false, is_blank: true };
+        encode_png(self.size(), png::ColorType::Rgba, texts, file, |out| {
+            for rows in self.blocks() {
+                let rgba = self.paint(rows)?;
+                let mut opacity = rgba.iter().skip(3).step_by(4);
+                shown.has_holes |= opacity.clone().any(|&opacity| opacity == 0);
+                shown.is_blank = shown.is_blank && opacity.all(|&opacity| opacity == 0);
+                out.write_all(&rgba)?;
+            }
+            Ok(())
+        })?;
+        Ok(shown)
     }
 }
 
-/// Returns true for each band with a value other than 0, or for all bands if there is none.
-fn bands_with_data(image: &Image) -> Vec<bool> {
-    let bands = image.bands.len();
-    let mut has_data = vec![false; bands];
-    for pixel in image.values.chunks_exact(bands.max(1)) {
-        for (has_data, value) in has_data.iter_mut().zip(pixel) {
-            *has_data |= value.is_finite() && *value != 0.0;
-        }
-        if has_data.iter().all(|has_data| *has_data) {
-            break;
-        }
-    }
-    if has_data.iter().any(|has_data| *has_data) { has_data } else { vec![true; bands] }
+/// Pixels of a picture that show something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ShownPixels {
+    /// True if a pixel shows nothing.
+    pub(super) has_holes: bool,
+    /// True if no pixel shows anything.
+    pub(super) is_blank: bool,
 }
 
 /// The class whose number a pixel holds, from 1.
-fn class_of<'a>(pixel: &[f32], classes: &'a [Class]) -> Option<&'a Class> {
-    let number = pixel.first().copied().filter(|number| *number >= 1.0)?;
-    classes.get(number as usize - 1)
+fn class_of(number: Option<f32>, classes: &[Class]) -> Option<&Class> {
+    classes.get(number.filter(|number| *number >= 1.0)? as usize - 1)
 }
 
 /// Colours of classes mixed by the shares that a pixel holds; none if it holds no share.
@@ -173,33 +201,33 @@ pub(super) fn byte(fraction: f32) -> u8 {
     (255.0 * fraction.clamp(0.0, 1.0)).round() as u8
 }
 
-/// Pixels of a PNG.
-pub(super) struct Pixels<'a> {
-    /// Columns and rows.
-    pub(super) size: (usize, usize),
-    pub(super) colour: png::ColorType,
-    /// Channels of the pixels, shape `[rows, columns, channels]`.
-    pub(super) bytes: &'a [u8],
-}
-
 /// Writes an sRGB PNG with `texts` (keyword, text) as its metadata.
+///
+/// - `paint`: writes all rows, from top to bottom
 pub(super) fn encode_png(
-    pixels: &Pixels<'_>,
+    (width, height): (usize, usize),
+    colour: png::ColorType,
     texts: &[(&str, String)],
     file: &mut impl Write,
+    paint: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
-    let mut encoder = png::Encoder::new(file, size(pixels.size.0)?, size(pixels.size.1)?);
-    encoder.set_color(pixels.colour);
+    let mut encoder = png::Encoder::new(file, size(width)?, size(height)?);
+    encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     for (keyword, text) in texts {
         encoder.add_itxt_chunk((*keyword).to_owned(), text.clone()).map_err(plain)?;
     }
     let mut writer = encoder.write_header().map_err(plain)?;
-    writer.write_image_data(pixels.bytes).map_err(plain)?;
+    let mut stream = writer.stream_writer_with_size(CHUNK).map_err(plain)?;
+    paint(&mut stream)?;
+    stream.finish().map_err(plain)?;
     writer.finish().map_err(plain)
 }
+
+/// Size of a chunk of data in a PNG, bytes.
+const CHUNK: usize = 1 << 20;
 
 fn plain(error: png::EncodingError) -> io::Error {
     match error {
@@ -210,50 +238,36 @@ fn plain(error: png::EncodingError) -> io::Error {
 
 #[cfg(test)]
 mod tests {
+    use super::super::picture_input::tests::{
+        image, image_with_coverage, in_rows_of, input, painted,
+    };
     use super::*;
+    use crate::products::Image;
 
     #[test]
     fn natural_colours_keep_their_hues_and_false_ones_gain_contrast() {
-        let image = Image {
-            width: 2,
-            height: 1,
-            bands: ["b", "g", "r"].map(str::to_owned).into(),
-            values: vec![0.0, 0.0, 0.0, 0.1, 0.4, 0.2],
-            standard_error: vec![0.0; 6],
-            coverage: vec![1.0; 2],
-            rendering: Rendering::Quicklook,
-            georeference: None,
-        };
-        let natural = RgbaPicture::quicklook(&image, &[450.0, 550.0, 650.0]);
+        let image = image(&["b", "g", "r"], vec![0.0, 0.0, 0.0, 0.1, 0.4, 0.2]);
+        let (natural, _) = painted(&image, &[450.0, 550.0, 650.0]);
         let grey = |fraction: f32| (255.0 * fraction.powf(1.0 / 2.2)).round() as u8;
-        assert_eq!(natural.rgba[4..], [grey(0.5), 255, grey(0.25), 255]);
-        let false_colour = RgbaPicture::quicklook(&image, &[550.0, 650.0, 850.0]);
-        assert_eq!(false_colour.rgba[4..], [255, 255, grey(0.5), 255]);
+        assert_eq!(natural[4..], [grey(0.5), 255, grey(0.25), 255]);
+        let (false_colour, _) = painted(&image, &[550.0, 650.0, 850.0]);
+        assert_eq!(false_colour[4..], [255, 255, grey(0.5), 255]);
     }
 
     #[test]
     fn a_band_without_light_leaves_the_picture_to_the_others() {
         let nan = f32::NAN;
-        let image = Image {
-            width: 2,
-            height: 1,
-            bands: ["red", "tir"].map(str::to_owned).into(),
-            values: vec![0.1, nan, 0.3, nan],
-            standard_error: vec![0.0; 4],
-            coverage: vec![1.0; 2],
-            rendering: Rendering::Quicklook,
-            georeference: None,
-        };
-        let (picture, legend) = RgbaPicture::with_legend(&image, &[660.0, 10_500.0]);
-        assert_eq!(picture.rgba, [0, 0, 0, 255, 255, 255, 255, 255], "grey, of the red band");
-        assert_eq!(legend.dark, ["tir"]);
+        let image = image(&["red", "tir"], vec![0.1, nan, 0.3, nan]);
+        let (rgba, dark) = painted(&image, &[660.0, 10_500.0]);
+        assert_eq!(rgba, [0, 0, 0, 255, 255, 255, 255, 255], "grey, of the red band");
+        assert_eq!(dark, ["tir"]);
         let colours = |bands| Rendering::Colours {
             channels: Channels::Bands(bands),
             exposure: Some(0.0),
             white: vec![1.0, 1.0],
         };
         let image = Image { rendering: colours([1, 0, 0]), ..image };
-        let rgba = RgbaPicture::new(&image, &[660.0, 10_500.0]).rgba;
+        let (rgba, _) = painted(&image, &[660.0, 10_500.0]);
         assert!(rgba[0] == 0 && rgba[1] > 0 && rgba[1] == rgba[2] && rgba[3] == 255, "{rgba:?}");
     }
 
@@ -262,19 +276,11 @@ mod tests {
         let class = |name: &str, colour| Class { name: name.to_owned(), colour };
         let classes = vec![class("a", [255, 0, 0]), class("b", [0, 0, 255])];
         let image = Image {
-            width: 3,
-            height: 1,
-            bands: vec!["class".to_owned()],
-            values: vec![1.0, f32::NAN, 2.0],
-            standard_error: vec![f32::NAN; 3],
-            coverage: vec![1.0, 0.0, 1.0],
             rendering: Rendering::Classes(classes.clone()),
-            georeference: None,
+            ..image(&["class"], vec![1.0, f32::NAN, 2.0])
         };
-        assert_eq!(
-            RgbaPicture::new(&image, &[]).rgba,
-            [255, 0, 0, 255, 0, 0, 0, 0, 0, 0, 255, 255]
-        );
+        let (rgba, _) = painted(&image, &[]);
+        assert_eq!(rgba, [255, 0, 0, 255, 0, 0, 0, 0, 0, 0, 255, 255]);
         let half = mixed(&[0.5, 0.5], &classes);
         assert_eq!(half, Some([byte(0.5_f32.powf(1.0 / 2.2)), 0, byte(0.5_f32.powf(1.0 / 2.2))]));
         assert_eq!(mixed(&[f32::NAN, 0.0], &classes), None);
@@ -282,36 +288,27 @@ mod tests {
 
     #[test]
     fn pixels_without_data_are_transparent_and_a_plain_image_is_grey() {
-        let image = Image {
-            width: 3,
-            height: 1,
-            bands: vec!["red".to_owned()],
-            values: vec![0.3, f32::NAN, 0.3],
-            standard_error: vec![f32::NAN; 3],
-            coverage: vec![1.0, 0.0, 0.5],
-            rendering: Rendering::Quicklook,
-            georeference: None,
-        };
-        let picture = RgbaPicture::quicklook(&image, &[660.0]);
-        assert_eq!(picture.rgba, [186, 186, 186, 255, 0, 0, 0, 0, 186, 186, 186, 128]);
+        let image = image_with_coverage(&["red"], vec![0.3, f32::NAN, 0.3], vec![1.0, 0.0, 0.5]);
+        let (rgba, _) = painted(&image, &[660.0]);
+        assert_eq!(rgba, [186, 186, 186, 255, 0, 0, 0, 0, 186, 186, 186, 128]);
     }
 
     /// An image that shows nothing of the scene is not dark.
     #[test]
     fn only_bands_with_data_are_dark() {
-        let dark = |value: f32| {
-            let image = Image {
-                width: 1,
-                height: 1,
-                bands: vec!["red".to_owned()],
-                values: vec![value],
-                standard_error: vec![f32::NAN],
-                coverage: vec![1.0],
-                rendering: Rendering::Quicklook,
-                georeference: None,
-            };
-            RgbaPicture::with_legend(&image, &[660.0]).1.dark
-        };
+        let dark = |value: f32| painted(&image(&["red"], vec![value]), &[660.0]).1;
         assert_eq!((dark(f32::NAN), dark(0.0)), (Vec::new(), vec!["red".to_owned()]));
+    }
+
+    /// A picture is the same whatever blocks of rows it is painted in.
+    #[test]
+    fn rows_of_a_picture_are_painted_alone() {
+        let one = image(&["b", "g", "r"], (0..3 * 70).map(|i| (i * 37 % 101) as f32).collect());
+        let tall = in_rows_of(2, one);
+        let input = input(&tall, &[450.0, 550.0, 650.0]);
+        let picture = Picture::new(&input).expect("a picture");
+        let whole = picture.paint(0..35).expect("rows");
+        let parts = [0..16, 16..32, 32..35].map(|rows| picture.paint(rows).expect("rows"));
+        assert_eq!(whole, parts.concat());
     }
 }

@@ -19,7 +19,7 @@ const PIXEL: u64 = 2 * 2;
 #[must_use]
 pub fn file_size(extent: ProductSize) -> u64 {
     match extent {
-        ProductSize::Image { pixels, bands } => {
+        ProductSize::Image { pixels, bands, .. } => {
             // EXR and ENVI: values, errors and coverage each; PNG.
             let pixel = 2 * 4 * (2 * bands + 1) + PIXEL;
             pixels.saturating_mul(pixel).saturating_add(HEADERS)

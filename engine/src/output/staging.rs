@@ -19,6 +19,43 @@ pub(super) struct Staging {
     names: Vec<String>,
 }
 
+/// File that is being written for a folder.
+#[derive(Debug)]
+pub(super) struct StagedFile {
+    writer: BufWriter<File>,
+    path: PathBuf,
+    /// Path that it will have.
+    shown: PathBuf,
+}
+
+impl StagedFile {
+    /// Writes to it.
+    pub(super) fn write(
+        &mut self,
+        fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let path = &self.shown;
+        fill(&mut self.writer).map_err(|source| OutputError::Write { path: path.clone(), source })
+    }
+
+    /// Ends it; returns its size in bytes.
+    pub(super) fn finish(mut self) -> Result<u64, OutputError> {
+        let mut finish = || {
+            self.writer.flush()?;
+            // Some file systems report a full disk only here.
+            self.writer.get_ref().sync_all()?;
+            Ok(self.writer.get_ref().metadata()?.len())
+        };
+        finish().map_err(|source: io::Error| OutputError::Write { path: self.shown, source })
+    }
+
+    /// File to read what it holds so far.
+    pub(super) fn reader(&mut self) -> Result<File, OutputError> {
+        let file = self.writer.flush().and_then(|()| File::open(&self.path));
+        file.map_err(|source| OutputError::Read { path: self.shown.clone(), source })
+    }
+}
+
 impl Staging {
     pub(super) fn open(folder: &Path) -> Result<Self, OutputError> {
         let mut destination = Destination::new(folder)?;
@@ -64,20 +101,23 @@ impl Staging {
         name: &str,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<u64, OutputError> {
+        let mut file = self.begin(name)?;
+        file.write(fill)?;
+        file.finish()
+    }
+
+    /// Begins a file that will be called `name`.
+    pub(super) fn begin(&mut self, name: &str) -> Result<StagedFile, OutputError> {
         let shown = self.destination.folder.join(name);
         if self.destination.target.join(name).is_dir() {
             return Err(OutputError::Taken { path: shown });
         }
         self.names.push(name.to_owned());
-        let write = || {
-            let mut writer = BufWriter::new(File::create(self.partial.path.join(name))?);
-            fill(&mut writer)?;
-            writer.flush()?;
-            // Some file systems report a full disk only here.
-            writer.get_ref().sync_all()?;
-            Ok(writer.get_ref().metadata()?.len())
-        };
-        write().map_err(|source: io::Error| OutputError::Write { path: shown, source })
+        let path = self.partial.path.join(name);
+        match File::create(&path) {
+            Ok(file) => Ok(StagedFile { writer: BufWriter::new(file), path, shown }),
+            Err(source) => Err(OutputError::Write { path: shown, source }),
+        }
     }
 
     /// Puts all files in place of the results in the folder; returns their paths in the order of

@@ -6,7 +6,7 @@ use super::context::labels;
 use super::directions::axes;
 use super::images::georeference;
 use super::leaf_area::{GapSums, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
-use super::{Class, Context, Image, Product, ProductAxis, Rendering};
+use super::{Class, Context, Image, PixelRows, Pixels, Product, ProductAxis, Rendering};
 use crate::components::{ImageMeasure, ImageSensor, View};
 use crate::extract::Stage;
 use crate::transport::{ComponentColumns, ImageOutcome, ViewsOutcome};
@@ -34,13 +34,11 @@ pub fn image_components(
     stage: &Stage,
     context: &Context,
 ) -> Vec<Product> {
-    let image = |names: &[&str], values: Vec<f32>, standard_error, rendering| Image {
+    let image = |names: &[&str], pixels: Pixels, rendering| Image {
         width: sensor.size.x as usize,
         height: sensor.size.y as usize,
         bands: names.iter().map(|&name| name.to_owned()).collect(),
-        values,
-        standard_error,
-        coverage: outcome.coverage.clone(),
+        pixels,
         rendering,
         georeference: georeference(sensor, stage, context),
     };
@@ -48,12 +46,7 @@ pub fn image_components(
     let row = columns.count();
     // A product of some columns, and the image of their pixels.
     let product_of = |name: &str, names: &[&str], columns: &[usize], rendering| Product {
-        image: Some(image(
-            names,
-            pick(&outcome.pixels, row, columns),
-            pick(&outcome.errors, row, columns),
-            rendering,
-        )),
+        image: Some(image(names, pick_pixels(&outcome.pixels, columns), rendering)),
         ..product(
             name,
             vec![vec![axis(names)]],
@@ -68,17 +61,21 @@ pub fn image_components(
             let components: Vec<usize> = of_scenes.iter().cloned().flatten().collect();
             let rendering = Rendering::Shares(classes());
             let shares = product_of("four_components", &names, &components, rendering);
-            let dominant = |row: &[f32]| -> Vec<f32> {
+            let dominant = move |row: &[f32]| -> Vec<f32> {
                 of_scenes.iter().map(|components| dominant(&row[components.clone()])).collect()
             };
-            let numbers: Vec<f32> = outcome.pixels.chunks_exact(row).flat_map(dominant).collect();
-            let errors = vec![f32::NAN; numbers.len()];
             let mean: Vec<f32> = outcome.mean.iter().map(|&share| share as f32).collect();
             let mean: Vec<f64> = dominant(&mean).into_iter().map(f64::from).collect();
-            let (name, names) = ("dominant_component", ["class"].repeat(of_scenes.len()));
+            let numbers = outcome.pixels.map(move |pixels| {
+                let values: Vec<f32> =
+                    pixels.values.chunks_exact(row).flat_map(&dominant).collect();
+                let standard_error = vec![f32::NAN; values.len()];
+                PixelRows { values, standard_error, ..pixels }
+            });
+            let (name, names) = ("dominant_component", ["class"].repeat(mean.len()));
             let unknown = vec![f64::NAN; mean.len()];
             let class = Product {
-                image: Some(image(&names, numbers, errors, Rendering::Classes(classes()))),
+                image: Some(image(&names, numbers, Rendering::Classes(classes()))),
                 ..product(name, vec![vec![axis(&names)]], &mean, &unknown)
             };
             vec![shares, class]
@@ -195,6 +192,19 @@ fn pick<T: Copy>(values: &[T], row: usize, columns: &[usize]) -> Vec<T> {
     let mut picked = Vec::with_capacity(rows.len() * columns.len());
     rows.for_each(|row| picked.extend(columns.iter().map(|&column| row[column])));
     picked
+}
+
+/// Some columns of the pixels of an image.
+fn pick_pixels(pixels: &Pixels, columns: &[usize]) -> Pixels {
+    let columns = columns.to_vec();
+    pixels.map(move |pixels| {
+        let row = pixels.columns().max(1);
+        PixelRows {
+            values: pick(&pixels.values, row, &columns),
+            standard_error: pick(&pixels.standard_error, row, &columns),
+            ..pixels
+        }
+    })
 }
 
 fn axis(names: &[&str]) -> ProductAxis {

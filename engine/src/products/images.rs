@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::context::labels;
 use super::thermal::{brightness, radiance_of_sources};
-use super::{Context, Georeference, Image, Product, Rendering, reflectance};
+use super::{Context, Georeference, Image, PixelRows, Pixels, Product, Rendering, reflectance};
 use crate::components::{ImageMeasure, ImageSensor, Optics, PictureColours};
 use crate::extract::Stage;
 use crate::transport::{ImageOutcome, ScatteringOrder, footprint};
@@ -63,38 +63,50 @@ fn total(
     emitted: &ImageOutcome,
     context: &Context,
 ) -> ImageOutcome {
-    let bands = context.bands.len();
-    let wide = |pixel: &[f32]| -> Vec<f64> { pixel.iter().map(|&value| value.into()).collect() };
-    let mut outcome = emitted.clone();
-    let has_both = |pixel: usize| {
-        let is_known = |image: &ImageOutcome| image.coverage[pixel] > 0.0;
-        is_known(emitted) && reflected.is_none_or(is_known)
-    };
-    for (index, start) in (0..emitted.pixels.len()).step_by(bands).enumerate() {
+    let whole = 0..context.bands.len();
+    let (of_emitted, of_reflected) =
+        (emitted.pixels.clone(), reflected.map(|image| image.pixels.clone()));
+    let (shared, of_whole) = (context.clone(), whole.clone());
+    let pixels = Pixels::new(move |rows| {
+        let of_emitted = of_emitted.rows(rows.clone())?;
         // The whole; its parts may stand behind it.
-        let of = |image: &ImageOutcome| {
-            let whole = index * image.mean.len()..index * image.mean.len() + bands;
-            (wide(&image.pixels[whole.clone()]), wide(&image.errors[whole]))
-        };
-        let reflected = reflected.map(of);
-        let reflected = reflected.as_ref().map(|(l, error)| (l.as_slice(), error.as_slice()));
-        let (l, error) = of(emitted);
-        let (mut l, mut error) = radiance_of_sources(reflected, (&l, &error), context);
-        if !has_both(index) {
+        let of_reflected = of_reflected.as_ref().map(|pixels| pixels.rows(rows)).transpose()?;
+        let of_reflected = of_reflected.map(|pixels| pixels.select_columns(of_whole.clone()));
+        Ok(total_of_rows(of_reflected.as_ref(), of_emitted, &shared))
+    });
+    let reflected =
+        reflected.map(|image| (&image.mean[whole.clone()], &image.mean_error[whole.clone()]));
+    let mean = (emitted.mean.as_slice(), emitted.mean_error.as_slice());
+    let (mean, mean_error) = radiance_of_sources(reflected, mean, context);
+    ImageOutcome { pixels, mean, mean_error, image_sums: emitted.image_sums.clone() }
+}
+
+/// Radiance of all sources in some rows.
+fn total_of_rows(
+    reflected: Option<&PixelRows>,
+    emitted: PixelRows,
+    context: &Context,
+) -> PixelRows {
+    let wide = |values: &[f32]| -> Vec<f64> { values.iter().map(|&value| value.into()).collect() };
+    let of = |pixels: &PixelRows| (wide(&pixels.values), wide(&pixels.standard_error));
+    let reflected_values = reflected.map(of);
+    let relative = reflected_values.as_ref().map(|(l, error)| (l.as_slice(), error.as_slice()));
+    let (l, error) = of(&emitted);
+    let (l, error) = radiance_of_sources(relative, (&l, &error), context);
+    let narrow = |values: Vec<f64>| values.iter().map(|&value| value as f32).collect();
+    let mut total = PixelRows { values: narrow(l), standard_error: narrow(error), ..emitted };
+    let bands = context.bands.len();
+    for (pixel, coverage) in total.coverage.iter_mut().enumerate() {
+        let is_known =
+            *coverage > 0.0 && reflected.is_none_or(|reflected| reflected.coverage[pixel] > 0.0);
+        if !is_known {
             // Samples of one source alone have met the scene: the sum is not known.
-            outcome.coverage[index] = 0.0;
-            l.fill(f64::NAN);
-            error.fill(f64::NAN);
-        }
-        for (band, (l, error)) in l.iter().zip(&error).enumerate() {
-            outcome.pixels[start + band] = *l as f32;
-            outcome.errors[start + band] = *error as f32;
+            *coverage = 0.0;
+            total.values[pixel * bands..(pixel + 1) * bands].fill(f32::NAN);
+            total.standard_error[pixel * bands..(pixel + 1) * bands].fill(f32::NAN);
         }
     }
-    let reflected = reflected.map(|image| (image.mean.as_slice(), image.mean_error.as_slice()));
-    let mean = (emitted.mean.as_slice(), emitted.mean_error.as_slice());
-    (outcome.mean, outcome.mean_error) = radiance_of_sources(reflected, mean, context);
-    outcome
+    total
 }
 
 /// Brightness temperature of absolute radiance.
@@ -103,15 +115,16 @@ fn brightness_image(
     total: &ImageOutcome,
     (context, georeference): (&Context, Option<Georeference>),
 ) -> Product {
-    let (bands, emitting) = (context.bands.len(), context.emitting());
-    let space = || Vec::with_capacity(total.coverage.len() * emitting.len());
-    let mut pixels = (space(), space());
-    for (pixel, errors) in total.pixels.chunks_exact(bands).zip(total.errors.chunks_exact(bands)) {
-        let wide = |values: &[f32]| -> Vec<f64> { values.iter().map(|&v| v.into()).collect() };
-        let (kelvin, error) = brightness((&wide(pixel), &wide(errors)), context);
-        pixels.0.extend(kelvin.iter().map(|&value| value as f32));
-        pixels.1.extend(error.iter().map(|&value| value as f32));
-    }
+    let emitting = context.emitting();
+    let shared = context.clone();
+    let pixels = total.pixels.map(move |total| {
+        let wide =
+            |values: &[f32]| -> Vec<f64> { values.iter().map(|&value| value.into()).collect() };
+        let (kelvin, error) =
+            brightness((&wide(&total.values), &wide(&total.standard_error)), &shared);
+        let narrow = |values: Vec<f64>| values.iter().map(|&value| value as f32).collect();
+        PixelRows { values: narrow(kelvin), standard_error: narrow(error), ..total }
+    });
     let (values, standard_error) = brightness((&total.mean, &total.mean_error), context);
     Product {
         name: "brightness_temperature".to_owned(),
@@ -123,9 +136,7 @@ fn brightness_image(
             width: sensor.size.x as usize,
             height: sensor.size.y as usize,
             bands: emitting,
-            values: pixels.0,
-            standard_error: pixels.1,
-            coverage: total.coverage.clone(),
+            pixels,
             rendering: Rendering::Quicklook,
             georeference,
         }),
@@ -140,20 +151,11 @@ fn image(
     (context, georeference): (&Context, Option<Georeference>),
     (scale, of_white): (Scale, Scale),
 ) -> Product {
-    // Of one pixel at a time: an image is large, and f64 is needed only in between.
     let bands = context.bands.len();
     let of_spectrum = spectrum * bands..(spectrum + 1) * bands;
-    let scaled = |pixels: &[f32]| -> Vec<f32> {
-        let pixels = pixels.chunks_exact(outcome.mean.len());
-        let mut scaled = Vec::with_capacity(pixels.len() * bands);
-        for pixel in pixels {
-            let pixel: Vec<f64> =
-                pixel[of_spectrum.clone()].iter().map(|&value| f64::from(value)).collect();
-            let values = scale(&pixel, &context.irradiance);
-            scaled.extend(values.into_iter().map(|value| value as f32));
-        }
-        scaled
-    };
+    let irradiance = context.irradiance.clone();
+    let pixels = outcome.pixels.select_columns(of_spectrum.clone());
+    let pixels = pixels.map(move |pixels| pixels.scaled(|values| scale(values, &irradiance)));
     // `π L / E` of a white Lambertian surface on the horizontal is 1.
     let white = of_white(&vec![FRAC_1_PI; bands], &context.irradiance);
     let rendering = match sensor.picture {
@@ -162,18 +164,16 @@ fn image(
             Rendering::Colours { channels, exposure, white }
         }
     };
-    let pixels = Image {
+    let image = Image {
         width: sensor.size.x as usize,
         height: sensor.size.y as usize,
         bands: context.bands.clone(),
-        values: scaled(&outcome.pixels),
-        standard_error: scaled(&outcome.errors),
-        coverage: outcome.coverage.clone(),
+        pixels,
         rendering,
         georeference,
     };
-    let mean = (&outcome.mean[of_spectrum.clone()], &outcome.mean_error[of_spectrum.clone()]);
-    Product { image: Some(pixels), ..context.product(name, Vec::new(), mean, scale) }
+    let mean = (&outcome.mean[of_spectrum.clone()], &outcome.mean_error[of_spectrum]);
+    Product { image: Some(image), ..context.product(name, Vec::new(), mean, scale) }
 }
 
 /// Place of a nadir image with north up; others lie askew on the ground.

@@ -5,6 +5,8 @@ mod absorbed;
 mod components;
 mod context;
 mod directions;
+mod estimates;
+mod image;
 mod images;
 mod leaf_area;
 mod of_scene;
@@ -16,18 +18,20 @@ mod sources;
 mod thermal;
 
 pub use crate::components::Channels;
+pub use crate::transport::{PixelRows, Pixels};
 pub use absorbed::{Faces, absorbed};
 pub use components::{direction_components, image_components};
 pub use context::{BandSources, Context};
 pub use directions::direction_products;
+pub use image::{Class, Georeference, Image, Rendering};
 pub use images::image_products;
 pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use product_size::{MeasuredLight, ProductSize, direction_sizes, image_sizes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    AxisPoints, Class, Day, Forecast, Georeference, Image, Night, Product, ProductAxis, Rendering,
-    Report, SceneSource, SensorReport, SweepPoint, data_size,
+    AxisPoints, Day, Forecast, Night, Product, ProductAxis, Report, SceneSource, SensorReport,
+    SweepPoint, data_size,
 };
 pub use sources::{brightness_product, combine_sources};
 pub use thermal::{brightness, radiance_of_sources};

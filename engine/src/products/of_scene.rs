@@ -67,34 +67,19 @@ impl BandsOfScene {
     }
 
     fn of_image(self, image: &Image) -> Image {
-        let Image {
-            width,
-            height,
-            bands,
-            values,
-            standard_error,
-            coverage,
-            rendering,
-            georeference,
-        } = image;
+        let columns = self.start..self.start + self.len;
         Image {
-            width: *width,
-            height: *height,
-            bands: self.of(bands),
-            values: self.of(values),
-            standard_error: self.of(standard_error),
-            coverage: coverage.clone(),
-            rendering: match rendering {
+            bands: self.of(&image.bands),
+            pixels: image.pixels.select_columns(columns),
+            rendering: match &image.rendering {
                 Rendering::Colours { channels, exposure, white } => Rendering::Colours {
                     channels: *channels,
                     exposure: *exposure,
                     white: self.of(white),
                 },
-                Rendering::Quicklook | Rendering::Classes(_) | Rendering::Shares(_) => {
-                    rendering.clone()
-                }
+                other => other.clone(),
             },
-            georeference: *georeference,
+            ..image.clone()
         }
     }
 

@@ -1,6 +1,6 @@
 use super::context::{labels, numbers};
 use super::directions::axes;
-use super::{Context, Image, Product, reflectance};
+use super::{Context, Image, PixelRows, Pixels, Product, reflectance};
 use crate::components::View;
 use crate::extract::Stage;
 use crate::statistics::Spread;
@@ -182,9 +182,12 @@ pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<
                 width: counter.size.x as usize,
                 height: counter.size.y as usize,
                 bands: context.bands.clone(),
-                values: per_pixel(&values),
-                standard_error: per_pixel(&errors),
-                coverage: vec![1.0; pixels],
+                pixels: Pixels::from(PixelRows {
+                    width: counter.size.x as usize,
+                    values: per_pixel(&values),
+                    standard_error: per_pixel(&errors),
+                    coverage: vec![1.0; pixels],
+                }),
                 rendering: super::Rendering::Quicklook,
                 georeference: Some(super::Georeference {
                     west: context.origin.0 + plane.corner.x,

@@ -1,8 +1,9 @@
 //! Size of a product before it is measured.
 
 use super::components::component_count;
+use super::image::bytes_of_block;
 use super::{Context, Product};
-use crate::components::{ImageMeasure, ImageSensor};
+use crate::components::{ImageMeasure, ImageSensor, System};
 use crate::extract::Stage;
 use crate::transport::{ComponentColumns, ScatteringOrder};
 
@@ -11,10 +12,14 @@ use crate::transport::{ComponentColumns, ScatteringOrder};
 pub enum ProductSize {
     /// Pixels of an image in each of its bands.
     Image {
+        /// Columns.
+        width: u64,
         /// Columns times rows.
         pixels: u64,
         /// Number of bands.
         bands: u64,
+        /// True if its pixels are in memory; those of paths are computed when they are written.
+        is_kept: bool,
     },
     /// Rows of a table.
     Table {
@@ -41,7 +46,7 @@ impl ProductSize {
         let count = |values: usize, bands: usize| (values / bands.max(1)) as u64;
         if let Some(image) = &product.image {
             let (pixels, bands) = ((image.width * image.height) as u64, image.bands.len() as u64);
-            return Self::Image { pixels, bands };
+            return Self::Image { width: image.width as u64, pixels, bands, is_kept: true };
         }
         if let Some(faces) = &product.faces {
             let bands = faces.bands.len();
@@ -60,7 +65,7 @@ impl ProductSize {
     #[must_use]
     pub const fn values(self) -> u64 {
         match self {
-            Self::Image { pixels: count, bands }
+            Self::Image { pixels: count, bands, .. }
             | Self::Table { rows: count, bands, .. }
             | Self::Faces { faces: count, bands } => count.saturating_mul(bands),
         }
@@ -69,27 +74,40 @@ impl ProductSize {
     /// Memory, bytes; `u64::MAX` if it is too large to count.
     #[must_use]
     pub const fn memory(self) -> u64 {
+        if let Self::Image { is_kept: false, .. } = self { 0 } else { self.bytes() }
+    }
+
+    /// Size of all values in memory, bytes; `u64::MAX` if it is too large to count.
+    #[must_use]
+    pub const fn bytes(self) -> u64 {
         match self {
             // Values and errors as f32, and the coverage.
-            Self::Image { pixels, bands } => pixels.saturating_mul(8 * bands + 4),
+            Self::Image { pixels, bands, .. } => pixels.saturating_mul(8 * bands + 4),
             Self::Table { rows, axes, bands } => rows.saturating_mul(16 * bands + 8 * axes),
             Self::Faces { faces, bands } => faces.saturating_mul(8 * bands),
         }
     }
 
-    /// Additional memory for making its files, bytes. For an image these are the rows of its EXR, or its pictures
-    /// and the values that they are stretched by.
+    /// Additional memory for making its files, bytes. An image takes that of a block of rows: as they are computed, band by
+    /// band, and compressed; and of the values among which percentiles are sought.
     #[must_use]
-    pub const fn memory_of_files(self) -> u64 {
+    pub fn memory_of_files(self) -> u64 {
         match self {
-            Self::Image { pixels, .. } => {
-                let picture = pixels.saturating_mul(12);
-                if self.memory() > picture { self.memory() } else { picture }
+            Self::Image { width, pixels, bands, .. } => {
+                let block = bytes_of_block(width, bands).min(self.bytes());
+                COPIES * block + (RANKS * pixels).min(MOST_RANKS)
             }
             Self::Table { .. } | Self::Faces { .. } => 0,
         }
     }
 }
+
+/// Copies of a block of rows while its files are written: by pixels, by bands, and as rows of an EXR and compressed.
+const COPIES: u64 = 4;
+
+/// Memory of values that are sorted for a percentile, bytes per pixel and at most.
+const RANKS: u64 = 16;
+const MOST_RANKS: u64 = 20 << 20;
 
 /// Maximum number of leaf area indices of a fisheye.
 const LEAF_AREA_INDICES: usize = 3;
@@ -114,7 +132,9 @@ pub fn image_sizes(
     context: &Context,
 ) -> Vec<ProductSize> {
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
-    let image = |bands: usize| ProductSize::Image { pixels, bands: bands as u64 };
+    let is_kept = sensor.system == System::Forward || context.scenes > 1;
+    let width = u64::from(sensor.size.x);
+    let image = |bands: usize| ProductSize::Image { width, pixels, bands: bands as u64, is_kept };
     let index = ProductSize::Table { rows: 1, axes: 0, bands: 1 };
     let of = |measure: &ImageMeasure| match measure {
         ImageMeasure::FourComponents => {

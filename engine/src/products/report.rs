@@ -1,8 +1,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::Faces;
-use crate::components::{Channels, Projection};
+use super::{Faces, Image};
+use crate::components::Projection;
 use crate::document::Param;
 
 /// One axis of a product's values.
@@ -60,128 +60,6 @@ pub struct Product {
     pub image: Option<Image>,
     /// Values of triangles and discs, where the quantity is one of theirs; `values` are the mean.
     pub faces: Option<Faces>,
-}
-
-impl SensorReport {
-    /// Bits of all values and errors, to compare runs.
-    pub fn bits(&self) -> impl Iterator<Item = u64> {
-        self.products.iter().flat_map(Product::bits)
-    }
-}
-
-impl Product {
-    /// Bits of all values and errors.
-    pub fn bits(&self) -> impl Iterator<Item = u64> {
-        let numbers = self.values.iter().chain(&self.standard_error).map(|value| value.to_bits());
-        let pixels =
-            self.image.iter().flat_map(|image| image.values.iter().chain(&image.standard_error));
-        numbers.chain(pixels.map(|value| value.to_bits().into()))
-    }
-
-    /// Values with their standard errors; those of the pixels for an image.
-    fn estimates(&self) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
-        let finite = |(value, _): &(f64, f64)| value.is_finite();
-        let Some(image) = &self.image else {
-            let pairs = self.values.iter().zip(&self.standard_error);
-            return Box::new(pairs.map(|(&v, &e)| (v, e)).filter(finite));
-        };
-        let pairs = image.values.iter().zip(&image.standard_error);
-        Box::new(pairs.map(|(&v, &e)| (f64::from(v), f64::from(e))).filter(finite))
-    }
-
-    /// Returns true if it has values, and all of them are 0.
-    #[must_use]
-    pub fn is_black(&self) -> bool {
-        let mut estimates = self.estimates().peekable();
-        estimates.peek().is_some() && estimates.all(|(value, _)| value == 0.0)
-    }
-
-    /// Returns true if it has values, and all of them are infinite: logarithms of gap fractions of 0.
-    #[must_use]
-    pub fn is_unbounded(&self) -> bool {
-        let mut estimates = self.estimates().peekable();
-        estimates.peek().is_some() && estimates.all(|(value, _)| value.is_infinite())
-    }
-
-    /// Median over all values other than 0, of an image over those of its pixels, of
-    /// `standard error / |value|`; `None` if no value has an error.
-    #[must_use]
-    pub fn median_relative_error(&self) -> Option<f64> {
-        let lit = self.estimates().filter(|(value, _)| *value != 0.0);
-        // A value without an error among others with one is of too few samples.
-        let mut errors: Vec<f64> = lit.map(|(value, error)| error / value.abs()).collect();
-        if errors.iter().all(|error| error.is_nan()) {
-            return None;
-        }
-        let middle = errors.len() / 2;
-        let known = |error: f64| if error.is_nan() { f64::INFINITY } else { error };
-        let by_size = |a: &f64, b: &f64| known(*a).total_cmp(&known(*b));
-        Some(known(*errors.select_nth_unstable_by(middle, by_size).1))
-    }
-}
-
-/// Pixels of an image; row 0 is its top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Image {
-    /// Columns.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Names of the bands.
-    pub bands: Vec<String>,
-    /// Values, shape `[rows, columns, bands]`; NaN where nothing was seen.
-    pub values: Vec<f32>,
-    /// Standard errors, same shape; NaN where there is none.
-    pub standard_error: Vec<f32>,
-    /// Fraction of each pixel that shows the scene, shape `[rows, columns]`.
-    pub coverage: Vec<f32>,
-    /// Colours of its picture.
-    pub rendering: Rendering,
-    /// Position of the pixels on the ground, for nadir images with north up.
-    pub georeference: Option<Georeference>,
-}
-
-/// Colours of the picture of an image.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Rendering {
-    /// By wavelength, stretched.
-    Quicklook,
-    /// The only band holds numbers of classes, from 1.
-    Classes(Vec<Class>),
-    /// Bands hold the shares of classes.
-    Shares(Vec<Class>),
-    /// By colours of its own.
-    Colours {
-        /// Bands or colour-matching functions of red, green and blue.
-        channels: Channels,
-        /// Stops over the exposure that shows a white surface on the horizontal as white; automatic
-        /// if absent.
-        exposure: Option<f64>,
-        /// Value of the image for that white surface, shape `[bands]`.
-        white: Vec<f64>,
-    },
-}
-
-/// A class of pixels.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Class {
-    /// Its name.
-    pub name: String,
-    /// Red, green and blue, sRGB.
-    pub colour: [u8; 3],
-}
-
-/// Place of an image on the ground, anchor included.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Georeference {
-    /// Easting of the image's west edge, m.
-    pub west: f64,
-    /// Northing of the image's north edge, m.
-    pub north: f64,
-    /// Width of a pixel, m.
-    pub pixel_width: f64,
-    /// Height of a pixel, m.
-    pub pixel_height: f64,
 }
 
 /// All that one sensor measured.

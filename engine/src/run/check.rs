@@ -1,7 +1,9 @@
 //! Checks of sensors before anything is traced.
 
+use std::io;
+
 use super::checkpoint::CheckpointStore;
-use super::convergence::is_energy_balance;
+use super::convergence::{Measurement, is_energy_balance};
 use super::cost::{self, CostEstimate};
 use super::sensors::{Begun, MOST_SAMPLES, MeasureContext, SensorEntity, begin};
 use super::{Failure, Options};
@@ -70,11 +72,16 @@ fn problems_of(
     let mut known: Option<Vec<Product>> = None;
     for (index, limits) in named {
         let at = if convergence.until.len() == 1 { path.clone() } else { path.index(index) };
-        let known = known.get_or_insert_with(|| {
-            // Without a single sample.
-            measurement.films().into_iter().for_each(|paced| paced.film.trace(0, &|_| ()));
-            measurement.products()
-        });
+        let known = match &mut known {
+            Some(known) => known,
+            None => match products_without_samples(measurement.as_mut()) {
+                Ok(products) => known.insert(products),
+                Err(error) => {
+                    problems.push(Diagnostic::error(&at, Failure::Pixels(error).to_string()));
+                    break;
+                }
+            },
+        };
         for (product, _) in limits {
             if !known.iter().any(|one| one.name == *product) {
                 let names = known.iter().map(|one| one.name.as_str());
@@ -86,6 +93,12 @@ fn problems_of(
         }
     }
     problems
+}
+
+/// Products of a measurement that has no samples yet, which tell their names.
+fn products_without_samples(measurement: &mut dyn Measurement) -> io::Result<Vec<Product>> {
+    measurement.films().into_iter().try_for_each(|paced| paced.film.trace(0, &|_| ()))?;
+    measurement.products()
 }
 
 /// Returns an error if a density makes more samples in a pixel than it may have.
@@ -123,10 +136,10 @@ pub(super) fn joined_memory(
     cost::shapes(costs)
 }
 
-/// Checks the memory of all sensors.
+/// Checks the memory of all sensors, and the disk for their temporary files.
 ///
 /// # Errors
-/// If all together take more memory than is free.
+/// If all together take more than is free.
 fn check_memory(
     sensors: &[SensorEntity],
     measured: MeasureContext<'_>,
@@ -137,8 +150,7 @@ fn check_memory(
         let Begun { mut measurement, .. } = begin(name, sensor, measured, options.quality);
         CostEstimate::new(measurement.as_mut(), store)
     };
-    match cost::check_memory(sensors, options.free_memory(), cost) {
-        Some(problem) => Err(Failure::Problems(vec![problem])),
-        None => Ok(()),
-    }
+    let problem = cost::check_memory(sensors, options.free_memory(), cost)
+        .or_else(|| cost::check_disk(sensors, &options.scratch, cost));
+    problem.map_or(Ok(()), |problem| Err(Failure::Problems(vec![problem])))
 }

@@ -71,7 +71,8 @@ fn checked(
         notes.extend(pixels::count_pixels(&mut world.world, &stage, stage.bands)?);
         let context = context(&reading.scene, &optics);
         let sensors = sensors::in_order(&world.world);
-        let measured = MeasureContext { stage: &stage, context: &context };
+        let scratch = sensors::scratch(&sensors, options);
+        let measured = MeasureContext { stage: &stage, context: &context, scratch: &scratch };
         check::check(&sensors, measured, options, &CheckpointStore::disabled())?;
         let mut warnings = world.diagnostics();
         warnings.extend(enclosed::warnings(&sensors, &stage));

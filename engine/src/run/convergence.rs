@@ -1,5 +1,7 @@
 //! Error control of a measurement: the criteria that end it, and the errors of its products.
 
+use std::io;
+
 use crate::components::StopCriterion;
 use crate::products::{Context, Product, ProductSize};
 use crate::transport::{Film, Schedule};
@@ -10,13 +12,21 @@ pub(super) trait Measurement {
     fn films(&mut self) -> Vec<PacedFilm<'_>>;
 
     /// Products of the samples so far, of the bands of all scenes.
-    fn products(&self) -> Vec<Product>;
+    ///
+    /// # Errors
+    /// If a temporary file cannot be read.
+    fn products(&self) -> io::Result<Vec<Product>>;
 
     /// Data that its products are made with.
     fn context(&self) -> &Context;
 
     /// Extents of its products, except for a few single numbers.
     fn product_sizes(&self) -> Vec<ProductSize>;
+
+    /// Returns whether its products are computed from its films when they are written.
+    fn keeps_films(&self) -> bool {
+        false
+    }
 
     /// Index of the sensor's measure that counts in most cells, if measures differ in that.
     fn largest(&self) -> usize {
@@ -140,25 +150,29 @@ pub(super) struct Start {
     pub(super) seconds: f64,
 }
 
-/// Median relative standard error of each product of each scene, by name. It is infinite if the product is black, or a logarithm of
-/// zero, while samples are few.
-pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> Vec<(String, f64)> {
+/// Median relative standard error of each product of each scene, by name. It is infinite if the product is black while
+/// samples are few.
+///
+/// # Errors
+/// If a temporary file that holds pixels cannot be read.
+pub(super) fn relative_errors(measurement: &mut dyn Measurement) -> io::Result<Vec<(String, f64)>> {
     let samples: u64 = measurement.films().iter().map(|paced| paced.film.samples()).sum();
-    let of = |product: &Product| {
+    let mut errors = Vec::new();
+    let mut add = |product: &Product| -> io::Result<()> {
         let black = if samples < BLACK { f64::INFINITY } else { 0.0 };
-        let is_unknown = product.is_black() || product.is_unbounded();
-        let error = if is_unknown { Some(black) } else { product.median_relative_error() };
-        error.map(|error| (product.name.clone(), error))
+        let error =
+            if product.is_black()? { Some(black) } else { product.median_relative_error()? };
+        errors.extend(error.map(|error| (product.name.clone(), error)));
+        Ok(())
     };
     let scenes = measurement.context().scenes;
-    let products = measurement.products();
-    if scenes == 1 {
-        return products.iter().filter_map(of).collect();
+    for product in &measurement.products()? {
+        match scenes {
+            1 => add(product)?,
+            _ => (0..scenes).try_for_each(|scene| add(&product.of_scene(scene, scenes)))?,
+        }
     }
-    let of_all = |product: &Product| -> Vec<(String, f64)> {
-        (0..scenes).filter_map(|scene| of(&product.of_scene(scene, scenes))).collect()
-    };
-    products.iter().flat_map(of_all).collect()
+    Ok(errors)
 }
 
 /// Returns whether a product is an energy balance, to whose accuracy no criterion applies: the loss by roulette is 0 but

@@ -7,13 +7,14 @@ use std::sync::OnceLock;
 use glam::UVec2;
 
 use super::advice::{Smaller, smaller};
-use super::checkpoint::CheckpointStore;
+use super::checkpoint::{CheckpointStore, is_in_memory};
 use super::convergence::{Measurement, Start};
 use super::sensors::SensorEntity;
 use crate::components::ResolvedSensor;
 use crate::document::{Diagnostic, ScenePath};
 use crate::output;
 use crate::products::{Forecast, ProductSize, data_size};
+use crate::scratch::ScratchSpace;
 use crate::transport::Partition;
 
 /// Memory and files of one sensor, bytes; saturates at `u64::MAX`.
@@ -21,10 +22,14 @@ use crate::transport::Partition;
 pub(super) struct CostEstimate {
     /// Memory of its films.
     films: u64,
+    /// Size of the temporary files of its films.
+    disk: u64,
     /// Further memory while it is traced and products are made.
     beside: u64,
-    /// Memory of its products, which are kept until all sensors are measured.
+    /// Memory of its products, which are kept until all sensors are measured, with the films that they are computed from.
     products: u64,
+    /// Size of all values of its products, if they were all in memory.
+    values: u64,
     /// Memory of its section of the checkpoint.
     checkpoint: u64,
     /// Memory to write the files of the largest of its products.
@@ -33,19 +38,26 @@ pub(super) struct CostEstimate {
     files: u64,
     /// Index of the measure that takes most of it.
     largest: usize,
+    /// True if products are computed from its films when they are written, so that these stay until then.
+    is_kept: bool,
 }
 
 impl CostEstimate {
     /// Estimate for a measurement, of which a part of the run may be traced.
     pub(super) fn new(measurement: &mut dyn Measurement, store: &CheckpointStore) -> Self {
-        let (mut films, mut beside) = (0, 0);
+        let (mut films, mut beside, mut disk, mut state) = (0, 0, 0, 0);
         for paced in measurement.films() {
             paced.film.restrict(store.share());
             films = sum([films, paced.film.bytes()]);
             beside = sum([beside, paced.film.bytes_beside()]);
+            disk = sum([disk, paced.film.bytes_on_disk()]);
+            state = sum([state, paced.film.bytes_of_state()]);
         }
         // The last checkpoint stays in memory until the next one is written.
-        let checkpoint = if store.is_enabled() { films } else { 0 };
+        let state = if store.is_enabled() { state } else { 0 };
+        let keeps_state = is_in_memory(state, store.scratch());
+        let (checkpoint, saved) = if keeps_state { (state, 0) } else { (0, state) };
+        let disk = sum([disk, saved]);
         let beside = sum([beside, checkpoint]);
         let is_whole = store.share() == Partition::ALL;
         let sizes = if is_whole { measurement.product_sizes() } else { Vec::new() };
@@ -53,11 +65,14 @@ impl CostEstimate {
         Self {
             films,
             beside,
+            disk,
             products: of_all(ProductSize::memory),
+            values: of_all(ProductSize::bytes),
             checkpoint,
             writing: sizes.iter().map(|extent| extent.memory_of_files()).max().unwrap_or(0),
             files: of_all(output::file_size),
             largest: measurement.largest(),
+            is_kept: is_whole && measurement.keeps_films(),
         }
     }
 
@@ -165,22 +180,23 @@ fn sum(bytes: impl IntoIterator<Item = u64>) -> u64 {
     bytes.into_iter().fold(0, u64::saturating_add)
 }
 
-/// Memory of all products and of the largest films, which depends on their shapes alone.
+/// Size of the values of all products and of the largest films, in memory or not, which depends on their shapes alone.
 pub(super) fn shapes(costs: impl Iterator<Item = CostEstimate>) -> u64 {
-    let (mut films, mut products) = (0, 0);
+    let (mut films, mut values) = (0, 0);
     for cost in costs {
-        films = cost.films.max(films);
-        products = sum([products, cost.products]);
+        films = sum([cost.films, cost.disk]).max(films);
+        values = sum([values, cost.values]);
     }
-    sum([films, products])
+    sum([films, values])
 }
 
 /// Peak memory of sensors that are measured one after the other.
 fn peak(costs: &[CostEstimate]) -> u64 {
     let (mut most, mut permanent) = (0, 0);
-    for &CostEstimate { films, beside, products, checkpoint, .. } in costs {
+    for &CostEstimate { films, beside, products, checkpoint, is_kept, .. } in costs {
         permanent = sum([permanent, products, checkpoint]);
         most = sum([permanent, films, beside]).max(most);
+        permanent = sum([permanent, if is_kept { films } else { 0 }]);
     }
     let writing = costs.iter().map(|cost| cost.writing).max().unwrap_or(0);
     most.max(sum([permanent, writing]))
@@ -230,6 +246,31 @@ pub(super) fn check_memory(
         }
     }
     let help = format!("measure less there, or in fewer bands{alone}");
+    Some(Diagnostic::error(path, message).help(help))
+}
+
+/// Returns an error if the temporary files of sensors take more of the disk than is free, at the sensor that takes most.
+pub(super) fn check_disk(
+    sensors: &[SensorEntity],
+    scratch: &ScratchSpace,
+    cost: impl Fn(&str, &ResolvedSensor) -> CostEstimate,
+) -> Option<Diagnostic> {
+    let sizes: Vec<u64> = sensors.iter().map(|one| cost(&one.name, &one.sensor).disk).collect();
+    let needed = sum(sizes.iter().copied());
+    // Nothing is asked of a disk that nothing is written to.
+    let free = Some(needed).filter(|needed| *needed > 0).and_then(|_| scratch.free())?;
+    if needed <= free {
+        return None;
+    }
+    let largest = (0..sizes.len()).max_by_key(|&index| sizes[index])?;
+    let message = format!(
+        "sums of images take {} of temporary files, and {} are free in {}",
+        data_size(needed),
+        data_size(free),
+        scratch.folder.display()
+    );
+    let path = ScenePath::from("sensors").name(&sensors[largest].name);
+    let help = "write the results to another disk (`--out`), or measure fewer pixels or bands";
     Some(Diagnostic::error(path, message).help(help))
 }
 

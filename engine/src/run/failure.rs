@@ -21,6 +21,8 @@ pub enum Failure {
     Point { point: String, source: Box<Self> },
     #[error("{}: could not be read again: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
+    #[error("the temporary file of an image: {0}")]
+    Pixels(std::io::Error),
     #[error("{}: {what}; {help}", file.display())]
     Checkpoint { file: PathBuf, what: String, help: String },
     #[error("could not start {threads} threads: {reason}")]

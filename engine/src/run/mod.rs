@@ -12,6 +12,7 @@ mod enclosed;
 mod facts;
 mod failure;
 mod footprint;
+mod images;
 mod options;
 mod photons;
 mod pixels;
@@ -153,7 +154,8 @@ fn measure_scenes(
     clock.lap("build");
     let context = joined_context(scenes);
     progress.stage("tracing");
-    let measured = MeasureContext { stage: &stage, context: &context };
+    let scratch = &sensors::scratch(&sensors::in_order(&world.world), options);
+    let measured = MeasureContext { stage: &stage, context: &context, scratch };
     let (by_sun, shared): (Vec<_>, Vec<_>) = sensors::in_order(&world.world)
         .into_iter()
         .partition(|one| stage.light.suns.len() > 1 && sensors::is_traced_from_sun(&one.sensor));
@@ -164,7 +166,7 @@ fn measure_scenes(
         let (optics, context) =
             (joined_optics(&scenes[suns.clone()]), joined_context(&scenes[suns.clone()]));
         let stage = staged(world, &scenes[0].scene, &optics, options.free_memory())?;
-        let measured = MeasureContext { stage: &stage, context: &context };
+        let measured = MeasureContext { stage: &stage, context: &context, scratch };
         sensors::measure_sensors(&mut world.world, &by_sun, measured, options, store, progress)?;
         shared.push(SharedReports::take(&mut world.world, suns, context));
     }
@@ -215,9 +217,14 @@ fn open_store(
     options: &Options,
 ) -> Result<CheckpointStore, Failure> {
     match &options.checkpoint {
-        Some(to) => CheckpointStore::open(to, provenance::stream_hash(scene, files)?),
+        Some(to) => {
+            CheckpointStore::open(to, provenance::stream_hash(scene, files)?, &options.scratch)
+        }
         None if options.unite.is_empty() => Ok(CheckpointStore::disabled()),
-        None => CheckpointStore::unite(&options.unite, provenance::stream_hash(scene, files)?),
+        None => {
+            let hash = provenance::stream_hash(scene, files)?;
+            CheckpointStore::unite(&options.unite, hash, &options.scratch)
+        }
     }
 }
 
@@ -231,7 +238,10 @@ fn sensors_of_parts(
     let Some(first) = options.unite.first().filter(|_| options.checkpoint.is_none()) else {
         return Ok(None);
     };
-    let names = CheckpointStore::other_sensors(first, provenance::stream_hash(scene, files)?)?;
+    let names = {
+        let hash = provenance::stream_hash(scene, files)?;
+        CheckpointStore::other_sensors(first, hash, &options.scratch)?
+    };
     let is_known = |name: &String| scene.sensors.contains_key(name);
     if names.is_empty() || !names.iter().all(is_known) || names.len() == scene.sensors.len() {
         return Ok(None);

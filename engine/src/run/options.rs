@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use super::Checkpoint;
 use crate::products::Forecast;
+use crate::scratch::ScratchSpace;
 use crate::{document, memory};
 
 /// Settings of a run beyond the scene.
@@ -21,6 +22,8 @@ pub struct Options {
     /// Memory that the ray engine, and films with results, may take, bytes; all that is free if absent. A run that takes
     /// more is refused before it traces anything.
     pub memory: Option<u64>,
+    /// Folder of temporary files, and the memory above which sums of images are kept there.
+    pub scratch: ScratchSpace,
     /// True to trace only as much of each sensor as an estimate of its time takes.
     pub forecast: bool,
     /// Names of the sensors that measure; all if empty.
@@ -43,6 +46,7 @@ impl Default for Options {
             checkpoint: None,
             unite: Vec::new(),
             memory: None,
+            scratch: ScratchSpace::default(),
             forecast: false,
             sensors: Vec::new(),
         }

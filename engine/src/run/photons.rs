@@ -1,3 +1,4 @@
+use std::io;
 use std::sync::Arc;
 
 use super::convergence::{Measurement, PacedFilm};
@@ -26,7 +27,7 @@ pub(super) struct PhotonRun<'a> {
 impl<'a> PhotonRun<'a> {
     /// Measurement before its first packet.
     pub(super) fn new(sensor: &'a PhotonSensor, measured: MeasureContext<'a>, key: Key) -> Self {
-        let MeasureContext { stage, context } = measured;
+        let MeasureContext { stage, context, .. } = measured;
         let plane = ReferencePlane::new(sensor.plane.as_ref(), stage);
         let kinds: Vec<(&PhotonMeasure, ProductCounter)> = sensor
             .products
@@ -96,7 +97,7 @@ impl Measurement for PhotonRun<'_> {
     }
 
     fn product_sizes(&self) -> Vec<ProductSize> {
-        let MeasureContext { stage, context } = self.measured;
+        let MeasureContext { stage, context, .. } = self.measured;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let films: Vec<_> = [reflected, emitted].into_iter().flatten().collect();
         let bands = context.bands.len() as u64;
@@ -121,8 +122,8 @@ impl Measurement for PhotonRun<'_> {
         self.measured.context
     }
 
-    fn products(&self) -> Vec<Product> {
-        let MeasureContext { stage, context } = self.measured;
+    fn products(&self) -> io::Result<Vec<Product>> {
+        let MeasureContext { stage, context, .. } = self.measured;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let parts = parts(sensor);
         let mut found = Vec::new();
@@ -163,7 +164,7 @@ impl Measurement for PhotonRun<'_> {
             let unit = if name == "energy" { energy.unit.clone() } else { "W m-2 nm-1".to_owned() };
             found.push(Product { name: name.to_owned(), unit, ..energy });
         }
-        found
+        Ok(found)
     }
 }
 
@@ -268,7 +269,9 @@ impl ProductCounter {
             }
             Self::Fluxes(counter) => {
                 let pixels = u64::from(counter.size.x) * u64::from(counter.size.y);
-                vec![ProductSize::Image { pixels, bands }; 2 * counter.levels.len()]
+                let width = u64::from(counter.size.x);
+                let size = ProductSize::Image { width, pixels, bands, is_kept: true };
+                vec![size; 2 * counter.levels.len()]
             }
         }
     }

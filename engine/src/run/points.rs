@@ -95,7 +95,8 @@ impl SettledPoints {
             let stage = staged(world, &tried[0].scene, &optics, options.free_memory())?;
             pixels::count_pixels(&mut world.world, &stage, tried[0].scene.bands.len())?;
             let context = joined_context(tried);
-            let measured = sensors::MeasureContext { stage: &stage, context: &context };
+            let scratch = &options.scratch;
+            let measured = sensors::MeasureContext { stage: &stage, context: &context, scratch };
             let memory = joined_memory(&sensors::in_order(&world.world), measured, options);
             if memory <= limit && uncovered::warning(&stage, &context).is_none() {
                 break;

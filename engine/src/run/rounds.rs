@@ -1,15 +1,16 @@
 //! Time control of a measurement: samples are added in rounds until a stop criterion holds.
 
-use std::sync::Arc;
+use std::io;
 use std::time::Instant;
 
-use super::checkpoint::{CheckpointStore, Section};
+use super::checkpoint::{CheckpointStore, FilmState, Section};
 use super::convergence::{Convergence, ErrorCheck, Measurement, Start, relative_errors};
 use super::cost::{CostEstimate, PilotRun};
 use super::{Failure, Progress};
 use crate::components::StopCriterion;
 use crate::document::{Diagnostic, ScenePath};
 use crate::products::{Forecast, Product};
+use crate::scratch::ScratchSpace;
 use crate::transport::{Partition, ProgressFn};
 
 /// End of a measurement.
@@ -70,16 +71,17 @@ pub(super) fn measure_until(
         let done = rounds.done;
         while checks.next_if(|&check| check < done).is_some() {}
         if checks.peek() == Some(&done) {
-            let errors = relative_errors(measurement);
+            let errors = relative_errors(measurement).map_err(Failure::Pixels)?;
             rounds.check = Some(ErrorCheck { samples: done, errors });
         }
         let seconds = rounds.seconds();
         let criterion = rounds.criterion_that_holds(seconds);
-        rounds.save(measurement, store, seconds, criterion.is_some());
+        rounds.save(measurement, store, seconds, criterion.is_some())?;
         if let Some(criterion) = criterion {
             progress.sensor(name, 1.0);
             let is_whole = store.share() == Partition::ALL && !is_pilot_only;
-            let products = if is_whole { measurement.products() } else { Vec::new() };
+            let products = if is_whole { measurement.products() } else { Ok(Vec::new()) };
+            let products = products.map_err(Failure::Pixels)?;
             let errors = rounds.errors().map_or_else(Vec::new, <[_]>::to_vec);
             let forecast =
                 rounds.pilot.forecast().unwrap_or_else(|| rounds.pilot.forecast_of(seconds));
@@ -95,7 +97,7 @@ pub(super) fn measure_until(
         let limit = convergence.limit();
         let goal = checks.peek().map_or(limit, |&check| check.min(limit));
         let goal = rounds.next_goal(goal, seconds, can_grow, store.longest_round());
-        rounds.trace(measurement, goal, can_grow);
+        rounds.trace(measurement, goal, can_grow).map_err(Failure::Pixels)?;
     }
 }
 
@@ -131,20 +133,23 @@ impl Rounds<'_> {
         store: &mut CheckpointStore,
         seconds: f64,
         is_end: bool,
-    ) {
+    ) -> Result<(), Failure> {
         let schedule = &self.convergence.schedule;
         let is_end_of_block = schedule.last(self.done) == self.done;
         if !store.is_enabled() || !is_end_of_block || self.done == 0 {
-            return;
+            return Ok(());
         }
         // A run cannot be resumed behind the last end of a block.
         let is_last = is_end || schedule.last(self.convergence.limit()) == self.done;
         if is_last || store.is_due() {
-            store.set_section(section(self.name, measurement, self.done, seconds));
+            let state = state(measurement, store.scratch()).map_err(Failure::Pixels)?;
+            let name = self.name.to_owned();
+            store.set_section(Section { name, samples: self.done, seconds, state });
             if let Some(warning) = store.save() {
                 self.progress.warn(&warning);
             }
         }
+        Ok(())
     }
 
     /// Ends the pilot run if it is over; returns its forecast if the run is to end with it.
@@ -199,7 +204,12 @@ impl Rounds<'_> {
     }
 
     /// Traces a round.
-    fn trace(&mut self, measurement: &mut dyn Measurement, goal: u64, can_grow: bool) {
+    fn trace(
+        &mut self,
+        measurement: &mut dyn Measurement,
+        goal: u64,
+        can_grow: bool,
+    ) -> io::Result<()> {
         let (done, added) = (self.done as f64, (goal - self.done) as f64);
         trace(measurement, goal, &|fraction| {
             let (samples, seconds) = (done + fraction * added, self.seconds());
@@ -209,8 +219,9 @@ impl Rounds<'_> {
             if !can_grow && self.pilot.is_over(seconds) {
                 self.report_forecast(samples, seconds, end);
             }
-        });
+        })?;
         self.done = goal;
+        Ok(())
     }
 }
 
@@ -222,14 +233,18 @@ fn restore(
 ) -> Result<Start, Failure> {
     let mut start = Start { samples: 0, seconds: 0.0 };
     for (share, section) in store.restored(name) {
-        let mut state = section.state.as_slice();
-        for paced in measurement.films() {
-            let samples = paced.samples(section.samples);
-            let restored = paced.film.restore(share, samples, &mut state);
-            restored.map_err(|_short| misfit(name))?;
-        }
-        if !state.is_empty() {
-            return Err(misfit(name));
+        let restored = section.state.read(|state| {
+            measurement.films().into_iter().try_for_each(|paced| {
+                let samples = paced.samples(section.samples);
+                paced.film.restore(share, samples, state)
+            })
+        });
+        match restored {
+            Ok(true) => {}
+            Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => {
+                return Err(Failure::Pixels(error));
+            }
+            Ok(false) | Err(_) => return Err(misfit(name)),
         }
         start = Start { samples: section.samples, seconds: start.seconds + section.seconds };
     }
@@ -245,21 +260,24 @@ fn misfit(name: &str) -> Failure {
     )])
 }
 
-fn section(name: &str, measurement: &mut dyn Measurement, samples: u64, seconds: f64) -> Section {
-    let bytes: u64 = measurement.films().iter().map(|paced| paced.film.bytes()).sum();
-    let mut state = Vec::with_capacity(bytes as usize);
-    for paced in measurement.films() {
-        paced.film.save(&mut state).expect("writing to memory does not fail");
-    }
-    Section { name: name.to_owned(), samples, seconds, state: Arc::new(state) }
+/// State of films, in memory or in a temporary file.
+fn state(measurement: &mut dyn Measurement, scratch: &ScratchSpace) -> io::Result<FilmState> {
+    let films = measurement.films();
+    let bytes = films.iter().map(|paced| paced.film.bytes_of_state()).sum();
+    FilmState::save(bytes, scratch, |out| films.iter().try_for_each(|paced| paced.film.save(out)))
 }
 
 /// Traces all films to a number of samples of the measurement.
-pub(super) fn trace(measurement: &mut dyn Measurement, to: u64, watch: ProgressFn<'_>) {
+pub(super) fn trace(
+    measurement: &mut dyn Measurement,
+    to: u64,
+    watch: ProgressFn<'_>,
+) -> io::Result<()> {
     let films = measurement.films();
     let all = films.len() as f64;
     for (index, paced) in films.into_iter().enumerate() {
         let samples = paced.samples(to);
-        paced.film.trace(samples, &|fraction| watch((index as f64 + fraction) / all));
+        paced.film.trace(samples, &|fraction| watch((index as f64 + fraction) / all))?;
     }
+    Ok(())
 }

@@ -1,3 +1,5 @@
+use std::io;
+
 use hecs::{Entity, World};
 
 use super::check::check;
@@ -5,17 +7,18 @@ use super::checkpoint::CheckpointStore;
 use super::convergence::{Convergence, Measurement, PacedFilm, is_energy_balance};
 use super::photons::PhotonRun;
 use super::rounds::{MeasurementEnd, measure_until};
-use super::{Failure, Options, Progress};
+use super::{Failure, Options, Progress, images};
 use crate::components::{
-    DirectionSensor, ImageMeasure, ImageSensor, Name, PhotonSensor, ResolvedSensor, SceneId,
-    StopCriterion, System,
+    DirectionSensor, ImageMeasure, Name, PhotonSensor, ResolvedSensor, SceneId, StopCriterion,
+    System,
 };
 use crate::extract::Stage;
 use crate::products::{self, Context, MeasuredLight, Product, ProductSize, SensorReport};
 use crate::sampling::Key;
+use crate::scratch::ScratchSpace;
 use crate::transport::{
-    Camera, DirectionsFilm, DirectionsSettings, FirstSurfaceFilm, ImageFilm, ImageTiles,
-    LightSettings, LightSource, RANDOMISATIONS, ReferencePlane, Schedule, image_first_surface_film,
+    DirectionsFilm, DirectionsSettings, FirstSurfaceFilm, LightSettings, LightSource,
+    RANDOMISATIONS, ReferencePlane, Schedule,
 };
 
 /// Scene that sensors measure, and the data that products are made with.
@@ -23,6 +26,8 @@ use crate::transport::{
 pub(super) struct MeasureContext<'a> {
     pub(super) stage: &'a Stage,
     pub(super) context: &'a Context,
+    /// Place of sums of an image that take too much memory.
+    pub(super) scratch: &'a ScratchSpace,
 }
 
 /// A sensor of the world.
@@ -41,6 +46,12 @@ pub(super) fn in_order(world: &World) -> Vec<SensorEntity> {
         SensorEntity { entity, name: name.0.clone(), sensor: sensor.clone() }
     };
     sensors.into_iter().map(owned).collect()
+}
+
+/// Place of the sums of images, which share its memory: results of one stay until all sensors are measured.
+pub(super) fn scratch(sensors: &[SensorEntity], options: &Options) -> ScratchSpace {
+    let images = sensors.iter().filter(|one| matches!(one.sensor, ResolvedSensor::Image(_)));
+    options.scratch.share(images.count())
 }
 
 /// Measures sensors in document order; returns a warning if the checkpoint could not be saved. Writes [`SensorReport`].
@@ -97,7 +108,7 @@ pub(super) fn begin<'a>(
 ) -> Begun<'a> {
     let key = Key::new(measured.stage.rules.seed).path("sensors").path(name);
     match sensor {
-        ResolvedSensor::Image(sensor) => image(sensor, measured, key, quality),
+        ResolvedSensor::Image(sensor) => images::image(sensor, measured, key, quality),
         ResolvedSensor::Directions(sensor) => directions(sensor, measured, key, quality),
         ResolvedSensor::Photons(sensor) => photons(sensor, measured, key, quality),
     }
@@ -156,7 +167,7 @@ fn ended_by(end: &MeasurementEnd, samples: &str) -> String {
 }
 
 /// Stop criteria for `quality` times the number of samples.
-fn at_quality(until: &[StopCriterion], quality: f64) -> Vec<StopCriterion> {
+pub(super) fn at_quality(until: &[StopCriterion], quality: f64) -> Vec<StopCriterion> {
     let error = |limit: f64| limit / quality.sqrt();
     let scaled = |criterion: &StopCriterion| match criterion {
         StopCriterion::RelError(limit) => StopCriterion::RelError(error(*limit)),
@@ -173,113 +184,12 @@ fn at_quality(until: &[StopCriterion], quality: f64) -> Vec<StopCriterion> {
 }
 
 /// Samples of each randomisation that make up a total.
-fn each_of(samples: u64) -> u64 {
+pub(super) fn each_of(samples: u64) -> u64 {
     samples.div_ceil(RANDOMISATIONS.into()).max(1)
 }
 
 /// Largest number of samples per pixel.
 pub(super) const MOST_SAMPLES: f64 = 16_777_216.0;
-
-/// Number of pixels from which on eight samples per pixel are enough for a first check of errors.
-const MANY_PIXELS: u64 = 256;
-
-struct ImageRun<'a> {
-    sensor: &'a ImageSensor,
-    measured: MeasureContext<'a>,
-    reflected: Option<ImageFilm<'a>>,
-    emitted: Option<ImageFilm<'a>>,
-    components: Option<ImageTiles<'a>>,
-    /// Samples of a pixel for each sample of the measurement.
-    pace: (u64, u64),
-}
-
-fn image<'a>(
-    sensor: &'a ImageSensor,
-    measured: MeasureContext<'a>,
-    key: Key,
-    quality: f64,
-) -> Begun<'a> {
-    let MeasureContext { stage, context } = measured;
-    let camera = Camera::new(sensor, stage);
-    let until = if sensor.until.is_empty() {
-        let samples = camera.samples(sensor.samples) * quality;
-        // Areas are rounded: what is a whole number but for that is one.
-        let samples = (samples * (1.0 - 1e-12)).ceil().clamp(2.0, MOST_SAMPLES);
-        vec![StopCriterion::Samples(samples as u64)]
-    } else {
-        at_quality(&sensor.until, quality)
-    };
-    let orders = sensor.measure.contains(&ImageMeasure::Orders);
-    let film = |source, orders, key| {
-        let light = LightSettings { system: sensor.system, source, separates_orders: orders };
-        ImageFilm::new(stage, &camera, light, key)
-    };
-    let reflected = needs_reflection(&sensor.measure, context)
-        .then(|| film(LightSource::Reflected, orders, key));
-    let emitted = needs_emission(&sensor.measure, context)
-        .then(|| film(LightSource::Emitted, false, key.path("emission")));
-    let components = (!sensor.measure.iter().all(ImageMeasure::is_light))
-        .then(|| image_first_surface_film(stage, &camera, key.path("components")));
-    let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
-    let run = |pace| ImageRun { sensor, measured, reflected, emitted, components, pace };
-    if sensor.system == System::Forward {
-        let each = move |samples: u64| each_of(samples.saturating_mul(pixels));
-        let convergence = Convergence { until, schedule: Schedule::Blocks, each: Box::new(each) };
-        let measurement = Box::new(run((RANDOMISATIONS.into(), pixels)));
-        return Begun { measurement, convergence };
-    }
-    let first = if pixels < MANY_PIXELS { u64::from(RANDOMISATIONS) } else { 8 };
-    let each = |samples: u64| samples.max(2);
-    let schedule = Schedule::Samples(first);
-    let convergence = Convergence { until, schedule, each: Box::new(each) };
-    Begun { measurement: Box::new(run((1, 1))), convergence }
-}
-
-impl Measurement for ImageRun<'_> {
-    fn films(&mut self) -> Vec<PacedFilm<'_>> {
-        let pace = self.pace;
-        let light = [&mut self.reflected, &mut self.emitted].into_iter().flatten();
-        let mut films: Vec<PacedFilm<'_>> = light
-            .map(|image| match image {
-                ImageFilm::Packets(packets) => PacedFilm::evenly(&mut packets.sums),
-                ImageFilm::Paths(tiles) => PacedFilm { film: tiles, pace },
-            })
-            .collect();
-        films.extend(
-            self.components.iter_mut().map(|film| -> PacedFilm<'_> { PacedFilm { film, pace } }),
-        );
-        films
-    }
-
-    fn product_sizes(&self) -> Vec<ProductSize> {
-        let has_zones = self.components.as_ref().is_some_and(ImageTiles::has_image_sums);
-        let light =
-            MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
-        let MeasureContext { stage, context } = self.measured;
-        products::image_sizes(self.sensor, light, has_zones, stage, context)
-    }
-
-    fn context(&self) -> &Context {
-        self.measured.context
-    }
-
-    fn products(&self) -> Vec<Product> {
-        let reflected = self.reflected.as_ref().map(ImageFilm::outcome);
-        let emitted = self.emitted.as_ref().map(ImageFilm::outcome);
-        let MeasureContext { stage, context } = self.measured;
-        let (sensor, emitted) = (self.sensor, emitted.as_ref());
-        let mut products =
-            products::image_products(sensor, reflected.as_ref(), emitted, stage, context);
-        if let Some(components) = &self.components {
-            let outcome = components.outcome();
-            for &measure in &self.sensor.measure {
-                products
-                    .extend(products::image_components(measure, sensor, &outcome, stage, context));
-            }
-        }
-        products
-    }
-}
 
 struct DirectionsRun<'a> {
     sensor: &'a DirectionSensor,
@@ -295,7 +205,7 @@ fn directions<'a>(
     key: Key,
     quality: f64,
 ) -> Begun<'a> {
-    let MeasureContext { stage, context } = measured;
+    let MeasureContext { stage, context, .. } = measured;
     let views = sensor.views.as_slice();
     let plane = &ReferencePlane::new(sensor.plane.as_ref(), stage);
     let orders = sensor.measure.contains(&ImageMeasure::Orders);
@@ -330,7 +240,7 @@ impl Measurement for DirectionsRun<'_> {
         let DirectionSensor { views, measure, .. } = self.sensor;
         let light =
             MeasuredLight { reflected: self.reflected.is_some(), emitted: self.emitted.is_some() };
-        let MeasureContext { stage, context } = self.measured;
+        let MeasureContext { stage, context, .. } = self.measured;
         products::direction_sizes(views.len(), measure, light, stage, context)
     }
 
@@ -338,9 +248,9 @@ impl Measurement for DirectionsRun<'_> {
         self.measured.context
     }
 
-    fn products(&self) -> Vec<Product> {
+    fn products(&self) -> io::Result<Vec<Product>> {
         let DirectionSensor { views, measure, .. } = self.sensor;
-        let MeasureContext { stage, context } = self.measured;
+        let MeasureContext { stage, context, .. } = self.measured;
         let reflected = self.reflected.as_ref().map(DirectionsFilm::outcome);
         let emitted = self.emitted.as_ref().map(DirectionsFilm::outcome);
         let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
@@ -353,7 +263,7 @@ impl Measurement for DirectionsRun<'_> {
                     .extend(products::direction_components(one, views, &outcome, stage, context));
             }
         }
-        products
+        Ok(products)
     }
 }
 
@@ -373,7 +283,7 @@ fn system_of(sensor: &DirectionSensor, source: LightSource) -> System {
 }
 
 /// Returns whether a measure takes reflected light of sun and sky.
-fn needs_reflection(measures: &[ImageMeasure], context: &Context) -> bool {
+pub(super) fn needs_reflection(measures: &[ImageMeasure], context: &Context) -> bool {
     measures.iter().any(|measure| match measure {
         ImageMeasure::Brf | ImageMeasure::Orders => true,
         ImageMeasure::Radiance => context.sources.iter().any(|source| source.reflects),
@@ -385,7 +295,7 @@ fn needs_reflection(measures: &[ImageMeasure], context: &Context) -> bool {
 }
 
 /// Returns whether a measure takes emitted light of surfaces and sky.
-fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
+pub(super) fn needs_emission(measures: &[ImageMeasure], context: &Context) -> bool {
     let takes = |measure: &ImageMeasure| {
         matches!(measure, ImageMeasure::Radiance | ImageMeasure::BrightnessTemperature)
     };

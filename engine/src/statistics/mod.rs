@@ -6,11 +6,13 @@
 //! points within one of them have.
 
 mod cell_index;
+mod ranks;
 mod ratio;
 mod replicates;
 mod spread;
 mod sums;
 
+pub use ranks::values_at_ranks;
 pub use ratio::ratio;
 pub use replicates::Replicates;
 pub use spread::Spread;

@@ -35,7 +35,9 @@ mod term_runs;
 pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,
 };
-pub use films::{Film, ImageOutcome, ImageTiles, Partition, ReplicateSums, Schedule};
+pub use films::{
+    Film, ImageOutcome, ImageTiles, Partition, PixelRows, Pixels, ReplicateSums, Schedule,
+};
 pub use paths::{ComponentColumns, GAP_RINGS};
 pub use photons::{
     AbsorbedCounter, AlbedoCounter, Cell, CellCounter, ConeCounter, Counter, EnergyCounter,

@@ -135,6 +135,7 @@ fn numbers(sensor: &str, product: &Product, has_light: bool) {
         assert!(!value.is_infinite(), "{} is infinite", at(index));
     }
     if let Some(image) = image {
+        let image = image.load().expect("pixels can be read");
         let bands = image.values.len() / image.coverage.len().max(1);
         for (index, value) in image.values.iter().enumerate() {
             assert!(!value.is_infinite(), "pixel {} is infinite", at(index));

@@ -137,7 +137,8 @@ fn image<'a>(report: &'a Report, product: &str) -> &'a Image {
 /// Middle of the pixels that are darker than half the brightest one, on the map.
 fn middle_of_shadow(image: &Image, place: &Georeference) -> (f64, f64) {
     let bands = image.bands.len();
-    let first = |pixel: usize| image.values[pixel * bands];
+    let values = image.load().expect("pixels can be read").values;
+    let first = |pixel: usize| values[pixel * bands];
     let pixels = image.width * image.height;
     let brightest = (0..pixels).map(first).filter(|value| value.is_finite()).fold(0.0, f32::max);
     let dark: Vec<usize> = (0..pixels).filter(|&pixel| first(pixel) < 0.5 * brightest).collect();

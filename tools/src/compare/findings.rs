@@ -167,10 +167,9 @@ impl<'a> Estimate<'a> {
             return Some(Values { values, errors });
         }
         let wide = |values: &[f32]| values.iter().map(|&value| value.into()).collect();
-        product.image.as_ref().map(|image| Values {
-            values: wide(&image.values),
-            errors: wide(&image.standard_error),
-        })
+        // A temporary file that cannot be read any more leaves nothing to compare.
+        let pixels = product.image.as_ref()?.load().ok()?;
+        Some(Values { values: wide(&pixels.values), errors: wide(&pixels.standard_error) })
     }
 
     /// Cells of the axes of a value and of its row and column, if it is that of a pixel; and its band.

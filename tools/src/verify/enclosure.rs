@@ -64,7 +64,8 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     }
     let temperature = product(&report, "all", "brightness_temperature")?;
     let image = temperature.image.as_ref().context("no image of temperatures")?;
-    let seen = image.values.iter().copied().filter(|kelvin| !kelvin.is_nan());
+    let pixels = image.load()?;
+    let seen = pixels.values.iter().copied().filter(|kelvin| !kelvin.is_nan());
     let worst = seen.max_by(|a, b| (a - 300.0).abs().total_cmp(&(b - 300.0).abs()));
     let worst = worst.context("no pixel sees anything")?;
     let quantity = "brightness temperature of the worst pixel, K";

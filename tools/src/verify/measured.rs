@@ -80,8 +80,9 @@ pub(super) fn value(
 }
 
 /// All numbers of a report, as bits.
-pub(super) fn bits(report: &Report) -> Vec<u64> {
-    report.sensors.iter().flat_map(SensorReport::bits).collect()
+pub(super) fn bits(report: &Report) -> std::io::Result<Vec<u64>> {
+    let all: std::io::Result<Vec<_>> = report.sensors.iter().map(SensorReport::bits).collect();
+    all.map(|all| all.concat())
 }
 
 /// Number of values that differ between two reports.

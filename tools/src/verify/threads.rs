@@ -26,7 +26,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     );
     let with = |threads: usize| -> anyhow::Result<Vec<u64>> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        Ok(bits(&pool.install(|| measure(&keys))?))
+        Ok(bits(&pool.install(|| measure(&keys))?)?)
     };
     let one = with(1)?;
     let mut findings = vec![Finding::within("numbers to compare", 6000.0, one.len() as f64, 1.0)];

@@ -25,7 +25,7 @@ pub(super) fn run() -> anyhow::Result<Vec<Finding>> {
     let mut findings = vec![Finding::exact(
         "anchored elsewhere: numbers that differ",
         0.0,
-        differing(&bits(&here), &bits(&anchored)),
+        differing(&bits(&here)?, &bits(&anchored)?),
     )];
     for (sensor, name, index, what) in [
         ("image", "hdrf", 0, "image, red"),

@@ -16,7 +16,7 @@ fn exr_holds_every_channel_bit_for_bit() {
             (channel.name.to_string(), bits)
         })
         .collect();
-    let image = image().image.unwrap();
+    let image = image().image.unwrap().load().unwrap();
     let of = |values: &[f32], band: usize| -> Vec<u32> {
         values.iter().skip(band).step_by(2).map(|value| value.to_bits()).collect()
     };
@@ -65,7 +65,7 @@ fn a_second_envi_raster_holds_errors_and_coverage() {
         .chunks_exact(4)
         .map(|number| f32::from_le_bytes(number.try_into().unwrap()))
         .collect();
-    let image = image().image.unwrap();
+    let image = image().image.unwrap().load().unwrap();
     let band = |band: usize| image.standard_error.iter().skip(band).step_by(2).copied();
     let expected: Vec<f32> = band(0)
         .chain(band(1))
@@ -97,7 +97,7 @@ fn envi_header_describes_the_pixels() {
     assert_eq!(place[1..7], ["1", "1", "679000.5", "5150000.25", "0.5", "0.25"]);
     assert_eq!(place[0], "Arbitrary");
     let no_data: f32 = field("data ignore value").parse().unwrap();
-    let image = image().image.unwrap();
+    let image = image().image.unwrap().load().unwrap();
     for band in 0..bands {
         for pixel in 0..samples * lines {
             let at = 4 * (band * samples * lines + pixel);

@@ -8,7 +8,9 @@ mod tables;
 use std::fs;
 
 use super::*;
-use crate::products::{AxisPoints, Forecast, Georeference, ProductAxis, Rendering, SensorReport};
+use crate::products::{
+    AxisPoints, Forecast, Georeference, Image, PixelRows, ProductAxis, Rendering, SensorReport,
+};
 
 fn axis(name: &str, points: &[f64]) -> ProductAxis {
     ProductAxis { name: name.to_owned(), points: AxisPoints::Numbers(points.to_vec()) }
@@ -40,6 +42,8 @@ fn image() -> Product {
     let mut values: Vec<f32> = (0_u8..12).map(|index| f32::from(index) / 16.0).collect();
     values[10..].fill(f32::NAN);
     let standard_error = values.iter().map(|value| value / 8.0).collect();
+    let coverage = vec![1.0, 1.0, 1.0, 1.0, 0.5, 0.0];
+    let pixels = PixelRows { width: 3, values, standard_error, coverage };
     Product {
         name: "brf".to_owned(),
         unit: "1".to_owned(),
@@ -50,9 +54,7 @@ fn image() -> Product {
             width: 3,
             height: 2,
             bands: vec!["red".to_owned(), "nir, wide".to_owned()],
-            values,
-            standard_error,
-            coverage: vec![1.0, 1.0, 1.0, 1.0, 0.5, 0.0],
+            pixels: pixels.into(),
             rendering: Rendering::Quicklook,
             georeference: Some(Georeference {
                 west: 679_000.5,

@@ -20,10 +20,11 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Checkpoint, Section, not_regular, unreadable, wrong};
+use super::{Checkpoint, FilmState, Section, is_in_memory, not_regular, unreadable, wrong};
 use crate::output;
 use crate::products::data_size;
 use crate::run::Failure;
+use crate::scratch::{RandomAccessFile, ScratchSpace};
 use crate::transport::Partition;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
@@ -63,8 +64,8 @@ pub(super) fn write(to: &Checkpoint, hash: [u8; 32], sections: &[Section]) -> io
             text(&mut out, &section.name)?;
             out.write_all(&section.samples.to_le_bytes())?;
             out.write_all(&section.seconds.to_le_bytes())?;
-            out.write_all(&(section.state.len() as u64).to_le_bytes())?;
-            out.write_all(&section.state)?;
+            out.write_all(&section.state.len().to_le_bytes())?;
+            section.state.write(&mut out)?;
         }
         let sum = out.hasher.finalize();
         out.write_all(sum.as_bytes())?;
@@ -80,8 +81,9 @@ fn text(out: &mut impl Write, text: &str) -> io::Result<()> {
 /// Largest size of a checkpoint that is read, bytes: larger films do not fit into memory.
 const LARGEST: u64 = 1 << 40;
 
-/// Bytes of a checkpoint; of another file, only the start is read.
-fn bytes_of(file: &Path) -> Result<Vec<u8>, Failure> {
+/// Opens a checkpoint and checks its first bytes and its checksum; returns the file, and the number of bytes before the
+/// checksum.
+fn open(file: &Path) -> Result<(RandomAccessFile, u64), Failure> {
     let fail = |source| unreadable(file, source);
     let metadata = std::fs::metadata(file).map_err(fail)?;
     // Opening a pipe would wait for its writer, and a device may have no end.
@@ -97,15 +99,21 @@ fn bytes_of(file: &Path) -> Result<Vec<u8>, Failure> {
         ));
     }
     let mut input = File::open(file).map_err(fail)?;
-    let mut bytes = Vec::new();
-    Read::by_ref(&mut input).take(MAGIC.len() as u64).read_to_end(&mut bytes).map_err(fail)?;
-    if bytes != MAGIC {
+    let mut start = Vec::new();
+    Read::by_ref(&mut input).take(MAGIC.len() as u64).read_to_end(&mut start).map_err(fail)?;
+    if start != MAGIC {
         // A file that starts otherwise is no checkpoint, unless it was cut off.
         let found = "is no checkpoint of sunfleck";
         return Err(wrong(file, found, "name another file; this one is left as it is"));
     }
-    input.take(metadata.len()).read_to_end(&mut bytes).map_err(fail)?;
-    Ok(bytes)
+    let damaged = || wrong(file, DAMAGED, START_AGAIN);
+    let end = metadata.len().checked_sub(blake3::OUT_LEN as u64).ok_or_else(damaged)?;
+    let input = RandomAccessFile::from(input);
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(input.reader(0..end)).map_err(fail)?;
+    let mut sum = [0; blake3::OUT_LEN];
+    input.read_at(&mut sum, end).map_err(fail)?;
+    if hasher.finalize() == sum { Ok((input, end)) } else { Err(damaged()) }
 }
 
 /// Contents of a checkpoint.
@@ -120,8 +128,9 @@ pub(super) struct Contents {
 pub(super) fn read_of_scene(
     file: &Path,
     hash: [u8; 32],
+    scratch: &ScratchSpace,
 ) -> Result<(Partition, Vec<Section>), Failure> {
-    let Contents { scene, share, sections } = read(file)?;
+    let Contents { scene, share, sections } = read(file, scratch)?;
     if scene != hash {
         let found = "is of another scene or of other sensors: only `until`, `samples_per_px`, `samples_per_m2`, \
                      `per_m2` and the quality may differ";
@@ -132,22 +141,20 @@ pub(super) fn read_of_scene(
 
 const START_AGAIN: &str = "take the file away to trace from the start";
 
-/// Reads a checkpoint.
-pub(super) fn read(file: &Path) -> Result<Contents, Failure> {
-    let bytes = bytes_of(file)?;
-    let damaged =
-        || wrong(file, "is damaged: its checksum is not that of what it holds", START_AGAIN);
-    let (all, sum) = bytes.split_last_chunk::<32>().ok_or_else(damaged)?;
-    if blake3::hash(all) != *sum {
-        return Err(damaged());
-    }
-    let mut rest = &all[MAGIC.len()..];
-    let version = number(&mut rest).map_err(|_short| damaged())?;
+const DAMAGED: &str = "is damaged: its checksum is not that of what it holds";
+
+/// Reads a checkpoint; states that take much memory stay in the file.
+pub(super) fn read(file: &Path, scratch: &ScratchSpace) -> Result<Contents, Failure> {
+    let (input, end) = open(file)?;
+    let input = Arc::new(input);
+    let damaged = |_short: io::Error| wrong(file, DAMAGED, START_AGAIN);
+    let mut rest = input.reader(MAGIC.len() as u64..end);
+    let version = number(&mut rest).map_err(damaged)?;
     if version != VERSION {
         let found = format!("has format {version}, and this version reads format {VERSION}");
         return Err(wrong(file, &found, START_AGAIN));
     }
-    let sunfleck = string(&mut rest).map_err(|_short| damaged())?;
+    let sunfleck = string(&mut rest, end).map_err(damaged)?;
     if sunfleck != env!("CARGO_PKG_VERSION") {
         let found = format!(
             "was written by sunfleck {sunfleck}, and this is {}, which may draw other numbers",
@@ -158,42 +165,65 @@ pub(super) fn read(file: &Path) -> Result<Contents, Failure> {
     let body = (|| -> io::Result<([u8; 32], Partition, Vec<Section>)> {
         let scene = array(&mut rest)?;
         let share = Partition { index: number(&mut rest)?, count: number(&mut rest)? };
-        let count = number(&mut rest)?;
-        let sections = (0..count).map(|_| section(&mut rest)).collect::<io::Result<_>>()?;
+        let (mut place, count) = (rest.place(), number(&mut rest)?);
+        place += u64::from(u32::BITS / 8);
+        let mut sections = Vec::new();
+        for _ in 0..count {
+            sections.push(section(&input, &mut place, end, scratch)?);
+        }
         Ok((scene, share, sections))
     })();
-    let (scene, share, sections) = body.map_err(|_short| damaged())?;
+    let (scene, share, sections) = body.map_err(damaged)?;
     if share.index >= share.count {
-        return Err(damaged());
+        return Err(wrong(file, DAMAGED, START_AGAIN));
     }
     Ok(Contents { scene, share, sections })
 }
 
-fn section(input: &mut &[u8]) -> io::Result<Section> {
-    let name = string(input)?;
-    let samples = u64::from_le_bytes(array(input)?);
-    let seconds = f64::from_le_bytes(array(input)?);
-    let length = u64::from_le_bytes(array(input)?);
-    let length = usize::try_from(length).ok().filter(|length| *length <= input.len());
-    let (state, rest) = input.split_at(length.ok_or(io::ErrorKind::UnexpectedEof)?);
-    *input = rest;
-    Ok(Section { name, samples, seconds, state: Arc::new(state.to_vec()) })
+/// Reads a section from a place on, which moves behind it.
+fn section(
+    file: &Arc<RandomAccessFile>,
+    place: &mut u64,
+    end: u64,
+    scratch: &ScratchSpace,
+) -> io::Result<Section> {
+    let mut input = file.reader(*place..end);
+    let name = string(&mut input, end)?;
+    let samples = u64::from_le_bytes(array(&mut input)?);
+    let seconds = f64::from_le_bytes(array(&mut input)?);
+    let length = u64::from_le_bytes(array(&mut input)?);
+    let start = input.place();
+    if length > end - start {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    *place = start + length;
+    let state = if is_in_memory(length, scratch) {
+        let mut bytes = vec![0; length as usize];
+        input.read_exact(&mut bytes)?;
+        FilmState::Memory(Arc::new(bytes))
+    } else {
+        FilmState::File { file: Arc::clone(file), place: start, length }
+    };
+    Ok(Section { name, samples, seconds, state })
 }
 
-fn array<const N: usize>(input: &mut &[u8]) -> io::Result<[u8; N]> {
+fn array<const N: usize>(input: &mut impl Read) -> io::Result<[u8; N]> {
     let mut bytes = [0; N];
     input.read_exact(&mut bytes)?;
     Ok(bytes)
 }
 
-fn number(input: &mut &[u8]) -> io::Result<u32> {
+fn number(input: &mut impl Read) -> io::Result<u32> {
     Ok(u32::from_le_bytes(array(input)?))
 }
 
-fn string(input: &mut &[u8]) -> io::Result<String> {
-    let length = number(input)? as usize;
-    let (bytes, rest) = input.split_at_checked(length).ok_or(io::ErrorKind::UnexpectedEof)?;
-    *input = rest;
-    String::from_utf8(bytes.to_vec())
-        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+/// Reads a text that is not longer than a file.
+fn string(input: &mut impl Read, longest: u64) -> io::Result<String> {
+    let length = number(input)?;
+    if u64::from(length) > longest {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    let mut bytes = vec![0; length as usize];
+    input.read_exact(&mut bytes)?;
+    String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
 }

@@ -2,17 +2,19 @@
 //! united. The file is written under a name of its own and renamed, so that a run that is killed leaves the last one.
 
 mod format;
+mod section;
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::Failure;
 use crate::output;
+use crate::scratch::ScratchSpace;
 use crate::transport::Partition;
 
 use format::Contents;
+pub(super) use section::{FilmState, Section, is_in_memory};
 
 /// File that a run saves its state to and resumes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,19 +27,11 @@ pub struct Checkpoint {
     pub share: Partition,
 }
 
-/// State of the measurement of one sensor.
-#[derive(Clone)]
-pub(super) struct Section {
-    pub(super) name: String,
-    /// Samples of each randomisation.
-    pub(super) samples: u64,
-    pub(super) seconds: f64,
-    pub(super) state: Arc<Vec<u8>>,
-}
-
 /// State of the measurements of a run, and the file that it is saved to.
 pub(super) struct CheckpointStore {
     hash: [u8; 32],
+    /// Place of states that take too much memory.
+    scratch: ScratchSpace,
     /// Parts of the run that were read, each with its sections.
     read: Vec<(Partition, Vec<Section>)>,
     to: Option<Checkpoint>,
@@ -71,6 +65,7 @@ impl CheckpointStore {
     pub(super) fn disabled() -> Self {
         Self {
             hash: [0; 32],
+            scratch: ScratchSpace::default(),
             read: Vec::new(),
             to: None,
             sections: Vec::new(),
@@ -83,10 +78,15 @@ impl CheckpointStore {
     ///
     /// # Errors
     /// If the file cannot be read, is damaged, or is of another scene or share.
-    pub(super) fn open(to: &Checkpoint, hash: [u8; 32]) -> Result<Self, Failure> {
-        let mut store = Self { hash, to: Some(to.clone()), ..Self::disabled() };
+    pub(super) fn open(
+        to: &Checkpoint,
+        hash: [u8; 32],
+        scratch: &ScratchSpace,
+    ) -> Result<Self, Failure> {
+        let scratch = scratch.clone();
+        let mut store = Self { hash, scratch, to: Some(to.clone()), ..Self::disabled() };
         if to.file.try_exists().map_err(|source| unreadable(&to.file, source))? {
-            let (share, sections) = format::read_of_scene(&to.file, hash)?;
+            let (share, sections) = format::read_of_scene(&to.file, hash, &store.scratch)?;
             if share != to.share {
                 let found =
                     format!("holds {}, and {} is to be traced", part(share), part(to.share));
@@ -102,10 +102,14 @@ impl CheckpointStore {
     ///
     /// # Errors
     /// If one cannot be read, is damaged or of another scene, or if they are not all shares of one run.
-    pub(super) fn unite(files: &[PathBuf], hash: [u8; 32]) -> Result<Self, Failure> {
+    pub(super) fn unite(
+        files: &[PathBuf],
+        hash: [u8; 32],
+        scratch: &ScratchSpace,
+    ) -> Result<Self, Failure> {
         let mut read: Vec<(Partition, Vec<Section>)> = Vec::new();
         for (index, file) in files.iter().enumerate() {
-            let (share, sections) = format::read_of_scene(file, hash)?;
+            let (share, sections) = format::read_of_scene(file, hash, scratch)?;
             if let Some((first, others)) = read.first() {
                 if share.count != first.count {
                     let found = format!(
@@ -140,15 +144,19 @@ impl CheckpointStore {
             let found = format!("is one of {of}, and {} is missing", missing.join(", "));
             return Err(wrong(file, &found, "give the files of all parts"));
         }
-        Ok(Self { hash, read, ..Self::disabled() })
+        Ok(Self { hash, scratch: scratch.clone(), read, ..Self::disabled() })
     }
 
     /// Names of the sensors in a checkpoint, if it is of another scene than that with this hash.
     ///
     /// # Errors
     /// If it cannot be read or is damaged.
-    pub(super) fn other_sensors(file: &Path, hash: [u8; 32]) -> Result<Vec<String>, Failure> {
-        let Contents { scene, sections, .. } = format::read(file)?;
+    pub(super) fn other_sensors(
+        file: &Path,
+        hash: [u8; 32],
+        scratch: &ScratchSpace,
+    ) -> Result<Vec<String>, Failure> {
+        let Contents { scene, sections, .. } = format::read(file, scratch)?;
         if scene == hash {
             return Ok(Vec::new());
         }
@@ -158,6 +166,11 @@ impl CheckpointStore {
     /// Part of the run that is traced.
     pub(super) fn share(&self) -> Partition {
         self.to.as_ref().map_or(Partition::ALL, |to| to.share)
+    }
+
+    /// Place of states that take too much memory.
+    pub(super) const fn scratch(&self) -> &ScratchSpace {
+        &self.scratch
     }
 
     /// Returns whether the run saves its state.

@@ -11,7 +11,10 @@ use crate::transport::ProgressFn;
 /// bit, if every round but the last ends where its [`Schedule`] says.
 pub trait Film {
     /// Adds the samples of each randomisation up to `to` (in an image, of each pixel); `progress` receives the part of them that is done.
-    fn trace(&mut self, to: u64, progress: ProgressFn<'_>);
+    ///
+    /// # Errors
+    /// If sums are kept in a temporary file that cannot be made, read or written.
+    fn trace(&mut self, to: u64, progress: ProgressFn<'_>) -> io::Result<()>;
 
     /// Restricts it to a partition of the samples.
     fn restrict(&mut self, partition: Partition);
@@ -44,6 +47,16 @@ pub trait Film {
     /// Maximum memory that it takes beside that, bytes: of blocks that wait while it is traced, or of outcomes when
     /// products are computed.
     fn bytes_beside(&self) -> u64;
+
+    /// Size of the temporary file that it has once it is traced, bytes.
+    fn bytes_on_disk(&self) -> u64 {
+        0
+    }
+
+    /// Size of the state of its partition, bytes.
+    fn bytes_of_state(&self) -> u64 {
+        self.bytes()
+    }
 
     /// Paths or photon packets traced.
     fn samples(&self) -> u64;

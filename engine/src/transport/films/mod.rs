@@ -2,15 +2,22 @@
 
 mod blocks;
 mod film;
+mod image_outcome;
 mod image_tiles;
 mod partition;
+mod pixels;
 mod replicate_row;
 mod replicate_sums;
 mod tile;
+mod tile_grid;
+mod tile_store;
+mod tile_tracer;
 
 pub use film::{Film, Schedule};
-pub use image_tiles::{ImageOutcome, ImageTiles};
+pub use image_outcome::ImageOutcome;
+pub use image_tiles::ImageTiles;
 pub use partition::Partition;
+pub use pixels::{PixelRows, Pixels};
 pub(super) use replicate_row::ReplicateRow;
 pub use replicate_sums::ReplicateSums;
 pub(super) use replicate_sums::SampleTracer;

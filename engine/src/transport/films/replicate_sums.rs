@@ -79,6 +79,46 @@ impl<'a> ReplicateSums<'a> {
         Self { tracer: Box::new(tracer), store, done: 0, rays: 0, partition: Partition::ALL }
     }
 
+    /// Adds samples as [`Film::trace`] does.
+    pub(in crate::transport) fn trace_in_memory(&mut self, to: u64, progress: ProgressFn<'_>) {
+        let from = self.done;
+        assert_eq!(blocks::last_end(from), from, "a block that ended too early ends a run");
+        assert!(from == 0 || self.can_grow().is_ok(), "what is folded cannot grow");
+        self.set_up(self.partition);
+        self.tracer.prepare();
+        let Self { tracer, store, rays, partition, .. } = self;
+        let owned = (0..u64::from(RANDOMISATIONS)).filter(|row| partition.owns(*row as usize));
+        let (mut traced, all) = (0, (to - from) * owned.clone().count() as u64);
+        let jobs = owned.flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
+        let mut current: Option<ReplicateRow> = None;
+        blocks::in_order(
+            jobs,
+            |(row, samples)| (row, samples.clone(), tracer.trace(row, samples)),
+            |(row, samples, (part, traced_rays))| {
+                *rays += traced_rays;
+                let into = match store {
+                    Store::All(rows) => &mut rows[row as usize],
+                    Store::Folded(..) => current.get_or_insert_with(|| tracer.empty_row()),
+                };
+                into.merge(&part, tracer.models());
+                if let Store::Folded(spreads, imbalance) = store
+                    && samples.end == to
+                    && let Some(mut row) = current.take()
+                {
+                    row.evaluate(tracer.models());
+                    *imbalance = max_of(*imbalance, tracer.imbalance(&[&row]));
+                    for (spread, sums) in spreads.iter_mut().zip(&row.sums) {
+                        spread.push_sums(&[sums], to);
+                    }
+                }
+                traced += samples.end - samples.start;
+                progress(traced as f64 / all as f64);
+            },
+        );
+        self.tracer.finish();
+        self.done = to;
+    }
+
     /// Allocates the memory of a partition, as late as possible: films that are never traced need none.
     fn set_up(&mut self, partition: Partition) {
         match &mut self.store {
@@ -141,43 +181,9 @@ fn bytes_of_all(shapes: &[(usize, usize)]) -> u64 {
 }
 
 impl Film for ReplicateSums<'_> {
-    fn trace(&mut self, to: u64, progress: ProgressFn<'_>) {
-        let from = self.done;
-        assert_eq!(blocks::last_end(from), from, "a block that ended too early ends a run");
-        assert!(from == 0 || self.can_grow().is_ok(), "what is folded cannot grow");
-        self.set_up(self.partition);
-        self.tracer.prepare();
-        let Self { tracer, store, rays, partition, .. } = self;
-        let owned = (0..u64::from(RANDOMISATIONS)).filter(|row| partition.owns(*row as usize));
-        let (mut traced, all) = (0, (to - from) * owned.clone().count() as u64);
-        let jobs = owned.flat_map(|row| blocks::of(from..to).map(move |samples| (row, samples)));
-        let mut current: Option<ReplicateRow> = None;
-        blocks::in_order(
-            jobs,
-            |(row, samples)| (row, samples.clone(), tracer.trace(row, samples)),
-            |(row, samples, (part, traced_rays))| {
-                *rays += traced_rays;
-                let into = match store {
-                    Store::All(rows) => &mut rows[row as usize],
-                    Store::Folded(..) => current.get_or_insert_with(|| tracer.empty_row()),
-                };
-                into.merge(&part, tracer.models());
-                if let Store::Folded(spreads, imbalance) = store
-                    && samples.end == to
-                    && let Some(mut row) = current.take()
-                {
-                    row.evaluate(tracer.models());
-                    *imbalance = max_of(*imbalance, tracer.imbalance(&[&row]));
-                    for (spread, sums) in spreads.iter_mut().zip(&row.sums) {
-                        spread.push_sums(&[sums], to);
-                    }
-                }
-                traced += samples.end - samples.start;
-                progress(traced as f64 / all as f64);
-            },
-        );
-        self.tracer.finish();
-        self.done = to;
+    fn trace(&mut self, to: u64, progress: ProgressFn<'_>) -> io::Result<()> {
+        self.trace_in_memory(to, progress);
+        Ok(())
     }
 
     fn restrict(&mut self, partition: Partition) {

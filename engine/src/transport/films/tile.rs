@@ -1,11 +1,14 @@
 //! A square of pixels of an image.
 
+use std::io::{self, Read, Write};
+
 use glam::UVec2;
 
 use crate::extract::Stage;
 use crate::statistics::{Sums, zeroed};
 use crate::transport::RANDOMISATIONS;
 use crate::transport::paths::{PathTracer, write_each};
+use crate::transport::state::{restore_f64, restore_u64, save_f64, save_u64};
 
 /// A sample of a pixel.
 #[derive(Clone, Copy)]
@@ -130,6 +133,41 @@ impl Tile {
             self.sums = Sums::new(RANDOMISATIONS as usize, columns);
             self.counts = vec![0; RANDOMISATIONS as usize];
         }
+    }
+
+    /// Size of the sums of a tile of so many pixels, bytes: samples, means and squares of each pixel, and sums and counts
+    /// of the tile.
+    pub(super) const fn bytes(pixels: u64, columns: u64) -> u64 {
+        let replicates = REPLICATES_PER_PIXEL as u64;
+        let of_pixels = pixels.saturating_mul(replicates + (replicates + 1) * columns);
+        of_pixels.saturating_add(RANDOMISATIONS as u64 * (1 + columns)).saturating_mul(8)
+    }
+
+    /// Size of its state, bytes.
+    pub(super) fn saved_bytes(&self) -> usize {
+        Self::bytes(self.pixels().count() as u64, self.sums.bands() as u64) as usize
+    }
+
+    /// Writes its state.
+    pub(super) fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+        for counts in self.valid.iter().chain([&self.counts]) {
+            save_u64(out, counts)?;
+        }
+        for values in self.means.iter().chain([&self.squares]) {
+            save_f64(out, values)?;
+        }
+        save_f64(out, self.sums.values())
+    }
+
+    /// Replaces its state; it has its memory already.
+    pub(super) fn restore(&mut self, input: &mut dyn Read) -> io::Result<()> {
+        for counts in self.valid.iter_mut().chain([&mut self.counts]) {
+            restore_u64(input, counts)?;
+        }
+        for values in self.means.iter_mut().chain([&mut self.squares]) {
+            restore_f64(input, values)?;
+        }
+        restore_f64(input, self.sums.values_mut())
     }
 
     pub(super) fn pixels(&self) -> impl Iterator<Item = UVec2> + use<> {

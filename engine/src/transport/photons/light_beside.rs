@@ -8,7 +8,7 @@ use super::record::Recorder;
 use super::tally::WeightFactor;
 use crate::extract::Stage;
 use crate::sampling::Key;
-use crate::transport::{Film, LightSource, PhotonKind, ReferencePlane, RouletteThreshold};
+use crate::transport::{LightSource, PhotonKind, ReferencePlane, RouletteThreshold};
 
 /// Fractions of an isolated scene's light on lines beside its reference plane, in the band where each
 /// is largest.
@@ -55,7 +55,7 @@ impl LightBeside {
         let options = PacketOptions { source: LightSource::Reflected, beam, kind, plane };
         let mut film =
             photon_film(stage, options, [counter], Key::new(stage.rules.seed).path("beside"));
-        film.trace(PILOT, &|_| {});
+        film.trace_in_memory(PILOT, &|_| {});
         let spread = film.spread(1);
         let cell = |cell: usize| {
             &spread.mean()[cell * stage.bands..(cell + 1) * stage.bands][bands.clone()]

@@ -1,3 +1,4 @@
+use std::io;
 use std::sync::OnceLock;
 
 use glam::DVec2;
@@ -8,8 +9,9 @@ use super::directions::in_parts;
 use crate::components::System;
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
+use crate::scratch::ScratchSpace;
 use crate::statistics::{Replicates, Spread};
-use crate::transport::films::{ImageOutcome, ImageTiles, ReplicateSums};
+use crate::transport::films::{ImageOutcome, ImageTiles, PixelRows, ReplicateSums};
 use crate::transport::paths::{BackwardPath, FirstOrderPath, PathBatch, ThermalPath};
 use crate::transport::photons::{PacketOptions, PhotonKind, ViewCounter, photon_film};
 use crate::transport::ray_queue::TracedRay;
@@ -91,12 +93,23 @@ impl<'a> ImageFilm<'a> {
         Self::Paths(tiles)
     }
 
-    /// The outcome of the samples so far.
+    /// Sets the place of sums of paths that take too much memory, before it is traced.
     #[must_use]
-    pub fn outcome(&self) -> ImageOutcome {
+    pub fn kept_in(mut self, scratch: &ScratchSpace) -> Self {
+        if let Self::Paths(tiles) = &mut self {
+            tiles.keep_in(scratch.clone());
+        }
+        self
+    }
+
+    /// The outcome of the samples so far.
+    ///
+    /// # Errors
+    /// If a temporary file cannot be read.
+    pub fn outcome(&self) -> io::Result<ImageOutcome> {
         match self {
             Self::Paths(tiles) => tiles.outcome(),
-            Self::Packets(packets) => packets.outcome(),
+            Self::Packets(packets) => Ok(packets.outcome()),
         }
     }
 }
@@ -139,14 +152,13 @@ fn outcome_of_packets(
     });
     let (mean, mean_error) =
         totals.map(|(mean, error)| shown.radiance(mean * scale, error * scale)).unzip();
-    ImageOutcome {
-        pixels: values,
-        errors: value_errors,
+    let pixels = PixelRows {
+        width: camera.size.x as usize,
+        values,
+        standard_error: value_errors,
         coverage: coverage.fractions.clone(),
-        mean,
-        mean_error,
-        image_sums: Replicates::default(),
-    }
+    };
+    ImageOutcome { pixels: pixels.into(), mean, mean_error, image_sums: Replicates::default() }
 }
 
 /// Fraction of an area that shows the scene.

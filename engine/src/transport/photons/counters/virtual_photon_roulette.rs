@@ -3,7 +3,7 @@ use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::scattering::largest_product;
 use crate::transport::photons::{PacketOptions, PhotonKind, photon_film};
-use crate::transport::{Film, LightSource, ReferencePlane, RouletteThreshold};
+use crate::transport::{LightSource, ReferencePlane, RouletteThreshold};
 
 /// Russian roulette of virtual photons: a contribution below the mean radiance that leaves the scene is traced
 /// with a probability in proportion, and divided by it. Many weak contributions cost no more rays than the few
@@ -30,7 +30,7 @@ impl VirtualPhotonRoulette {
         let kind = PhotonKind::Packet(RouletteThreshold::High);
         let options = PacketOptions { source, beam: 0, kind, plane };
         let mut film = photon_film(stage, options, [albedo as _], key.path("stakes"));
-        film.trace(PILOT, &|_| {});
+        film.trace_in_memory(PILOT, &|_| {});
         let leaves = film.spread(1);
         let reciprocals: Vec<f32> =
             leaves.mean().iter().map(|mean| (mean.recip() as f32).min(f32::MAX)).collect();
