@@ -13,7 +13,7 @@ use sunfleck::scratch::ScratchSpace;
 use sunfleck::{document, output, run};
 
 use crate::arguments::{
-    Bench, Check, Command, Fmt, Keys, Merge, OtherBench, Out, Run, Scene, Trace, Verify,
+    Bench, Check, Command, Fmt, Keys, Merge, OtherBench, Out, Respectrum, Run, Scene, Trace, Verify,
 };
 use crate::progress::Bars;
 use crate::{bench, compare, describe, import_less, verify};
@@ -28,6 +28,7 @@ const NOTE: &str = "note: ";
 pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Run(arguments) => trace(arguments),
+        Command::Respectrum(arguments) => respectrum(arguments),
         Command::Merge(arguments) => merge(arguments),
         Command::Sweep(arguments) => sweep(arguments),
         Command::Compare(arguments) => print(&compare::compare(arguments)?),
@@ -77,7 +78,9 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
         share,
     });
     let forecast = arguments.forecast;
-    let options = run::Options { checkpoint, forecast, ..run_options(&arguments.run) };
+    let keeps_coefficients = arguments.keep_coefficients;
+    let options =
+        run::Options { checkpoint, forecast, keeps_coefficients, ..run_options(&arguments.run) };
     let scene = &arguments.run.scene;
     if forecast {
         return forecasts(scene, &options);
@@ -99,6 +102,32 @@ fn trace(arguments: &Trace) -> anyhow::Result<()> {
         report.rays as f64 / 1e6,
         report.seconds
     ))
+}
+
+fn respectrum(arguments: &Respectrum) -> anyhow::Result<()> {
+    let found = &arguments.results;
+    let coefficients = found.join(output::COEFFICIENTS);
+    let origin = output::ResultsOrigin::read(found).filter(|_| coefficients.is_file());
+    let Some(output::ResultsOrigin { scene, variant, set }) = origin else {
+        bail!(
+            "{} holds no coefficients: name the folder of the results of `sunfleck run SCENE --keep-coefficients`",
+            found.display()
+        )
+    };
+    let document = document::ReadOptions {
+        set: set.into_iter().chain(arguments.settings.clone()).collect(),
+        variant: arguments.variant.clone().or(variant),
+        ..document::ReadOptions::default()
+    };
+    let options = run::Options { document, ..run::Options::default() };
+    let folder = arguments.out();
+    let results = Results::open(&folder, "respectrum", &scene, arguments.force)?;
+    let bars = Bars::new();
+    let report = run::respectrum(&scene, &coefficients, &options, &bars);
+    bars.clear();
+    let report = report?;
+    let work = format!("coefficients evaluated in {:.2} s, no ray traced", report.seconds);
+    write_report(&results, &report, &work)
 }
 
 fn merge(arguments: &Merge) -> anyhow::Result<()> {
@@ -143,12 +172,17 @@ fn results(scene: &Scene, options: &run::Options, into: &Out, folder: &Path) -> 
     let report = run::run_file(&scene.file, options, &bars);
     bars.clear();
     let report = report?;
+    let work = format!("{:.3} million rays in {:.1} s", report.rays as f64 / 1e6, report.seconds);
+    write_report(&results, &report, &work)
+}
+
+/// Writes a report and prints its table and what was done for it.
+fn write_report(results: &Results, report: &Report, work: &str) -> anyhow::Result<()> {
     warn(&report.warnings);
-    let written = results.write(&report)?;
-    let mut text = output::table(&report);
+    let written = results.write(report)?;
+    let mut text = output::table(report);
     report.notes.iter().try_for_each(|note| writeln!(text, "{NOTE}{note}"))?;
-    let rays = report.rays as f64 / 1e6;
-    writeln!(text, "\n{}: {rays:.3} million rays in {:.1} s", told(&written), report.seconds)?;
+    writeln!(text, "\n{}: {work}", told(&written))?;
     print(&text)
 }
 

@@ -360,17 +360,26 @@ fn a_sweep_writes_one_table_and_goes_on_where_it_stopped() {
     assert_eq!(table(), first, "the same numbers");
     // Another value is another result.
     let sweep = |more: &[&str]| {
-        let arguments = ["sweep", "soil.ron", "--out", "out/soil_sweep", "--set", "height=1"];
+        let arguments = ["sweep", "soil.ron", "--out", "out/soil_sweep"];
         outcome(folder.path(), &[&arguments, more].concat()).1
     };
-    let stdout = sweep(&[]);
+    let stdout = sweep(&["--set", "height=1"]);
     assert!(stdout.contains("2 points run, 0 kept"), "{stdout}");
-    let text = swept().replace("[0.0, 60.0]", "[60.0, 45.0]");
-    fs::write(folder.path().join("soil.ron"), text).unwrap();
+    // Points that share paths depend on each other; those of other geometry do not.
+    let write = |values: &str| {
+        let text = swept().replace("\"sza\": [0.0, 60.0]", values);
+        fs::write(folder.path().join("soil.ron"), text).unwrap();
+    };
+    write("\"sza\": [60.0, 45.0]");
+    let stdout = sweep(&["--set", "height=1"]);
+    assert!(stdout.contains("2 points run, 0 kept"), "{stdout}");
+    write("\"height\": [1.0, 2.0]");
+    assert!(sweep(&[]).contains("2 points run, 0 kept"));
+    write("\"height\": [2.0, 3.0]");
     let stdout = sweep(&["--threads", "1"]);
     assert!(stdout.contains("1 point run, 1 kept"), "{stdout}");
     // What `--set` gives is not varied.
-    let stdout = sweep(&["--set", "sza=45"]);
+    let stdout = sweep(&["--set", "height=3"]);
     assert!(stdout.contains("0 points run, 1 kept"), "{stdout}");
 }
 

@@ -102,6 +102,7 @@ pub fn extract(
         surface_names,
         light,
         inventory,
+        keeps_coefficients: false,
         geometry,
     })
 }

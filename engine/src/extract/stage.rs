@@ -38,6 +38,8 @@ pub struct Stage {
     pub thermal: Option<Thermal>,
     /// Instances and their faces, where a sensor reports each.
     pub inventory: Option<Arc<Inventory>>,
+    /// True if films of packets keep coefficients of products of spectra, however few bands there are.
+    pub keeps_coefficients: bool,
     /// Geometry that rays are traced through.
     pub geometry: Arc<accel::TwoLevelBvh>,
 }

@@ -75,7 +75,7 @@ impl Manifest {
     }
 
     /// Absolute path of the scene of the results in `folder`.
-    fn scene_file(&self, folder: &Path) -> Option<PathBuf> {
+    pub(super) fn scene_file(&self, folder: &Path) -> Option<PathBuf> {
         let mut path = folder.to_owned();
         for component in Path::new(self.scene_file.as_ref()?).components() {
             match component {

@@ -49,7 +49,7 @@ pub use names::folder_name;
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
 pub use point_tables::PointTables;
-pub use results::{Results, Written};
+pub use results::{COEFFICIENTS, Results, ResultsOrigin, Written};
 pub use rows::{harmless, number};
 pub use scale::{axis_title, range_of, tick};
 pub use size::file_size;

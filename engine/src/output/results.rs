@@ -9,6 +9,7 @@ use super::staging::Staging;
 use super::summary::{Head, Sizes};
 use super::sweep::SweepTable;
 use super::{OutputError, names, put_products, summary};
+use crate::document::Param;
 use crate::products::{Report, SceneSource, SweepPoint};
 
 /// A folder that results of a command for a scene are written to, as one set of files.
@@ -33,6 +34,42 @@ pub struct Written {
     pub files: Vec<PathBuf>,
     /// Text about the results that they replace, if those are of another scene or of other parameters.
     pub replaced: Option<String>,
+}
+
+/// File of the coefficients that a run has kept.
+pub const COEFFICIENTS: &str = "coefficients.bin";
+
+/// Scene of the results in a folder, and the changes that were made to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResultsOrigin {
+    /// File of the scene.
+    pub scene: PathBuf,
+    /// Variant that was applied.
+    pub variant: Option<String>,
+    /// Parameters that were set.
+    pub set: Vec<(String, Param)>,
+}
+
+impl ResultsOrigin {
+    /// Origin of the results in a folder; `None` if it holds none of a run, or their scene is not known.
+    #[must_use]
+    pub fn read(folder: &Path) -> Option<Self> {
+        let manifest = Manifest::read(folder)?;
+        let folder = folder.canonicalize().ok()?;
+        let param = |(name, value): (&String, &serde_json::Value)| {
+            let value = match value {
+                serde_json::Value::Number(number) => Param::Number(number.as_f64()?),
+                serde_json::Value::String(text) => Param::Text(text.clone()),
+                _ => return None,
+            };
+            Some((name.clone(), value))
+        };
+        Some(Self {
+            scene: manifest.scene_file(&folder)?,
+            set: manifest.set.iter().filter_map(param).collect(),
+            variant: manifest.variant,
+        })
+    }
 }
 
 /// Number of folder names that are tried before writing fails.
@@ -83,6 +120,9 @@ impl Results {
         let plan = names::plan(report);
         self.put(|folder, staging| {
             let sizes = put_products(report, &plan, staging)?;
+            if let Some(bytes) = &report.coefficients {
+                staging.file(COEFFICIENTS, |file| file.write_all(bytes))?;
+            }
             more(staging)?;
             let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);

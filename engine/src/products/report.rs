@@ -1,5 +1,6 @@
 use std::fmt;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::{Faces, Image};
 use crate::components::Projection;
@@ -167,6 +168,8 @@ pub struct Report {
     pub sun_azimuth_deg: Option<f64>,
     /// File that the scene was read from; `None` for a scene that was built.
     pub source: Option<SceneSource>,
+    /// Coefficients of products of spectra, as a file that `respectrum` reads, if the run kept some.
+    pub coefficients: Option<Arc<Vec<u8>>>,
 }
 
 /// File that a scene was read from, and what was changed in it.

@@ -22,6 +22,7 @@ mod pool;
 mod provenance;
 mod reading;
 mod reports;
+mod respectrum;
 mod rounds;
 mod scene_world;
 mod sensors;
@@ -36,6 +37,7 @@ mod tests;
 mod uncovered;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use hecs::World;
@@ -44,6 +46,7 @@ use crate::components::{Projection, TerrainPatch};
 use crate::document::{self, Diagnostic, Param, Scene, ScenePath};
 use crate::extract::SceneOptics;
 use crate::products::{Context, Report, SceneSource};
+use crate::scattering::PathSpectra;
 
 pub use crate::products::Forecast;
 pub use crate::transport::Partition;
@@ -52,6 +55,7 @@ pub use checkpoint::Checkpoint;
 pub use facts::{BandFacts, GroundFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts};
 pub use failure::Failure;
 pub use options::{Options, Progress, Unwatched};
+pub use respectrum::respectrum;
 pub use scene_world::SceneWorld;
 pub use session::Session;
 pub use sweep::SweepRun;
@@ -62,6 +66,7 @@ use pool::in_pool;
 use provenance::FileHashes;
 use reading::{folder_of, read};
 use reports::{CommonResults, SharedReports, reports};
+use respectrum::{KeptCoefficients, paths_hash, without_coefficients};
 use sensors::MeasureContext;
 use settled::SettledScene;
 use staging::staged;
@@ -75,14 +80,28 @@ pub fn run_file(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Report, Failure> {
+    report_of(path, options, progress, None)
+}
+
+/// Report of a scene file, perhaps from coefficients that a run has kept.
+fn report_of(
+    path: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+    coefficients: Option<&Path>,
+) -> Result<Report, Failure> {
     let start = Instant::now();
     progress.stage("reading the scene");
     let reading = read(path, options)?;
     let folder = folder_of(path);
     let read_seconds = start.elapsed().as_secs_f64();
     in_pool(options, || {
-        let mut report = run(&reading.scene, folder, options, progress)
-            .map_err(|failure| failure.with_source(&reading.source))?;
+        let mut world = SceneWorld::new(folder);
+        let report = match coefficients {
+            None => run_in(&mut world, &reading.scene, options, progress),
+            Some(file) => evaluate_in(&mut world, &reading.scene, file, options, progress),
+        };
+        let mut report = report.map_err(|failure| failure.with_source(&reading.source))?;
         report.stages.insert(0, ("read".to_owned(), read_seconds));
         // After an error there would be no scene: these are warnings.
         report.warnings.splice(0..0, reading.diagnostics.iter().map(failure::one_line));
@@ -131,9 +150,38 @@ fn run_in(
     if let Some(chosen) = sensors_of_parts(scene, options, &settled.files)? {
         settled = SettledScene::new(world, chosen, &hashes)?;
     }
-    let mut store = open_store(&settled.scene, &settled.files, options)?;
+    let mut store = if options.keeps_coefficients {
+        let folder = world.resources.folder.clone();
+        CheckpointStore::of_coefficients(paths_hash(&settled.scene, &folder)?)
+    } else {
+        open_store(&settled.scene, &settled.files, options)?
+    };
     clock.lap("spawn");
-    let mut reports = measure_scenes(world, &[settled], options, &mut store, progress, clock)?;
+    let mut reports =
+        measure_scenes(world, &[settled], options, &mut store, None, progress, clock)?;
+    let mut report = reports.pop().expect("a report for each scene");
+    if options.keeps_coefficients {
+        report.warnings.extend(without_coefficients(&report, &store));
+    }
+    Ok(report)
+}
+
+/// Evaluates the coefficients in a file for the spectra of a scene.
+fn evaluate_in(
+    world: &mut SceneWorld,
+    scene: &Scene,
+    file: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Report, Failure> {
+    let mut clock = Clock::start();
+    progress.stage("loading");
+    let (kept, mut store, scene) =
+        KeptCoefficients::open(file, scene, &world.resources.folder.clone())?;
+    let settled = SettledScene::new(world, scene, &FileHashes::default())?;
+    clock.lap("spawn");
+    let mut reports =
+        measure_scenes(world, &[settled], options, &mut store, Some(&kept), progress, clock)?;
     Ok(reports.pop().expect("a report for each scene"))
 }
 
@@ -144,12 +192,15 @@ fn measure_scenes(
     scenes: &[SettledScene],
     options: &Options,
     store: &mut CheckpointStore,
+    kept: Option<&KeptCoefficients>,
     progress: &dyn Progress,
     mut clock: Clock,
 ) -> Result<Vec<Report>, Failure> {
     progress.stage("building");
     let optics = joined_optics(scenes);
-    let stage = staged(world, &scenes[0].scene, &optics, options.free_memory())?;
+    let mut stage = staged(world, &scenes[0].scene, &optics, options.free_memory())?;
+    stage.keeps_coefficients = store.collects();
+    let misfit = kept.map_or(Ok(None), |kept| kept.check(&stage))?;
     let notes = pixels::count_pixels(&mut world.world, &stage, scenes[0].scene.bands.len())?;
     clock.lap("build");
     let context = joined_context(scenes);
@@ -177,7 +228,10 @@ fn measure_scenes(
         context: &context,
         sensors: shared,
         notes,
-        warnings: unsaved.into_iter().collect(),
+        warnings: unsaved.into_iter().chain(misfit).collect(),
+        coefficients: PathSpectra::new(&stage.models)
+            .and_then(|spectra| store.coefficients(&spectra))
+            .map(Arc::new),
         seconds: clock.seconds(),
         stages: clock.laps,
     };

@@ -26,6 +26,9 @@ pub struct Options {
     pub scratch: ScratchSpace,
     /// True to trace only as much of each sensor as an estimate of its time takes.
     pub forecast: bool,
+    /// True to keep the coefficients of sensors of packets in the report, for [`respectrum`](super::respectrum): however
+    /// few bands there are, and as long as they fit into memory.
+    pub keeps_coefficients: bool,
     /// Names of the sensors that measure; all if empty.
     pub sensors: Vec<String>,
 }
@@ -48,6 +51,7 @@ impl Default for Options {
             memory: None,
             scratch: ScratchSpace::default(),
             forecast: false,
+            keeps_coefficients: false,
             sensors: Vec::new(),
         }
     }

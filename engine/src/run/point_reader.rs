@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::provenance::FileHashes;
 use super::reading::{choose_sensors, folder_of, sound};
-use super::sweep::Likeness;
+use super::sweep::SharingKeys;
 use super::{Failure, Options, Progress};
 use crate::document::{ParsedScene, ReadOptions, Reading, Scene, ScenePath, Sun};
 use crate::products::{Night, SweepPoint};
@@ -24,10 +24,10 @@ pub(super) struct PointReader {
 }
 
 /// Properties of a point that need no run.
-pub(super) struct Glance {
+pub(super) struct PointSummary {
     /// Hash of all that decides its results.
     pub(super) key: String,
-    pub(super) likeness: Likeness,
+    pub(super) sharing: SharingKeys,
     pub(super) sun: Option<Sun>,
     pub(super) night: Option<Night>,
 }
@@ -65,14 +65,14 @@ impl PointReader {
     ///
     /// # Errors
     /// Errors of the scene at the first point that has any.
-    pub(super) fn look_at_all(
+    pub(super) fn summaries(
         &self,
         points: &[SweepPoint],
         progress: &dyn Progress,
-    ) -> Result<Vec<Glance>, Failure> {
+    ) -> Result<Vec<PointSummary>, Failure> {
         let mut all = Vec::with_capacity(points.len());
         for some in points.chunks(AT_A_TIME) {
-            let found: Vec<_> = some.par_iter().map(|point| self.look_at(point)).collect();
+            let found: Vec<_> = some.par_iter().map(|point| self.summary(point)).collect();
             for (found, point) in found.into_iter().zip(some) {
                 all.push(found.map_err(|failure| wrong_at(point, failure))?);
             }
@@ -81,7 +81,7 @@ impl PointReader {
         Ok(all)
     }
 
-    fn look_at(&self, point: &SweepPoint) -> Result<Glance, Failure> {
+    fn summary(&self, point: &SweepPoint) -> Result<PointSummary, Failure> {
         let (reading, night) = self.sound(self.parsed.read(&self.at(point)))?;
         let params = ScenePath::from("params");
         let swept: Vec<_> = point.params.iter().map(|(name, _)| params.name(name)).collect();
@@ -101,9 +101,9 @@ impl PointReader {
             let Ok(hash) = self.hashes.of(&folder_of(&self.file).join(named)) else { continue };
             hasher.update(hash.as_bytes());
         }
-        let likeness = Likeness::new(&scene, matches!(night, Some(Night::Dark(_))));
+        let sharing = SharingKeys::new(&scene, matches!(night, Some(Night::Dark(_))));
         let key = hasher.finalize().to_hex().to_string();
-        Ok(Glance { key, likeness, sun: scene.sun, night })
+        Ok(PointSummary { key, sharing, sun: scene.sun, night })
     }
 
     /// Reading without errors, which may be dark at night.

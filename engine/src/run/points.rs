@@ -80,8 +80,16 @@ impl SettledPoints {
         progress: &dyn Progress,
     ) -> Result<Vec<Report>, Failure> {
         let mut store = CheckpointStore::disabled();
-        measure_scenes(world, &self.scenes[part], options, &mut store, progress, Clock::start())
-            .map_err(|failure| wrong_at(first, failure.with_source(&self.source)))
+        measure_scenes(
+            world,
+            &self.scenes[part],
+            options,
+            &mut store,
+            None,
+            progress,
+            Clock::start(),
+        )
+        .map_err(|failure| wrong_at(first, failure.with_source(&self.source)))
     }
 
     /// Number of scenes, at least 1, whose films and products fit into [`MOST_MEMORY`] together, and whose bands have

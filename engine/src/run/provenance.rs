@@ -17,7 +17,7 @@ pub(super) fn hash(
     Ok(scene_hash(scene, files, known)?.to_hex().to_string())
 }
 
-fn scene_hash(
+pub(super) fn scene_hash(
     scene: &Scene,
     files: &[PathBuf],
     known: &FileHashes,
@@ -43,6 +43,12 @@ pub(super) fn joint_hashes(own: &[&str]) -> Vec<String> {
 /// Hash of a scene without the stop criteria of its sensors: scenes with equal hashes draw the same samples.
 pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], Failure> {
     let mut scene = scene.clone();
+    without_stop_criteria(&mut scene);
+    Ok(*scene_hash(&scene, files, &FileHashes::default())?.as_bytes())
+}
+
+/// Removes all that says how long sensors measure.
+pub(super) fn without_stop_criteria(scene: &mut Scene) {
     for sensor in scene.sensors.values_mut() {
         match sensor {
             Sensor::Orthographic(sensor) => {
@@ -57,7 +63,6 @@ pub(super) fn stream_hash(scene: &Scene, files: &[PathBuf]) -> Result<[u8; 32], 
             Sensor::Photons(sensor) => (sensor.per_m2, sensor.until) = (1.0, None),
         }
     }
-    Ok(*scene_hash(&scene, files, &FileHashes::default())?.as_bytes())
 }
 
 /// Hashes of what files hold, by path: each file is read once for all scenes that name it, and again if it has changed.

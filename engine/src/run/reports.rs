@@ -1,6 +1,7 @@
 //! Reports of scenes that were measured on the same paths.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use hecs::World;
 use rayon::prelude::*;
@@ -20,6 +21,8 @@ pub(super) struct CommonResults<'a> {
     pub(super) sensors: Vec<SharedReports>,
     pub(super) notes: Vec<String>,
     pub(super) warnings: Vec<String>,
+    /// File of coefficients.
+    pub(super) coefficients: Option<Arc<Vec<u8>>>,
     pub(super) stages: Vec<(String, f64)>,
     pub(super) seconds: f64,
 }
@@ -71,6 +74,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             params: params(scene),
             sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
             source: None,
+            coefficients: common.coefficients.clone(),
         }
     };
     scenes.iter().zip(hashes).zip(sensors).map(report).collect()

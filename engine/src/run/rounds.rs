@@ -4,7 +4,7 @@ use std::io;
 use std::time::Instant;
 
 use super::checkpoint::{CheckpointStore, FilmState, Section};
-use super::convergence::{Convergence, ErrorCheck, Measurement, Start, relative_errors};
+use super::convergence::{Convergence, ErrorCheck, Measurement, PacedFilm, Start, relative_errors};
 use super::cost::{CostEstimate, PilotRun};
 use super::{Failure, Progress};
 use crate::components::StopCriterion;
@@ -76,6 +76,8 @@ pub(super) fn measure_until(
         }
         let seconds = rounds.seconds();
         let criterion = rounds.criterion_that_holds(seconds);
+        let all = || store.is_complete().then_some(StopCriterion::Samples(done));
+        let criterion = criterion.or_else(all);
         rounds.save(measurement, store, seconds, criterion.is_some())?;
         if let Some(criterion) = criterion {
             progress.sensor(name, 1.0);
@@ -134,6 +136,13 @@ impl Rounds<'_> {
         seconds: f64,
         is_end: bool,
     ) -> Result<(), Failure> {
+        if store.collects() {
+            let has_coefficients = |paced: PacedFilm<'_>| paced.film.has_coefficients_alone();
+            if is_end && measurement.films().into_iter().all(has_coefficients) {
+                store.set_section(self.section(measurement, store, seconds)?);
+            }
+            return Ok(());
+        }
         let schedule = &self.convergence.schedule;
         let is_end_of_block = schedule.last(self.done) == self.done;
         if !store.is_enabled() || !is_end_of_block || self.done == 0 {
@@ -142,14 +151,23 @@ impl Rounds<'_> {
         // A run cannot be resumed behind the last end of a block.
         let is_last = is_end || schedule.last(self.convergence.limit()) == self.done;
         if is_last || store.is_due() {
-            let state = state(measurement, store.scratch()).map_err(Failure::Pixels)?;
-            let name = self.name.to_owned();
-            store.set_section(Section { name, samples: self.done, seconds, state });
+            store.set_section(self.section(measurement, store, seconds)?);
             if let Some(warning) = store.save() {
                 self.progress.warn(&warning);
             }
         }
         Ok(())
+    }
+
+    /// State of the measurement.
+    fn section(
+        &self,
+        measurement: &mut dyn Measurement,
+        store: &CheckpointStore,
+        seconds: f64,
+    ) -> Result<Section, Failure> {
+        let state = state(measurement, store.scratch()).map_err(Failure::Pixels)?;
+        Ok(Section { name: self.name.to_owned(), samples: self.done, seconds, state })
     }
 
     /// Ends the pilot run if it is over; returns its forecast if the run is to end with it.

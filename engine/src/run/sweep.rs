@@ -56,17 +56,17 @@ impl SweepRun {
         let mut points: Vec<SweepPoint> = (0..sweep.len())
             .map(|index| SweepPoint { params: sweep.point(index), key: String::new(), night: None })
             .collect();
-        let found = in_pool(options, || reader.look_at_all(&points, progress))?;
-        for (point, found) in points.iter_mut().zip(&found) {
-            (point.key, point.night) = (found.key.clone(), found.night.clone());
+        let summaries = in_pool(options, || reader.summaries(&points, progress))?;
+        for (point, summary) in points.iter_mut().zip(&summaries) {
+            (point.key, point.night) = (summary.key.clone(), summary.night.clone());
         }
-        let likeness: Vec<Likeness> = found.iter().map(|found| found.likeness).collect();
-        let suns: Vec<Option<Sun>> = found.into_iter().map(|found| found.sun).collect();
+        let sharing: Vec<SharingKeys> = summaries.iter().map(|summary| summary.sharing).collect();
+        let suns: Vec<Option<Sun>> = summaries.into_iter().map(|summary| summary.sun).collect();
         let mut names = HashSet::new();
         // A list may hold a value twice.
         let is_new = |index: &usize| names.insert(points[*index].name());
         let distinct: Vec<usize> = (0..points.len()).filter(is_new).collect();
-        let groups = groups(&distinct, &likeness, &suns, scene.bands.len());
+        let groups = groups(&distinct, &sharing, &suns, scene.bands.len());
         for group in groups.iter().filter(|group| group.len() > 1) {
             // Results depend on which points share paths.
             let own: Vec<&str> = group.iter().map(|&index| points[index].key.as_str()).collect();
@@ -178,20 +178,21 @@ impl SweepRun {
             params: params(&self.scene),
             sun_azimuth_deg: None,
             source: Some(scene_source(&self.file, &self.options)),
+            coefficients: None,
         }
     }
 }
 
 /// Hashes of what points can share.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Likeness {
+pub(super) struct SharingKeys {
     /// Hash of the geometry: the ray engine is built once for points that are equal in it.
     geometry: blake3::Hash,
     /// Hash of all that decides the paths; none of a point that is traced alone.
     paths: Option<blake3::Hash>,
 }
 
-impl Likeness {
+impl SharingKeys {
     /// Hashes of a scene; one without light is traced alone.
     pub(super) fn new(scene: &Scene, is_dark: bool) -> Self {
         let geometry = blake3::hash(geometry_of(scene).to_ron().as_bytes());
@@ -207,14 +208,14 @@ const MOST_BANDS: usize = 1 << 14;
 /// Groups of points that are traced on the same paths; those of the same geometry follow each other.
 fn groups(
     points: &[usize],
-    likeness: &[Likeness],
+    sharing: &[SharingKeys],
     suns: &[Option<Sun>],
     bands: usize,
 ) -> Vec<Vec<usize>> {
     let most = (MOST_BANDS / bands.max(1)).max(1);
     let mut of_geometry: IndexMap<blake3::Hash, IndexMap<PathsOf, Vec<usize>>> = IndexMap::new();
     for &index in points {
-        let one = likeness[index];
+        let one = sharing[index];
         let paths = one.paths.map_or(PathsOf::Point(index), PathsOf::Points);
         of_geometry.entry(one.geometry).or_default().entry(paths).or_default().push(index);
     }
@@ -256,9 +257,12 @@ fn paths_of(scene: &Scene) -> Option<Scene> {
         sensor.until().iter().any(|stop| matches!(stop, StopCriterion::Seconds(_)))
     };
     let is_alone = |sensor: &Sensor| is_limited(sensor) || sensor.system() == Some(System::Analog);
-    if scene.sensors.values().any(is_alone) {
-        return None;
-    }
+    let shared = || Scene { sun: sun_of_paths(scene), ..without_values(scene) };
+    (!scene.sensors.values().any(is_alone)).then(shared)
+}
+
+/// Scene without values by band.
+pub(super) fn without_values(scene: &Scene) -> Scene {
     let one = || Spectrum::Constant(1.0);
     let sky = match &scene.sky {
         Sky::Fraction(shares) if shares.iter().any(|share| *share > 0.0) => {
@@ -268,13 +272,13 @@ fn paths_of(scene: &Scene) -> Option<Scene> {
         Sky::Isotropic { .. } => Sky::Isotropic { irradiance: one() },
     };
     let materials = scene.materials.iter();
-    Some(Scene {
+    Scene {
         title: String::new(),
         spectra: Map::new(),
         materials: materials.map(|(name, one)| (name.clone(), one.without_values())).collect(),
-        sun: sun_of_paths(scene),
+        sun: scene.sun.as_ref().map(|sun| Sun { irradiance: one(), ..sun.clone() }),
         sky,
         thermal_sky: ThermalSky::None,
         ..scene.resolved()
-    })
+    }
 }

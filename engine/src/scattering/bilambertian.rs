@@ -53,6 +53,11 @@ impl BiLambertian {
         Self { front, back, transmitted, is_opaque: spectra.is_zero(transmitted) }
     }
 
+    /// Spectra of reflection from the front and from the back, and of transmission.
+    pub(super) const fn scattering_spectra(&self) -> [SpectrumId; 3] {
+        [self.front.reflected, self.back.reflected, self.transmitted]
+    }
+
     const fn side(&self, is_front: bool) -> &Side {
         if is_front { &self.front } else { &self.back }
     }

@@ -10,6 +10,7 @@ mod directional;
 mod glossy_leaf;
 mod lanes;
 mod lobe;
+mod path_spectra;
 mod representatives;
 mod rpv;
 mod soilspect;
@@ -24,6 +25,7 @@ pub use directional::{BandModel, Directional, ModelFault};
 pub use glossy_leaf::GlossyLeaf;
 pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, with_simd};
 pub use lobe::{Angles, Lobe, LobeSpectrum, SurfaceId};
+pub use path_spectra::{PathMisfit, PathSpectra};
 pub use representatives::RepresentativeBands;
 pub use spectrum::{SceneSpectra, SpectrumId};
 

@@ -111,6 +111,17 @@ impl SceneSpectra {
         self.representatives = rows.flat_map(|row| self.chosen.values_of(row)).collect();
     }
 
+    /// Returns whether a spectrum multiplies the throughput of paths.
+    pub(super) fn is_factor(&self, id: SpectrumId) -> bool {
+        self.is_factor[id.index()]
+    }
+
+    /// Number of spectra.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.largest.len()
+    }
+
     /// Number of bands.
     #[must_use]
     pub const fn bands(&self) -> usize {

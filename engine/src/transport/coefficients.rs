@@ -18,7 +18,12 @@ use crate::statistics::Sums;
 pub(in crate::transport) struct Coefficients {
     products: SpectrumProducts,
     terms: Vec<Term>,
+    /// True if they are evaluated only where memory ends.
+    are_kept: bool,
 }
+
+/// Number of terms, and of products, beyond which coefficients are evaluated although they are kept.
+const MOST_KEPT: usize = 1 << 22;
 
 /// Coefficient of a product in a cell of some of the sums.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +43,17 @@ impl Term {
 impl Coefficients {
     /// No terms; with `reuse`, products of the same factors are one.
     pub(in crate::transport) fn new(reuse: bool) -> Self {
-        Self { products: SpectrumProducts::new(reuse), terms: Vec::new() }
+        Self { products: SpectrumProducts::new(reuse), terms: Vec::new(), are_kept: false }
+    }
+
+    /// No terms, which are evaluated only where memory ends.
+    pub(in crate::transport) fn kept() -> Self {
+        Self { are_kept: true, ..Self::new(true) }
+    }
+
+    /// No terms, which are kept if those of another are.
+    pub(in crate::transport) fn like(other: &Self) -> Self {
+        Self { are_kept: other.are_kept, ..Self::new(true) }
     }
 
     /// The products.
@@ -48,6 +63,9 @@ impl Coefficients {
 
     /// Returns whether there are more terms than `terms` or more products than `products`.
     pub(in crate::transport) const fn exceeds(&self, terms: usize, products: usize) -> bool {
+        if self.are_kept {
+            return self.terms.len() > MOST_KEPT || self.products.len() > MOST_KEPT;
+        }
         self.terms.len() > terms || self.products.len() > products
     }
 
@@ -172,12 +190,16 @@ impl Coefficients {
         );
     }
 
-    /// Writes all products and terms.
+    /// Writes all products and terms, and the largest value of each spectrum: products are relative to it.
     ///
     /// # Errors
     /// Errors of the writer.
-    pub(in crate::transport) fn save(&self, out: &mut dyn Write) -> io::Result<()> {
-        self.products.save(out)?;
+    pub(in crate::transport) fn save(
+        &self,
+        models: &SurfaceModels,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        self.products.save(models, out)?;
         save_u64(out, &[self.terms.len() as u64])?;
         self.terms.iter().try_for_each(|term| {
             let Term { product, sums, cell, coefficient } = *term;
@@ -185,26 +207,31 @@ impl Coefficients {
         })
     }
 
-    /// Reads what [`Self::save`] wrote.
+    /// Reads what [`Self::save`] wrote. The models may hold other spectra than those that it was written with, by the same
+    /// ids.
     ///
     /// # Errors
     /// Errors of the reader, and numbers that cannot be.
-    pub(in crate::transport) fn restore(&mut self, input: &mut dyn Read) -> io::Result<()> {
-        self.products.restore(input)?;
+    pub(in crate::transport) fn restore(
+        models: &SurfaceModels,
+        input: &mut dyn Read,
+    ) -> io::Result<Self> {
+        let mut restored = Self::new(true);
+        let scales = restored.products.restore(models, input)?;
         let mut count = [0];
         restore_u64(input, &mut count)?;
-        self.terms.clear();
         for _ in 0..count[0] {
             let mut numbers = [0; 4];
             restore_u64(input, &mut numbers)?;
             let [product, sums, cell, bits] = numbers;
             let product = product as usize;
-            if product >= self.products.len() {
+            let Some((id, scale)) = scales.get(product).copied() else {
                 return Err(io::ErrorKind::InvalidData.into());
-            }
-            let coefficient = f64::from_bits(bits);
-            self.terms.push(Term { product, sums: sums as u32, cell: cell as usize, coefficient });
+            };
+            let coefficient = f64::from_bits(bits) * scale;
+            let (sums, cell) = (sums as u32, cell as usize);
+            restored.terms.push(Term { product: id, sums, cell, coefficient });
         }
-        Ok(())
+        Ok(restored)
     }
 }

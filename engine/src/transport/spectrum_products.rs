@@ -89,41 +89,58 @@ impl SpectrumProducts {
         ids
     }
 
-    /// Writes all products, each as the product and the spectrum that it is made of.
+    /// Writes all products, each as the product and the spectrum that it is made of, with the largest value of the
+    /// spectrum.
     ///
     /// # Errors
     /// Errors of the writer.
     ///
     /// # Panics
     /// If a product is not one of spectra of the table alone.
-    pub(in crate::transport) fn save(&self, out: &mut dyn Write) -> io::Result<()> {
+    pub(in crate::transport) fn save(
+        &self,
+        models: &SurfaceModels,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         save_u64(out, &[self.all.len() as u64 - 1])?;
         self.all[1..].iter().try_for_each(|product| {
-            let Product::Times(of, LobeSpectrum::Table(spectrum)) = *product else {
+            let Product::Times(of, factor @ LobeSpectrum::Table(spectrum)) = *product else {
                 panic!("coefficients are kept of products of spectra alone")
             };
-            save_u64(out, &[of as u64, spectrum.number().into()])
+            let largest = f64::from(models.normalisation(&factor));
+            save_u64(out, &[of as u64, spectrum.number().into(), largest.to_bits()])
         })
     }
 
-    /// Reads what [`Self::save`] wrote.
+    /// Reads what [`Self::save`] wrote into an empty table. Returns the index of each product that was written, and the
+    /// ratio of what it is relative to: that of the models' spectra over that of the spectra that it was written with.
     ///
     /// # Errors
-    /// Errors of the reader, and products that are made of later ones.
-    pub(in crate::transport) fn restore(&mut self, input: &mut dyn Read) -> io::Result<()> {
+    /// Errors of the reader, and products of later ones or of spectra that the models do not have.
+    pub(in crate::transport) fn restore(
+        &mut self,
+        models: &SurfaceModels,
+        input: &mut dyn Read,
+    ) -> io::Result<Vec<(ProductId, f64)>> {
         self.clear();
+        let mut scales = vec![(Self::ONE, 1.0)];
         let mut count = [0];
         restore_u64(input, &mut count)?;
         for _ in 0..count[0] {
-            let mut numbers = [0; 2];
+            let mut numbers = [0; 3];
             restore_u64(input, &mut numbers)?;
-            let [of, spectrum] = numbers;
-            if of >= self.all.len() as u64 {
+            let [of, spectrum, largest] = numbers;
+            let before = scales.get(of as usize).copied();
+            let (Some((of, scale)), true) = (before, spectrum < models.spectra.count() as u64)
+            else {
                 return Err(io::ErrorKind::InvalidData.into());
-            }
-            self.times(of as usize, LobeSpectrum::Table(SpectrumId::from_number(spectrum as u32)));
+            };
+            let factor = LobeSpectrum::Table(SpectrumId::from_number(spectrum as u32));
+            let (before, now) = (f64::from_bits(largest), models.normalisation(&factor));
+            let ratio = if before > 0.0 { f64::from(now) / before } else { 0.0 };
+            scales.push((self.times(of, factor), scale * ratio));
         }
-        Ok(())
+        Ok(scales)
     }
 
     /// Removes all but the empty product.

@@ -7,10 +7,11 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
-use sunfleck::document::System;
+use sunfleck::document::{Param, System};
 use sunfleck::run::Partition;
 
-use self::values::{SystemName, part, quality, seconds, system};
+use self::shared::changed_name;
+use self::values::{SystemName, part, quality, seconds, setting, system};
 use crate::verify::CHECKS;
 
 pub(crate) use self::shared::{Measured, Out, Run, Scene};
@@ -35,6 +36,8 @@ pub(crate) enum Command {
     /// Run a scene with several transport systems and show their differences in standard errors, and
     /// their cost
     Compare(Compare),
+    /// Evaluate the results of `run --keep-coefficients` for other spectra, irradiances or bands; no ray is traced
+    Respectrum(Respectrum),
     /// Combine the checkpoints of `run --part` and write the results
     Merge(Merge),
     /// Report what a scene consists of, its errors and its warnings, without running it
@@ -184,10 +187,50 @@ pub(crate) struct Trace {
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, requires = "checkpoint", value_parser = seconds)]
     pub(crate) every: f64,
 
+    /// Keep what sensors of packets measure as coefficients of products of spectra, for `respectrum`
+    #[arg(long, conflicts_with_all = ["checkpoint", "forecast"])]
+    pub(crate) keep_coefficients: bool,
+
     /// Run only one part, such as 2/4, the second of four, and save it to the checkpoint; `merge` combines
     /// all parts
     #[arg(long, value_name = "I/N", requires = "checkpoint", value_parser = part)]
     pub(crate) part: Option<Partition>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Respectrum {
+    /// Folder with the results of `run --keep-coefficients`
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+
+    /// Set a parameter of the scene to a number or a text; may be repeated. Those that the run has set keep their values
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
+    pub(crate) settings: Vec<(String, Param)>,
+
+    /// Apply this variant of the scene [default: that of the run]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) variant: Option<String>,
+
+    /// Folder for the results [default: that of the run, with `_<variant>` and `_<name>=<value>` of each --set]
+    #[arg(long = "out", value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Replace results of another scene
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+impl Respectrum {
+    /// Folder for the results.
+    pub(crate) fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            // `.` has no name of its own.
+            let folder = std::path::absolute(&self.results).unwrap_or(self.results.clone());
+            let stem = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let name = changed_name(stem, self.variant.as_deref(), &self.settings);
+            self.results.with_file_name(name)
+        })
+    }
 }
 
 #[derive(Args, Debug)]

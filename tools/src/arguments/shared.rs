@@ -39,14 +39,23 @@ impl Scene {
     /// Name of the scene and of what is changed in it: `birch_winter_sza=60`.
     fn name(&self) -> String {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        // Only the last value of a parameter counts.
-        let settings: BTreeMap<&str, &document::Param> =
-            self.settings.iter().map(|(name, value)| (name.as_str(), value)).collect();
-        let settings = settings.iter().map(|(param, value)| format!("{param}={value}"));
-        let parts = [stem].into_iter().chain(self.variant.clone()).chain(settings);
-        let name = parts.collect::<Vec<_>>().join("_");
-        folder_name(&name, &name)
+        changed_name(stem, self.variant.as_deref(), &self.settings)
     }
+}
+
+/// Name of a folder for results of something that is changed.
+pub(super) fn changed_name(
+    stem: String,
+    variant: Option<&str>,
+    settings: &[(String, document::Param)],
+) -> String {
+    // Only the last value of a parameter counts.
+    let settings: BTreeMap<&str, &document::Param> =
+        settings.iter().map(|(name, value)| (name.as_str(), value)).collect();
+    let settings = settings.iter().map(|(param, value)| format!("{param}={value}"));
+    let parts = [stem].into_iter().chain(variant.map(str::to_owned)).chain(settings);
+    let name = parts.collect::<Vec<_>>().join("_");
+    folder_name(&name, &name)
 }
 
 /// Folder of the results.

@@ -100,6 +100,7 @@ fn report(sensors: Vec<SensorReport>) -> Report {
         irradiance: vec![1.0; 2],
         sun_azimuth_deg: Some(250.0),
         source: None,
+        coefficients: None,
     }
 }
 

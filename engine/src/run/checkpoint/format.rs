@@ -5,7 +5,7 @@
 //! | bytes | |
 //! |---|---|
 //! | 16 | `sunfleck traced` and a line feed |
-//! | 4 | version of this format, 3 |
+//! | 4 | version of this format, 4 |
 //! | 4, n | length and text of the version of sunfleck: another one may draw other numbers |
 //! | 32 | hash of the scene without what says how long it is measured |
 //! | 4, 4 | which share of the run this is, from 0, and of how many |
@@ -13,6 +13,8 @@
 //! | 4, n | length and text of its name |
 //! | 8, 8 | samples of each randomisation (u64) and seconds (f64) so far |
 //! | 8, n | length of what its films hold, and that (`transport::Film::save`) |
+//! | 8, n | length of the spectra that decided the paths (`scattering::PathSpectra::save`), and these; none unless
+//! coefficients are kept |
 //! | 32 | BLAKE3 of all bytes before |
 
 use std::fs::File;
@@ -28,7 +30,7 @@ use crate::scratch::{RandomAccessFile, ScratchSpace};
 use crate::transport::Partition;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Writer that hashes what it writes.
 struct HashingWriter<W> {
@@ -51,26 +53,38 @@ impl<W: Write> Write for HashingWriter<W> {
 /// Writes a checkpoint.
 pub(super) fn write(to: &Checkpoint, hash: [u8; 32], sections: &[Section]) -> io::Result<()> {
     output::replace_file(&to.file, |file| {
-        let mut out =
-            HashingWriter { inner: io::BufWriter::new(file), hasher: blake3::Hasher::new() };
-        out.write_all(&MAGIC)?;
-        out.write_all(&VERSION.to_le_bytes())?;
-        text(&mut out, env!("CARGO_PKG_VERSION"))?;
-        out.write_all(&hash)?;
-        out.write_all(&to.share.index.to_le_bytes())?;
-        out.write_all(&to.share.count.to_le_bytes())?;
-        out.write_all(&(sections.len() as u32).to_le_bytes())?;
-        for section in sections {
-            text(&mut out, &section.name)?;
-            out.write_all(&section.samples.to_le_bytes())?;
-            out.write_all(&section.seconds.to_le_bytes())?;
-            out.write_all(&section.state.len().to_le_bytes())?;
-            section.state.write(&mut out)?;
-        }
-        let sum = out.hasher.finalize();
-        out.write_all(sum.as_bytes())?;
-        out.flush()
+        write_into(io::BufWriter::new(file), to.share, hash, sections, &[])
     })
+}
+
+/// Writes the sections of a scene with this hash, and the spectra that decided its paths.
+pub(super) fn write_into(
+    inner: impl Write,
+    share: Partition,
+    hash: [u8; 32],
+    sections: &[Section],
+    spectra: &[u8],
+) -> io::Result<()> {
+    let mut out = HashingWriter { inner, hasher: blake3::Hasher::new() };
+    out.write_all(&MAGIC)?;
+    out.write_all(&VERSION.to_le_bytes())?;
+    text(&mut out, env!("CARGO_PKG_VERSION"))?;
+    out.write_all(&hash)?;
+    out.write_all(&share.index.to_le_bytes())?;
+    out.write_all(&share.count.to_le_bytes())?;
+    out.write_all(&(sections.len() as u32).to_le_bytes())?;
+    for section in sections {
+        text(&mut out, &section.name)?;
+        out.write_all(&section.samples.to_le_bytes())?;
+        out.write_all(&section.seconds.to_le_bytes())?;
+        out.write_all(&section.state.len().to_le_bytes())?;
+        section.state.write(&mut out)?;
+    }
+    out.write_all(&(spectra.len() as u64).to_le_bytes())?;
+    out.write_all(spectra)?;
+    let sum = out.hasher.finalize();
+    out.write_all(sum.as_bytes())?;
+    out.flush()
 }
 
 fn text(out: &mut impl Write, text: &str) -> io::Result<()> {
@@ -122,6 +136,8 @@ pub(super) struct Contents {
     pub(super) scene: [u8; 32],
     pub(super) share: Partition,
     pub(super) sections: Vec<Section>,
+    /// Spectra that decided the paths; empty unless coefficients are kept.
+    pub(super) spectra: Vec<u8>,
 }
 
 /// Reads a checkpoint of a scene.
@@ -130,7 +146,7 @@ pub(super) fn read_of_scene(
     hash: [u8; 32],
     scratch: &ScratchSpace,
 ) -> Result<(Partition, Vec<Section>), Failure> {
-    let Contents { scene, share, sections } = read(file, scratch)?;
+    let Contents { scene, share, sections, .. } = read(file, scratch)?;
     if scene != hash {
         let found = "is of another scene or of other sensors: only `until`, `samples_per_px`, `samples_per_m2`, \
                      `per_m2` and the quality may differ";
@@ -162,7 +178,7 @@ pub(super) fn read(file: &Path, scratch: &ScratchSpace) -> Result<Contents, Fail
         );
         return Err(wrong(file, &found, START_AGAIN));
     }
-    let body = (|| -> io::Result<([u8; 32], Partition, Vec<Section>)> {
+    let body = (|| -> io::Result<Contents> {
         let scene = array(&mut rest)?;
         let share = Partition { index: number(&mut rest)?, count: number(&mut rest)? };
         let (mut place, count) = (rest.place(), number(&mut rest)?);
@@ -171,13 +187,20 @@ pub(super) fn read(file: &Path, scratch: &ScratchSpace) -> Result<Contents, Fail
         for _ in 0..count {
             sections.push(section(&input, &mut place, end, scratch)?);
         }
-        Ok((scene, share, sections))
+        let mut rest = input.reader(place..end);
+        let length = u64::from_le_bytes(array(&mut rest)?);
+        if length > end - rest.place() {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        let mut spectra = vec![0; length as usize];
+        rest.read_exact(&mut spectra)?;
+        Ok(Contents { scene, share, sections, spectra })
     })();
-    let (scene, share, sections) = body.map_err(damaged)?;
-    if share.index >= share.count {
+    let contents = body.map_err(damaged)?;
+    if contents.share.index >= contents.share.count {
         return Err(wrong(file, DAMAGED, START_AGAIN));
     }
-    Ok(Contents { scene, share, sections })
+    Ok(contents)
 }
 
 /// Reads a section from a place on, which moves behind it.

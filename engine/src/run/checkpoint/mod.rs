@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use super::Failure;
 use crate::output;
+use crate::scattering::PathSpectra;
 use crate::scratch::ScratchSpace;
 use crate::transport::Partition;
 
@@ -35,6 +36,10 @@ pub(super) struct CheckpointStore {
     /// Parts of the run that were read, each with its sections.
     read: Vec<(Partition, Vec<Section>)>,
     to: Option<Checkpoint>,
+    /// True if the sections of measurements that have coefficients alone are collected, and nothing is saved.
+    collects: bool,
+    /// True if measurements end with what was read.
+    is_complete: bool,
     /// Sections that the file will hold.
     sections: Vec<Section>,
     written: Instant,
@@ -68,6 +73,8 @@ impl CheckpointStore {
             scratch: ScratchSpace::default(),
             read: Vec::new(),
             to: None,
+            collects: false,
+            is_complete: false,
             sections: Vec::new(),
             written: Instant::now(),
             failed: None,
@@ -145,6 +152,61 @@ impl CheckpointStore {
             return Err(wrong(file, &found, "give the files of all parts"));
         }
         Ok(Self { hash, scratch: scratch.clone(), read, ..Self::disabled() })
+    }
+
+    /// Store that collects the coefficients of a run whose paths have this hash.
+    pub(super) fn of_coefficients(hash: [u8; 32]) -> Self {
+        Self { hash, collects: true, ..Self::disabled() }
+    }
+
+    /// The coefficients that were collected, as a file; `None` if there are none.
+    pub(super) fn coefficients(&self, spectra: &PathSpectra) -> Option<Vec<u8>> {
+        let (mut bytes, mut of_paths) = (Vec::new(), Vec::new());
+        let written = spectra.save(&mut of_paths).and_then(|()| {
+            format::write_into(&mut bytes, Partition::ALL, self.hash, &self.sections, &of_paths)
+        });
+        // Memory takes all that is written to it.
+        written.ok().filter(|()| self.collects && !self.sections.is_empty()).map(|()| bytes)
+    }
+
+    /// Store of a run that evaluates the coefficients in a file, and the spectra that decided their paths. `hash` is
+    /// that of the paths of the scene.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged, or has coefficients of other paths.
+    pub(super) fn evaluating(file: &Path, hash: [u8; 32]) -> Result<(Self, PathSpectra), Failure> {
+        let Contents { scene, share, sections, spectra } =
+            format::read(file, &ScratchSpace::default())?;
+        let again = "run the scene again with `--keep-coefficients`";
+        let spectra = PathSpectra::restore(&mut spectra.as_slice())
+            .map_err(|_none| wrong(file, "holds no coefficients", again))?;
+        if scene != hash {
+            let found = "has coefficients of other paths: only spectra, irradiances, the share of the sky and bands \
+                         may differ";
+            return Err(wrong(file, found, again));
+        }
+        let read = vec![(share, sections)];
+        Ok((Self { hash, read, is_complete: true, ..Self::disabled() }, spectra))
+    }
+
+    /// Names of the sensors that were read.
+    pub(super) fn sensors(&self) -> impl Iterator<Item = &str> {
+        self.read.iter().flat_map(|(_, sections)| sections).map(|section| &*section.name)
+    }
+
+    /// Names of the sensors whose coefficients were collected.
+    pub(super) fn collected(&self) -> impl Iterator<Item = &str> {
+        self.sections.iter().map(|section| &*section.name)
+    }
+
+    /// Returns whether measurements end with what was read.
+    pub(super) const fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// Returns whether coefficients are collected at the end of each measurement.
+    pub(super) const fn collects(&self) -> bool {
+        self.collects
     }
 
     /// Names of the sensors in a checkpoint, if it is of another scene than that with this hash.

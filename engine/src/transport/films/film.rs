@@ -64,6 +64,12 @@ pub trait Film {
     /// Rays traced.
     fn rays(&self) -> u64;
 
+    /// Returns whether all of its sums are coefficients of products of spectra, so that its state can be restored with
+    /// other spectra.
+    fn has_coefficients_alone(&self) -> bool {
+        false
+    }
+
     /// Largest fraction of the incident energy of photon packets that is not accounted for.
     fn imbalance(&self) -> Option<f64> {
         None

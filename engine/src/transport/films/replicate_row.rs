@@ -29,7 +29,7 @@ impl ReplicateRow {
         let Some(part) = part.coefficients.as_ref().filter(|terms| !terms.is_empty()) else {
             return;
         };
-        let terms = self.coefficients.get_or_insert_with(|| Coefficients::new(true));
+        let terms = self.coefficients.get_or_insert_with(|| Coefficients::like(part));
         terms.absorb(part);
         if terms.exceeds(Self::MOST_TERMS, Self::MOST_PRODUCTS) {
             self.evaluate(models);

@@ -206,7 +206,9 @@ impl Film for ReplicateSums<'_> {
                 }
             }
             save_u64(out, &[row.coefficients.is_some().into()])?;
-            row.coefficients.iter().try_for_each(|terms| terms.save(out))?;
+            if let (Some(terms), Some(models)) = (&row.coefficients, self.tracer.models()) {
+                terms.save(models, out)?;
+            }
         }
         Ok(())
     }
@@ -221,7 +223,7 @@ impl Film for ReplicateSums<'_> {
             owned.for_each(|(_, row)| *row = ReplicateRow::default());
         }
         self.set_up(partition);
-        let Store::All(rows) = &mut self.store else { return Ok(()) };
+        let Self { tracer, store: Store::All(rows), .. } = self else { return Ok(()) };
         let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
         for (_, row) in owned {
             for sums in &mut row.sums {
@@ -235,9 +237,8 @@ impl Film for ReplicateSums<'_> {
             }
             let mut has_terms = [0];
             restore_u64(input, &mut has_terms)?;
-            if has_terms == [1] {
-                let terms = row.coefficients.insert(Coefficients::new(true));
-                terms.restore(input)?;
+            if let ([1], Some(models)) = (has_terms, tracer.models()) {
+                row.coefficients = Some(Coefficients::restore(models, input)?);
             }
         }
         Ok(())
@@ -274,6 +275,15 @@ impl Film for ReplicateSums<'_> {
         };
         // Mean, squares and error, and what mean and error are scaled to.
         tracing.max(one.saturating_mul(5))
+    }
+
+    fn has_coefficients_alone(&self) -> bool {
+        let Store::All(rows) = &self.store else { return false };
+        let is_empty = |sums: &Sums| {
+            let (ordered, mut buffer) = (sums.ordered(), Vec::new());
+            chunks(sums).all(|cells| ordered.values(cells, &mut buffer).iter().all(|v| *v == 0.0))
+        };
+        rows.iter().all(|row| row.coefficients.is_some() && row.sums.iter().all(is_empty))
     }
 
     fn samples(&self) -> u64 {

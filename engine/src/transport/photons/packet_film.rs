@@ -102,7 +102,7 @@ impl SampleTracer for PacketTracer<'_> {
 
     fn trace(&self, randomisation: u64, samples: Range<u64>) -> (ReplicateRow, u64) {
         let stage = self.settings.stage;
-        let mut tally = Tally::new(&stage.models, self.empty_sums());
+        let mut tally = Tally::new(&stage.models, self.empty_sums(), stage.keeps_coefficients);
         let idle = self.idle().pop();
         let new = || PacketBatch::new(self.batch, stage);
         let mut batch = idle.unwrap_or_else(new);

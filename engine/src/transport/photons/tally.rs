@@ -56,13 +56,17 @@ const MOST_PRODUCTS: usize = 1 << 10;
 const MANY_BANDS: usize = 512;
 
 impl<'m> Tally<'m> {
-    /// A tally of these sums, without contributions.
-    pub(super) fn new(models: &'m SurfaceModels, sums: Vec<Sums>) -> Self {
+    /// A tally of these sums, without contributions. With `keeps_all`, no coefficient is evaluated as long as there is
+    /// room.
+    pub(super) fn new(models: &'m SurfaceModels, sums: Vec<Sums>, keeps_all: bool) -> Self {
         let bands = bands(&sums);
+        let keeps_all = keeps_all && models.are_diffuse();
+        let coefficients =
+            if keeps_all { Coefficients::kept() } else { Coefficients::new(bands > LANES) };
         Self {
             models,
-            coefficients: Coefficients::new(bands > LANES),
-            keeps_coefficients: bands >= MANY_BANDS && models.are_diffuse(),
+            coefficients,
+            keeps_coefficients: keeps_all || bands >= MANY_BANDS && models.are_diffuse(),
             weight: Weight::ONE,
             last: None,
             sums,
@@ -170,7 +174,7 @@ mod tests {
             let value = move |band: usize| ((band * 31 + seed * 17) % 7) as f32 / 8.0;
             models.spectra.add((0..bands).map(value))
         });
-        let mut tally = Tally::new(&models, vec![Sums::new(2, bands), Sums::new(1, bands)]);
+        let mut tally = Tally::new(&models, vec![Sums::new(2, bands), Sums::new(1, bands)], false);
         let rounds = 5;
         for round in 0..rounds {
             tally.start();
@@ -201,7 +205,7 @@ mod tests {
     #[test]
     fn a_flush_of_one_band_leaves_the_others() {
         let models = SurfaceModels::new(20);
-        let mut tally = Tally::new(&models, vec![Sums::new(1, 20)]);
+        let mut tally = Tally::new(&models, vec![Sums::new(1, 20)], false);
         tally.start();
         tally.scatter(Lobe::from(SpectrumId::ONE).scaled(3.0));
         tally.add(0, 0, WeightFactor::One, 1.0);
