@@ -235,15 +235,31 @@ pub(super) fn check_memory(
     let CostEstimate { largest: measure, .. } = costs[largest];
     let memory = costs[largest].memory();
     let fraction = free.saturating_sub(needed.saturating_sub(memory)) as f64 / memory as f64;
-    let fractions = successors(Some(0.99 * fraction), |fraction| Some(0.8 * fraction));
-    let candidates =
-        fractions.map_while(|fraction| smaller(sensor, &path, measure, fraction)).take(MOST_TRIES);
-    for Smaller { sensor, path, text } in candidates {
+    let mut tried = |fraction: f64| {
+        let Smaller { sensor, path, text } = smaller(sensor, &path, measure, fraction)?;
         costs[largest] = cost(name, &sensor);
-        if peak(&costs) <= free {
-            let help = format!("write {text}, or measure in fewer bands{alone}");
-            return Some(Diagnostic::error(path, message).help(help));
+        Some((peak(&costs) <= free, path, text))
+    };
+    // The whole does not fit.
+    let (mut too_large, mut advised) = (1.0, None);
+    for fraction in successors(Some(0.99 * fraction), |f| Some(0.8 * f)).take(MOST_TRIES) {
+        let Some((fits, path, text)) = tried(fraction) else { break };
+        if fits {
+            advised = Some((fraction, path, text));
+            break;
         }
+        too_large = fraction;
+    }
+    if let Some((mut fitting, mut path, mut text)) = advised {
+        for _ in 0..REFINEMENTS {
+            let middle = 0.5 * (fitting + too_large);
+            match tried(middle) {
+                Some((true, larger, advice)) => (fitting, path, text) = (middle, larger, advice),
+                Some((false, ..)) | None => too_large = middle,
+            }
+        }
+        let help = format!("write {text}, or measure in fewer bands{alone}");
+        return Some(Diagnostic::error(path, message).help(help));
     }
     let help = format!("measure less there, or in fewer bands{alone}");
     Some(Diagnostic::error(path, message).help(help))
@@ -276,6 +292,9 @@ pub(super) fn check_disk(
 
 /// Number of sensors whose memory a message lists.
 const SHOWN: usize = 5;
+
+/// Number of halvings of the range between a sensor that fits and one that does not.
+const REFINEMENTS: u32 = 5;
 
 /// Number of smaller sensors that are tried.
 const MOST_TRIES: usize = 40;

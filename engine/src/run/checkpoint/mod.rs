@@ -161,12 +161,15 @@ impl CheckpointStore {
 
     /// The coefficients that were collected, as a file; `None` if there are none.
     pub(super) fn coefficients(&self, spectra: &PathSpectra) -> Option<Vec<u8>> {
+        if !self.collects || self.sections.is_empty() {
+            return None;
+        }
         let (mut bytes, mut of_paths) = (Vec::new(), Vec::new());
         let written = spectra.save(&mut of_paths).and_then(|()| {
             format::write_into(&mut bytes, Partition::ALL, self.hash, &self.sections, &of_paths)
         });
-        // Memory takes all that is written to it.
-        written.ok().filter(|()| self.collects && !self.sections.is_empty()).map(|()| bytes)
+        // Sections that are in a temporary file may be unreadable.
+        written.ok().map(|()| bytes)
     }
 
     /// Store of a run that evaluates the coefficients in a file, and the spectra that decided their paths. `hash` is
