@@ -119,6 +119,34 @@ fn all_products_are_those_of_a_run_of_their_own() {
     assert!(exitance(&report) > 1.5 * exitance(&kept.report), "three times the light");
 }
 
+/// *Expected*: the scene file may have more bands than the run had; each has the albedo by adding layers.
+#[test]
+fn coefficients_serve_any_number_of_bands() {
+    let kept = Kept::new(&sheets(), &[]);
+    let optics = [(0.4, 0.3, 0.2), (0.1, 0.1, 0.25), (0.5, 0.4, 0.1)];
+    let list = |of: fn(&(f64, f64, f64)) -> f64| {
+        format!("{:?}", optics.iter().map(of).collect::<Vec<_>>())
+    };
+    let bands = [0, 1, 2].map(|i| format!("(name: \"n{i}\", center_nm: {}.0)", 500 + 100 * i));
+    let materials = format!(
+        r#""soil": Lambertian(reflectance: Bands({})), "leaf": Leaf(reflectance: Bands({}), transmittance: Bands({}))"#,
+        list(|optics| optics.2),
+        list(|optics| optics.0),
+        list(|optics| optics.1)
+    );
+    let scene = sheets()
+        .with("params", r#""sza": 30.0, "e": 1.0"#)
+        .with("bands", bands.join(", "))
+        .with("materials", materials);
+    fs::write(kept.scene(), scene.to_string()).expect("a file");
+    let report = kept.at(&[]).expect("other bands");
+    for (band, &optics) in optics.iter().enumerate() {
+        let albedo = Estimate::of(product(&report, "p", "albedo"), band);
+        let truth = albedo_of_sheets(optics, 2);
+        assert!((albedo.value - truth).abs() < 4.5 * albedo.error + 1e-6, "{albedo:?} {truth}");
+    }
+}
+
 /// Whatever changes the paths is refused, with what to do.
 #[test]
 fn what_changes_the_paths_is_refused() {

@@ -47,7 +47,7 @@ impl ParsedScene {
         Ok(Self { source, tree, included })
     }
 
-    /// The same without the key `sweep`: a point of a sweep has no use for the list of all.
+    /// Returns the scene without the key `sweep`: a point of a sweep has no use for the list of all.
     #[must_use]
     pub fn without_sweep(&self) -> Self {
         let mut tree = Node::clone(&self.tree);
@@ -88,7 +88,7 @@ impl ParsedScene {
                 diagnostic.place = self.source.place_of_path(diagnostic);
             }
         }
-        // What has no place of its own stands last.
+        // Diagnostics without a place stand last.
         let start = |one: &Diagnostic| one.place.as_ref().map_or(u32::MAX, |p| p.span.start);
         diagnostics.sort_by_key(start);
         // A file that is included twice is wrong once.

@@ -86,6 +86,12 @@ impl Sums {
         self.cell_mut(cell)[band] += value;
     }
 
+    /// Returns whether some value is not zero.
+    #[must_use]
+    pub fn has_values(&self) -> bool {
+        self.values.iter().any(|value| value.to_bits() > 0)
+    }
+
     /// Adds other sums of the same shape, cell by cell.
     ///
     /// # Panics

@@ -152,7 +152,7 @@ pub(super) fn check(
     hit.is_some()
 }
 
-/// The same scene for every instruction set of this processor, with and without memory that is fetched ahead.
+/// A scene for every instruction set of this processor, with and without memory that is fetched ahead.
 pub(super) fn on_all_levels(build: impl Fn() -> TwoLevelBvh) -> Vec<TwoLevelBvh> {
     let levels = crate::accel::simd::SimdLevel::available().into_iter();
     let pairs = levels.flat_map(|level| [(level, false), (level, true)]);

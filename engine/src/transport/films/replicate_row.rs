@@ -36,6 +36,11 @@ impl ReplicateRow {
         }
     }
 
+    /// Returns whether something was added to the sums beside the terms.
+    pub(super) fn has_sums(&self) -> bool {
+        self.sums.iter().any(Sums::has_values)
+    }
+
     /// Adds the values of all terms to the sums.
     pub(super) fn evaluate(&mut self, models: Option<&SurfaceModels>) {
         if let (Some(terms), Some(models)) = (&mut self.coefficients, models) {

@@ -199,7 +199,10 @@ impl Film for ReplicateSums<'_> {
         let Store::All(rows) = &self.store else { return Ok(()) };
         let owned = rows.iter().enumerate().filter(|(row, _)| self.partition.owns(*row));
         for (_, row) in owned {
-            for sums in &row.sums {
+            // Terms alone can be restored with another number of bands.
+            let saved = if row.has_sums() { &*row.sums } else { &[] };
+            save_u64(out, &[saved.len() as u64])?;
+            for sums in saved {
                 let (ordered, mut buffer) = (sums.ordered(), Vec::new());
                 for cells in chunks(sums) {
                     save_f64(out, ordered.values(cells, &mut buffer))?;
@@ -226,7 +229,9 @@ impl Film for ReplicateSums<'_> {
         let Self { tracer, store: Store::All(rows), .. } = self else { return Ok(()) };
         let owned = rows.iter_mut().enumerate().filter(|(row, _)| partition.owns(*row));
         for (_, row) in owned {
-            for sums in &mut row.sums {
+            let mut saved = [0];
+            restore_u64(input, &mut saved)?;
+            for sums in row.sums.iter_mut().take(saved[0] as usize) {
                 let mut values = vec![0.0; sums.bands()];
                 for cell in 0..sums.cells() {
                     restore_f64(input, &mut values)?;
@@ -279,11 +284,7 @@ impl Film for ReplicateSums<'_> {
 
     fn has_coefficients_alone(&self) -> bool {
         let Store::All(rows) = &self.store else { return false };
-        let is_empty = |sums: &Sums| {
-            let (ordered, mut buffer) = (sums.ordered(), Vec::new());
-            chunks(sums).all(|cells| ordered.values(cells, &mut buffer).iter().all(|v| *v == 0.0))
-        };
-        rows.iter().all(|row| row.coefficients.is_some() && row.sums.iter().all(is_empty))
+        rows.iter().all(|row| row.coefficients.is_some() && !row.has_sums())
     }
 
     fn samples(&self) -> u64 {
