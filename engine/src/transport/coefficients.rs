@@ -126,6 +126,26 @@ impl Coefficients {
         joined
     }
 
+    /// Removes the terms of cells that hold at most a fraction `negligible` of what the largest cell of the same sums may
+    /// hold, whatever the spectra; returns bounds of what was removed, shape `[sums, cells]`. The products are those of
+    /// surfaces that scatter alike in all directions: they are at most 1.
+    pub(in crate::transport) fn without_negligible(
+        &mut self,
+        sums: usize,
+        cells: usize,
+        negligible: f64,
+    ) -> Vec<f64> {
+        let place = |term: &Term| term.sums as usize * cells + term.cell;
+        let mut bounds = vec![0.0; sums * cells];
+        self.terms.iter().for_each(|term| bounds[place(term)] += term.coefficient.abs());
+        for bounds in bounds.chunks_mut(cells) {
+            let most = negligible * bounds.iter().copied().fold(0.0, f64::max);
+            bounds.iter_mut().filter(|bound| **bound > most).for_each(|bound| *bound = 0.0);
+        }
+        self.terms.retain(|term| bounds[place(term)] <= 0.0);
+        bounds
+    }
+
     /// Adds the terms that a function makes of those of another.
     fn extend<T: IntoIterator<Item = Term>>(&mut self, other: &Self, terms: impl Fn(Term) -> T) {
         let made: Vec<Term> = other.terms.iter().copied().flat_map(terms).collect();
@@ -233,5 +253,39 @@ impl Coefficients {
             restored.terms.push(Term { product: id, sums, cell, coefficient });
         }
         Ok(restored)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scattering::LobeSpectrum;
+
+    /// Two sums of three cells: whole numbers, rounding, and nothing. *Expected*: the terms of rounding are gone and bounded
+    /// beside the large cell of their own sums alone; whatever the spectra, the bound is not exceeded.
+    #[test]
+    fn terms_of_rounding_are_bounded_and_removed() {
+        let mut models = SurfaceModels::new(3);
+        let spectrum = models.spectra.add([0.9, 0.1, 0.5].into_iter());
+        let mut terms = Coefficients::kept();
+        let product = terms.products().times(SpectrumProducts::ONE, LobeSpectrum::Table(spectrum));
+        terms.add(0, 0, SpectrumProducts::ONE, 2048.0);
+        terms.add(0, 1, SpectrumProducts::ONE, 3e-13);
+        terms.add(0, 1, product, -2e-13);
+        terms.add(1, 1, product, 3e-13);
+        let all = terms.clone();
+        let bounds = terms.without_negligible(2, 3, 1e-12);
+        assert_eq!(bounds, [0.0, 3e-13 + 2e-13, 0.0, 0.0, 0.0, 0.0]);
+        let value = |terms: &Coefficients| {
+            let mut sums = [Sums::new(3, 3), Sums::new(3, 3)];
+            terms.add_to(&models, 0..3, &mut sums.iter_mut().map(Some).collect::<Vec<_>>());
+            sums
+        };
+        let (kept, exact) = (value(&terms), value(&all));
+        assert_eq!(kept[1], exact[1]);
+        let removed = exact[0].values().iter().zip(kept[0].values()).map(|(a, b)| (a - b).abs());
+        let removed: Vec<f64> = removed.collect();
+        assert!(removed[..3].iter().chain(&removed[6..]).all(|removed| *removed <= 0.0));
+        assert!(removed[3..6].iter().all(|removed| *removed > 0.0 && *removed <= bounds[1]));
     }
 }

@@ -21,6 +21,10 @@ impl ReplicateRow {
     /// Terms are evaluated beyond this many products.
     pub(in crate::transport) const MOST_PRODUCTS: usize = 1 << 13;
 
+    /// Fraction of the largest combination below which terms are not evaluated: a thousandth of what a balance may be off
+    /// by.
+    const ROUNDING: f64 = 1e-12;
+
     /// Adds the sums of a block.
     pub(super) fn merge(&mut self, part: &Self, models: Option<&SurfaceModels>) {
         for (total, part) in self.sums.iter_mut().zip(&part.sums) {
@@ -70,7 +74,8 @@ impl ReplicateRow {
     }
 
     /// Combinations of the cells of one of the sums of each row, all of its terms evaluated: each cell is added to some of
-    /// the `count` combinations with the weights that a function returns for it. Terms that cancel are not evaluated.
+    /// the `count` combinations with the weights that a function returns for it. Of terms that cancel but for
+    /// [`Self::ROUNDING`], a bound is added, away from zero.
     pub(in crate::transport) fn combined<W: IntoIterator<Item = (usize, f64)>>(
         rows: &[&Self],
         index: usize,
@@ -93,8 +98,15 @@ impl ReplicateRow {
         };
         let mut combined: Vec<Sums> = rows.iter().map(combined).collect();
         let all = rows.iter().map(|row| row.coefficients.as_ref());
-        let terms = Coefficients::combined(all, index, weights);
+        let mut terms = Coefficients::combined(all, index, weights);
         if let Some(models) = models.filter(|_| !terms.is_empty()) {
+            let bounds = terms.without_negligible(combined.len(), count, Self::ROUNDING);
+            for (combined, bounds) in combined.iter_mut().zip(bounds.chunks(count)) {
+                for (cell, bound) in bounds.iter().enumerate() {
+                    let values = combined.cell_mut(cell).iter_mut();
+                    values.for_each(|value| *value += bound.copysign(*value));
+                }
+            }
             let mut into: Vec<_> = combined.iter_mut().map(Some).collect();
             terms.add_to(models, 0..models.spectra.bands(), &mut into);
         }
