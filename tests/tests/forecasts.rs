@@ -155,7 +155,7 @@ fn films_hold_what_they_say() {
             [(System::Backward, false), (System::Backward, true), (System::Forward, true)]
         {
             match image(system, orders) {
-                ImageFilm::Paths(mut tiles) => check_bytes("paths", &mut tiles, share),
+                ImageFilm::Paths(mut tiles) => check_bytes("paths", &mut *tiles, share),
                 ImageFilm::Packets(mut packets) => check_bytes("packets", &mut packets.sums, share),
             }
         }

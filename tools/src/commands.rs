@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use sunfleck::output::{PointTables, Results, SweepTable, Written};
+use sunfleck::output::{DerivativeTable, PointTables, Results, SweepTable, Written};
 use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::run::Partition;
 use sunfleck::scratch::ScratchSpace;
@@ -237,9 +237,12 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
     }
     let table = SweepTable::new(&points, &tables)?;
     let daily = output::daily_sums(&sweep.days(), &points, &tables)?;
-    let written = results.write_sweep(&sweep.report(), &points, &table, daily.as_ref())?;
+    let derivatives = DerivativeTable::new(sweep.differences(), &points, &tables)?;
+    let (daily, of) = (daily.as_ref(), derivatives.as_ref());
+    let written = results.write_sweep(&sweep.report(), &points, &table, daily, of)?;
+    let derivatives = derivatives.map(|table| derivatives_text(&table, &written));
     print(&format!(
-        "{}: {ran} {} run, {}{} kept; geometry built {}\n",
+        "{}: {ran} {} run, {}{} kept; geometry built {}\n{}",
         written.folder.join("sweep.csv").display(),
         if ran == 1 { "point" } else { "points" },
         if dark > 0 { format!("{dark} without light, ") } else { String::new() },
@@ -247,8 +250,22 @@ fn sweep(arguments: &Run) -> anyhow::Result<()> {
         match sweep.builds() {
             1 => "once".to_owned(),
             builds => format!("{builds} times"),
-        }
+        },
+        derivatives.unwrap_or_default()
     ))
+}
+
+/// Text about derivatives that were written.
+fn derivatives_text(table: &DerivativeTable, written: &Written) -> String {
+    let file = written.folder.join(output::DERIVATIVES);
+    let left_out: Vec<&str> = table.left_out().collect();
+    let without = match &left_out[..] {
+        [] => String::new(),
+        names => {
+            format!("; {} have none: they are not linear in what is counted", names.join(", "))
+        }
+    };
+    format!("{}: {} derivatives{without}\n", file.display(), table.len())
 }
 
 /// Heading of the bars of a group of points, the first of which has this place among all.

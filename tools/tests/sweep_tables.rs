@@ -111,3 +111,42 @@ fn tables_with_different_columns_are_united() {
         assert_eq!(row[product].is_empty(), row[note].contains("below the horizon"), "{row:?}");
     }
 }
+
+/// *Scene*: a Lambertian soil. *Expected*: derivatives beside the table of the points, which has a row for each value; a sweep
+/// that goes on finds the points and writes the same derivatives; and points of a `Grid` in the same folder, which keep no
+/// values of randomisations, are run again.
+#[test]
+fn derivatives_are_written_from_points_that_are_found_again() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path();
+    let write = |sweep: &str| fs::write(folder.join("soil.ron"), soil(sweep)).unwrap();
+    write("Zip({ \"rho\": [0.3, 0.29, 0.31] })");
+    sweep(folder);
+    write("Derivatives({ \"rho\": 0.01 })");
+    let [run, kept] = [
+        "3 points run, 0 kept; geometry built once",
+        "0 points run, 3 kept; geometry built 0 times",
+    ]
+    .map(|points| format!("o/sweep.csv: {points}\no/derivatives.csv: 18 derivatives\n"));
+    assert_eq!(sweep(folder), run);
+    let first = fs::read_to_string(folder.join("o/derivatives.csv")).unwrap();
+    assert_eq!(sweep(folder), kept);
+    assert_eq!(fs::read_to_string(folder.join("o/derivatives.csv")).unwrap(), first);
+    let table = fs::read_to_string(folder.join("o/sweep.csv")).unwrap();
+    assert_eq!(
+        table.lines().next().unwrap(),
+        "rho,sensor,product,unit,term,band,value,standard_error"
+    );
+    assert!(table.lines().all(|line| line.split(',').count() == 8), "{table}");
+    let albedo = first.lines().find(|line| line.contains("albedo")).unwrap();
+    let cells: Vec<&str> = albedo.split(',').collect();
+    assert_eq!(cells[..8], ["rho", "0.3", "0.01", "p", "albedo", "1", "", "red"]);
+    let derivative: f64 = cells[9].parse().unwrap();
+    assert!((derivative - 1.0).abs() < 1e-5, "{albedo}");
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.join("o/summary.json")).unwrap()).unwrap();
+    let expected = serde_json::json!({
+        "parameters": [{ "parameter": "rho", "at": 0.3, "step": 0.01 }], "rows": 18, "left_out": [],
+    });
+    assert_eq!(summary["derivatives"], expected);
+}

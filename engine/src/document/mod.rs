@@ -6,6 +6,7 @@ mod check;
 mod decode;
 mod describe;
 mod diagnostic;
+mod discrete;
 mod encode;
 mod expand;
 mod format;
@@ -30,6 +31,7 @@ pub(crate) use check::{
 pub use describe::json_schema;
 pub(crate) use diagnostic::suggestion;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
+pub use discrete::discrete_difference;
 pub use format::{format, format_file};
 pub use keys::{keys_about, keys_page};
 pub(crate) use legible::legible;

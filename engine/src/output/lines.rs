@@ -264,6 +264,7 @@ mod tests {
             standard_error: vec![0.1; values.len()],
             image: None,
             faces: None,
+            replicates: Vec::new(),
         }
     }
 

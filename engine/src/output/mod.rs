@@ -11,6 +11,7 @@ mod classification;
 mod colour;
 mod composite;
 mod daily;
+mod derivatives;
 mod destination;
 mod envi;
 mod exr;
@@ -45,6 +46,7 @@ use crate::products::{Image, Product, Report};
 
 pub use axes::{AxisCells, AxisColumns, ProductCells};
 pub use daily::{DailySums, daily_sums};
+pub use derivatives::{DERIVATIVES, DerivativeTable};
 pub use names::folder_name;
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
@@ -75,6 +77,12 @@ pub enum OutputError {
     Write { path: PathBuf, source: io::Error },
     #[error("cannot read {} again", path.display())]
     Read { path: PathBuf, source: io::Error },
+    #[error("there are no results at {point}, between which derivatives are taken")]
+    NoTable { point: String },
+    #[error(
+        "both sides of `{parameter}` have other products or rows than the scene itself: they have no derivatives; compare values with `sweep: Grid({{ \"{parameter}\": [..] }})`"
+    )]
+    OtherProducts { parameter: String },
     #[error("cannot read the pixels of {sensor}.{product} from their temporary file")]
     Pixels { sensor: String, product: String, source: io::Error },
     #[error("{sensor}.{product} has {found} {what}, but its axes say {expected}")]

@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::daily::{self, DailySums};
+use super::derivatives::{DERIVATIVES, DerivativeTable};
 use super::manifest::{Manifest, relative};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
@@ -163,8 +164,8 @@ impl Results {
         })
     }
 
-    /// Writes the table of a sweep, its sums over days if there are any, and a `summary.json` that holds
-    /// the sums and says where there are no data.
+    /// Writes the table of a sweep, its sums over days and its derivatives if there are any, and a `summary.json` that
+    /// holds the sums, and says where there are no data and what the derivatives are with respect to.
     ///
     /// # Errors
     /// If a file cannot be written; then the folder is as it was.
@@ -174,16 +175,21 @@ impl Results {
         points: &[SweepPoint],
         table: &SweepTable<'_>,
         daily: Option<&DailySums>,
+        derivatives: Option<&DerivativeTable>,
     ) -> Result<Written, OutputError> {
         self.put(|folder, staging| {
             staging.file("sweep.csv", |file| table.write(file))?;
             if let Some(daily) = daily {
                 staging.file(daily::FILE, |file| daily.write(file))?;
             }
+            if let Some(table) = derivatives {
+                staging.file(DERIVATIVES, |file| table.write(file))?;
+            }
             let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
-            let write = |file: &mut _| summary::write_sweep(&head, points, daily, file);
+            let write =
+                |file: &mut _| summary::write_sweep(&head, points, daily, derivatives, file);
             staging.file("summary.json", write)?;
             Ok(replaced(staging, folder, self.command, report))
         })

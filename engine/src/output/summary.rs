@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 use serde_json::ser::Formatter;
 
 use super::daily::DailySums;
+use super::derivatives::DerivativeTable;
 use super::length;
 use super::lines::Lines;
 use super::manifest::SUMMARY;
@@ -125,16 +126,18 @@ pub(super) fn write_head(head: &Head<'_>, file: &mut impl Write) -> io::Result<(
     write_json(head, file)
 }
 
-/// Writes where a sweep comes from, why points have no data, and its sums over days.
+/// Writes where a sweep comes from, why points have no data, its sums over days, and what it has derivatives of.
 pub(super) fn write_sweep(
     head: &Head<'_>,
     points: &[SweepPoint],
     daily: Option<&DailySums>,
+    derivatives: Option<&DerivativeTable>,
     file: &mut impl Write,
 ) -> io::Result<()> {
     let dark = points.iter().filter_map(|point| Some((point.name(), point.darkness()?)));
     let no_data: serde_json::Map<_, _> = dark.map(|(name, why)| (name, why.into())).collect();
-    write_json(&SweepSummary { head, no_data, daily: daily.map(DailySums::json) }, file)
+    let (daily, derivatives) = (daily.map(DailySums::json), derivatives.map(DerivativeTable::json));
+    write_json(&SweepSummary { head, no_data, daily, derivatives }, file)
 }
 
 #[derive(Serialize)]
@@ -146,6 +149,8 @@ struct SweepSummary<'a> {
     no_data: serde_json::Map<String, serde_json::Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     daily: Option<serde_json::Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    derivatives: Option<serde_json::Value>,
 }
 
 fn write_json(value: &impl Serialize, file: &mut impl Write) -> io::Result<()> {

@@ -7,7 +7,10 @@ use super::axes::AxisColumns;
 use super::point_tables::{PointTable, PointTables};
 use super::rows::{harmless, number};
 use crate::document::Param;
-use crate::products::{Report, SweepPoint};
+use crate::products::{Product, Report, SweepPoint};
+
+/// Column of a point's table with the values of all randomisations, separated by spaces.
+pub(super) const REPLICATES: &str = "replicates";
 
 /// Rows of all points as one table: a column a parameter, then sensor, product, unit, a column an axis, band, value and
 /// standard error. A point that was not traced has one row of its parameters alone, and a `note` that says why.
@@ -31,9 +34,10 @@ impl<'a> SweepTable<'a> {
         let (mut columns, mut is_uniform) = (Vec::<String>::new(), true);
         for table in &tables {
             let header = table.rows()?.headers().cloned().map_err(unreadable(table))?;
-            is_uniform &= columns.is_empty() || header.iter().eq(&columns);
+            let has_replicates = header.iter().any(|name| name == REPLICATES);
+            is_uniform &= !has_replicates && (columns.is_empty() || header.iter().eq(&columns));
             let mut place = columns.len();
-            for name in header.iter().rev() {
+            for name in header.iter().rev().filter(|name| *name != REPLICATES) {
                 match columns.iter().position(|column| column == name) {
                     Some(known) => place = known,
                     None => columns.insert(place, name.to_owned()),
@@ -68,6 +72,12 @@ impl<'a> SweepTable<'a> {
     }
 }
 
+/// Values of all randomisations of a value of a product.
+fn replicates_of(product: &Product, value: usize) -> String {
+    let each = product.replicates.iter().skip(value).step_by(product.values.len().max(1));
+    each.map(|value| number(*value)).collect::<Vec<_>>().join(" ")
+}
+
 /// Copies the rows of a table.
 fn copy_rows(table: &PointTable, file: &mut dyn Write) -> io::Result<()> {
     let mut rows = table.rows().map_err(io::Error::other)?;
@@ -98,7 +108,10 @@ pub(super) fn write_rows(report: &Report, point: &SweepPoint, file: impl Write) 
     let after = ["band", "value", "standard_error"].map(str::to_owned);
     // A column that tables of points with results do not have.
     let note = point.darkness().map(|_| "note".to_owned());
-    let columns = names.chain(before).chain(axes.names().map(harmless)).chain(after).chain(note);
+    let has_replicates = products().any(|(_, product)| !product.replicates.is_empty());
+    let replicates = has_replicates.then(|| REPLICATES.to_owned());
+    let columns = names.chain(before).chain(axes.names().map(harmless)).chain(after);
+    let columns = columns.chain(note).chain(replicates);
     writer.write_record(columns)?;
     let shown = |(_, value): &(String, Param)| match value {
         Param::Number(value) => number(*value),
@@ -118,7 +131,8 @@ pub(super) fn write_rows(report: &Report, point: &SweepPoint, file: impl Write) 
             params.iter().chain(&own).try_for_each(|cell| writer.write_field(cell))?;
             place.cells.iter().try_for_each(|cell| writer.write_field(harmless(cell)))?;
             let last = [harmless(&place.band), number(*value), number(*error)];
-            writer.write_record(last)?;
+            let replicates = has_replicates.then(|| replicates_of(product, row));
+            writer.write_record(last.into_iter().chain(replicates))?;
         }
     }
     writer.flush()

@@ -225,6 +225,7 @@ fn product(
         standard_error: errors.to_vec(),
         image: None,
         faces: None,
+        replicates: Vec::new(),
     }
 }
 

@@ -85,6 +85,7 @@ impl Context {
             standard_error: scale(standard_error, &self.irradiance),
             image: None,
             faces: None,
+            replicates: Vec::new(),
         }
     }
 }

@@ -58,6 +58,7 @@ pub fn direction_products(
                     standard_error,
                     image: None,
                     faces: None,
+                    replicates: Vec::new(),
                 }]
             }
             ImageMeasure::FourComponents | ImageMeasure::GapFraction => return None,

@@ -141,6 +141,7 @@ fn brightness_image(
             georeference,
         }),
         faces: None,
+        replicates: Vec::new(),
     }
 }
 

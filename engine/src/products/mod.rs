@@ -13,6 +13,7 @@ mod of_scene;
 mod photons;
 mod product_size;
 mod reflectance;
+mod replicates;
 mod report;
 mod sources;
 mod thermal;
@@ -30,8 +31,8 @@ pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes
 pub use product_size::{MeasuredLight, ProductSize, direction_sizes, image_sizes};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
-    AxisPoints, Day, Forecast, Night, Product, ProductAxis, Report, SceneSource, SensorReport,
-    SweepPoint, data_size,
+    AxisPoints, CentralDifference, Day, Forecast, Night, Product, ProductAxis, Report, SceneSource,
+    SensorReport, SweepPoint, data_size,
 };
 pub use sources::{brightness_product, combine_sources};
 pub use thermal::{brightness, radiance_of_sources};

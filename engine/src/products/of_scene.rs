@@ -30,6 +30,7 @@ impl Product {
             dimensions,
             values: part.of(&self.values),
             standard_error: part.of(&self.standard_error),
+            replicates: part.of(&self.replicates),
             image: self.image.as_ref().map(|image| part.of_image(image)),
             faces: self.faces.as_ref().map(|faces| part.of_faces(faces)),
         }

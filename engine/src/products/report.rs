@@ -57,6 +57,10 @@ pub struct Product {
     pub values: Vec<f64>,
     /// Standard error of each value; NaN where there is none.
     pub standard_error: Vec<f64>,
+    /// Value of each randomisation, shape `[randomisations, values]`: their spread is the error, and their mean is the
+    /// value, of a temperature but for its curvature. Empty unless they are asked for
+    /// ([`Options::keeps_replicates`](crate::run::Options::keeps_replicates)), and of what is not made of light.
+    pub replicates: Vec<f64>,
     /// Pixels, where the quantity is an image.
     pub image: Option<Image>,
     /// Values of triangles and discs, where the quantity is one of theirs; `values` are the mean.
@@ -228,6 +232,21 @@ pub struct Day {
     pub span_h: (f64, f64),
     /// Place of each point that was traced in the list of all points, with its weight, h.
     pub weights_h: Vec<(usize, f64)>,
+}
+
+/// Points of a sweep at both sides of a parameter, for derivatives of results with respect to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CentralDifference {
+    /// The parameter.
+    pub parameter: String,
+    /// Its value in the scene.
+    pub at: f64,
+    /// Distance of both sides from it.
+    pub step: f64,
+    /// Its values at the two points.
+    pub sides: [f64; 2],
+    /// Places of these points in the list of all; the scene as it is has place 0.
+    pub points: [usize; 2],
 }
 
 impl SweepPoint {

@@ -42,7 +42,16 @@ pub fn combine_sources(
         super::Image { pixels, ..image.clone() }
     });
     let dimensions = one.dimensions.clone();
-    Product { name, unit: unit.to_owned(), dimensions, values, standard_error, image, faces: None }
+    Product {
+        name,
+        unit: unit.to_owned(),
+        dimensions,
+        values,
+        standard_error,
+        image,
+        faces: None,
+        replicates: Vec::new(),
+    }
 }
 
 /// Sum of reflected and emitted values with its standard error; `scale` multiplies both.
@@ -91,5 +100,6 @@ pub fn brightness_product(radiance: &Product, context: &Context) -> Option<Produ
         standard_error,
         image: None,
         faces: None,
+        replicates: Vec::new(),
     })
 }

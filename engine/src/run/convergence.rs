@@ -17,6 +17,12 @@ pub(super) trait Measurement {
     /// If a temporary file cannot be read.
     fn products(&self) -> io::Result<Vec<Product>>;
 
+    /// Adds the values of each randomisation to the products of the samples so far, as far as these are made of light.
+    ///
+    /// # Errors
+    /// If a temporary file cannot be read.
+    fn add_replicates(&self, products: &mut [Product]) -> io::Result<()>;
+
     /// Data that its products are made with.
     fn context(&self) -> &Context;
 
@@ -51,6 +57,12 @@ impl<'a> PacedFilm<'a> {
         let (times, over) = self.pace;
         (u128::from(n) * u128::from(times) / u128::from(over)).try_into().unwrap_or(u64::MAX)
     }
+}
+
+/// Adds the values of products of one randomisation to the products of all; those without a counterpart, behind the
+/// others, have none.
+pub(super) fn add_replicate(products: &mut [Product], one: &[Product]) {
+    products.iter_mut().zip(one).for_each(|(product, one)| product.add_replicate(one));
 }
 
 /// Errors of products after a number of samples.

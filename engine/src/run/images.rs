@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::convergence::{Convergence, Measurement, PacedFilm};
+use super::convergence::{Convergence, Measurement, PacedFilm, add_replicate};
 use super::sensors::{
     Begun, MOST_SAMPLES, MeasureContext, at_quality, each_of, needs_emission, needs_reflection,
 };
@@ -86,7 +86,7 @@ impl Measurement for ImageRun<'_> {
         let mut films: Vec<PacedFilm<'_>> = light
             .map(|image| match image {
                 ImageFilm::Packets(packets) => PacedFilm::evenly(&mut packets.sums),
-                ImageFilm::Paths(tiles) => PacedFilm { film: tiles, pace },
+                ImageFilm::Paths(tiles) => PacedFilm { film: &mut **tiles, pace },
             })
             .collect();
         films.extend(
@@ -120,7 +120,7 @@ impl Measurement for ImageRun<'_> {
             products::image_products(sensor, reflected.as_ref(), emitted, stage, context);
         if let Some(components) = &self.components {
             let outcome = components.outcome()?;
-            for &measure in &self.sensor.measure {
+            for &measure in &sensor.measure {
                 products
                     .extend(products::image_components(measure, sensor, &outcome, stage, context));
             }
@@ -132,5 +132,19 @@ impl Measurement for ImageRun<'_> {
             }
         }
         Ok(products)
+    }
+
+    fn add_replicates(&self, products: &mut [Product]) -> io::Result<()> {
+        let MeasureContext { stage, context, .. } = self.measured;
+        let reflected = self.reflected.as_ref().map(ImageFilm::replicates).transpose()?;
+        let emitted = self.emitted.as_ref().map(ImageFilm::replicates).transpose()?;
+        let count = reflected.as_ref().or(emitted.as_ref()).map_or(0, Vec::len);
+        for index in 0..count {
+            let [reflected, emitted] =
+                [&reflected, &emitted].map(|all| all.as_ref().map(|outcomes| &outcomes[index]));
+            let one = products::image_products(self.sensor, reflected, emitted, stage, context);
+            add_replicate(products, &one);
+        }
+        Ok(())
     }
 }

@@ -8,6 +8,7 @@ mod clock;
 mod convergence;
 mod cost;
 mod day;
+mod derivatives;
 mod enclosed;
 mod facts;
 mod failure;

@@ -29,6 +29,8 @@ pub struct Options {
     /// True to keep the coefficients of sensors of packets in the report, for [`respectrum`](super::respectrum): however
     /// few bands there are, and as long as they fit into memory.
     pub keeps_coefficients: bool,
+    /// True to keep the values of each randomisation in the products ([`Product::replicates`](crate::products::Product::replicates)).
+    pub keeps_replicates: bool,
     /// Names of the sensors that measure; all if empty.
     pub sensors: Vec<String>,
 }
@@ -52,6 +54,7 @@ impl Default for Options {
             scratch: ScratchSpace::default(),
             forecast: false,
             keeps_coefficients: false,
+            keeps_replicates: false,
             sensors: Vec::new(),
         }
     }

@@ -1,7 +1,7 @@
 use std::io;
 use std::sync::Arc;
 
-use super::convergence::{Measurement, PacedFilm};
+use super::convergence::{Measurement, PacedFilm, add_replicate};
 use super::sensors::MeasureContext;
 use crate::components::{Cone, PhotonMeasure, PhotonProduct, PhotonSensor, System, View};
 use crate::extract::{Inventory, Stage};
@@ -11,7 +11,7 @@ use crate::statistics::Spread;
 use crate::transport::{
     AbsorbedCounter, AlbedoCounter, CellCounter, ConeCounter, Counter, EnergyCounter, FluxCounter,
     FluxLevel, GROUND_TERMS, Hemisphere, LayerCounter, LightSource, OrderCounter,
-    OrthographicCamera, PacketOptions, PhotonKind, ReferencePlane, ReplicateSums,
+    OrthographicCamera, PacketOptions, PhotonKind, Randomisations, ReferencePlane, ReplicateSums,
     RouletteThreshold, ScatteringOrder, ViewCounter, photon_film,
 };
 
@@ -123,6 +123,18 @@ impl Measurement for PhotonRun<'_> {
     }
 
     fn products(&self) -> io::Result<Vec<Product>> {
+        Ok(self.products_of(Randomisations::All))
+    }
+
+    fn add_replicates(&self, products: &mut [Product]) -> io::Result<()> {
+        Randomisations::each().for_each(|of| add_replicate(products, &self.products_of(of)));
+        Ok(())
+    }
+}
+
+impl PhotonRun<'_> {
+    /// Products of some randomisations.
+    fn products_of(&self, randomisations: Randomisations) -> Vec<Product> {
         let MeasureContext { stage, context, .. } = self.measured;
         let Self { sensor, kinds, reflected, emitted, .. } = self;
         let parts = parts(sensor);
@@ -130,7 +142,9 @@ impl Measurement for PhotonRun<'_> {
         let unit = context.with_unit_irradiance();
         for (index, (measure, kind)) in kinds.iter().enumerate() {
             let of = |counted: &Option<Counted<'_>>, part, context: &Context| -> Vec<Product> {
-                let spread = counted.as_ref().and_then(|counted| counted.spread(index, part));
+                let spread = counted
+                    .as_ref()
+                    .and_then(|counted| counted.spread(index, part, randomisations));
                 spread.map_or_else(Vec::new, |spread| kind.products(&spread, stage, context))
             };
             if !measure.is_absolute() {
@@ -160,11 +174,11 @@ impl Measurement for PhotonRun<'_> {
             [(reflected, context, "energy"), (emitted, &unit, "emitted_energy")]
         {
             let Some(Counted { film, .. }) = counted else { continue };
-            let energy = products::energy(&film.spread(0), stage, context);
+            let energy = products::energy(&film.spread_of(0, randomisations), stage, context);
             let unit = if name == "energy" { energy.unit.clone() } else { "W m-2 nm-1".to_owned() };
             found.push(Product { name: name.to_owned(), unit, ..energy });
         }
-        Ok(found)
+        found
     }
 }
 
@@ -175,10 +189,15 @@ struct Counted<'a> {
 }
 
 impl Counted<'_> {
-    fn spread(&self, index: usize, part: Option<ScatteringOrder>) -> Option<Spread> {
+    fn spread(
+        &self,
+        index: usize,
+        part: Option<ScatteringOrder>,
+        randomisations: Randomisations,
+    ) -> Option<Spread> {
         let at = self.asked.iter().position(|asked| *asked == (index, part))?;
         // The first sums are those of the energy.
-        Some(self.film.spread(at + 1))
+        Some(self.film.spread_of(at + 1, randomisations))
     }
 }
 

@@ -47,6 +47,11 @@ impl PointReader {
         Ok((reader, scene))
     }
 
+    /// The reader for points that keep the values of each randomisation.
+    pub(super) fn with_replicates(self) -> Self {
+        Self { options: Options { keeps_replicates: true, ..self.options }, ..self }
+    }
+
     /// Hashes of the files that scenes name.
     pub(super) const fn hashes(&self) -> &FileHashes {
         &self.hashes
@@ -95,6 +100,9 @@ impl PointReader {
         let mut hasher = blake3::Hasher::new();
         hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
         hasher.update(&self.options.quality.to_bits().to_le_bytes());
+        if self.options.keeps_replicates {
+            hasher.update(b"replicates");
+        }
         hasher.update(scene.resolved().to_ron().as_bytes());
         for (_, named) in scene.files() {
             // The run reports missing files with their places.
@@ -121,9 +129,13 @@ impl PointReader {
         }
     }
 
-    /// Options of reading a point.
+    /// Options of reading a point, whose parameters go before those that are set: where both have a value, it is the same
+    /// or one beside it.
     fn at(&self, point: &SweepPoint) -> ReadOptions {
-        ReadOptions { point: point.params.clone(), ..self.options.document.clone() }
+        let mut options =
+            ReadOptions { point: point.params.clone(), ..self.options.document.clone() };
+        options.set.retain(|(name, _)| !point.params.iter().any(|(known, _)| known == name));
+        options
     }
 }
 

@@ -4,9 +4,9 @@ use hecs::{Entity, World};
 
 use super::check::check;
 use super::checkpoint::CheckpointStore;
-use super::convergence::{Convergence, Measurement, PacedFilm, is_energy_balance};
+use super::convergence::{Convergence, Measurement, PacedFilm, add_replicate, is_energy_balance};
 use super::photons::PhotonRun;
-use super::rounds::{MeasurementEnd, measure_until};
+use super::rounds::measure_until;
 use super::{Failure, Options, Progress, images};
 use crate::components::{
     DirectionSensor, ImageMeasure, Name, PhotonSensor, ResolvedSensor, SceneId, StopCriterion,
@@ -18,7 +18,7 @@ use crate::sampling::Key;
 use crate::scratch::ScratchSpace;
 use crate::transport::{
     DirectionsFilm, DirectionsSettings, FirstSurfaceFilm, LightSettings, LightSource,
-    RANDOMISATIONS, ReferencePlane, Schedule,
+    RANDOMISATIONS, Randomisations, ReferencePlane, Schedule,
 };
 
 /// Scene that sensors measure, and the data that products are made with.
@@ -125,36 +125,42 @@ pub(super) fn measure(
     let Begun { mut measurement, convergence } = begin(name, sensor, measured, options.quality);
     let measurement = measurement.as_mut();
     let end = measure_until(name, measurement, &convergence, store, progress, options.forecast)?;
+    let mut products = end.products;
+    let keeps_replicates = options.keeps_replicates && !products.is_empty();
+    if keeps_replicates && measurement.films().iter().all(|one| one.film.can_grow().is_ok()) {
+        measurement.add_replicates(&mut products).map_err(Failure::Pixels)?;
+    }
     let films = measurement.films();
     let sum = |of: &dyn Fn(&PacedFilm<'_>) -> u64| films.iter().map(of).sum();
     let samples = sum(&|paced| paced.film.samples());
     let noun = if matches!(sensor, ResolvedSensor::Photons(_)) { "packets" } else { "samples" };
+    let ended_by = ended_by(&end.criterion, &end.errors, &format!("{samples} {noun}"));
     Ok(SensorReport {
         name: name.clone(),
         seconds: end.seconds,
         rays: sum(&|paced| paced.film.rays()),
         samples,
-        ended_by: ended_by(&end, &format!("{samples} {noun}")),
+        ended_by,
         energy_imbalance: films.iter().filter_map(|paced| paced.film.imbalance()).reduce(f64::max),
         forecast: end.forecast,
-        products: end.products,
+        products,
     })
 }
 
 /// Text that says which criterion ended a measurement, with the largest error of all scenes.
-fn ended_by(end: &MeasurementEnd, samples: &str) -> String {
+fn ended_by(criterion: &StopCriterion, errors: &[(String, f64)], samples: &str) -> String {
     let text = |(name, error): &(String, f64), limit: f64| {
         format!("{name}: median relative standard error {error:.2e} at most {limit:.2e}")
     };
-    match &end.criterion {
+    match criterion {
         StopCriterion::RelError(limit) => {
-            let asked = end.errors.iter().filter(|(name, _)| !is_energy_balance(name));
+            let asked = errors.iter().filter(|(name, _)| !is_energy_balance(name));
             let worst = asked.max_by(|a, b| a.1.total_cmp(&b.1));
             worst.map_or_else(|| samples.to_owned(), |worst| text(worst, *limit))
         }
         StopCriterion::RelErrors(limits) => {
             let of = |(name, limit): (&String, &f64)| {
-                let of_name = end.errors.iter().filter(|(known, _)| known == name);
+                let of_name = errors.iter().filter(|(known, _)| known == name);
                 let worst = of_name.max_by(|a, b| a.1.total_cmp(&b.1));
                 worst.map(|worst| text(worst, *limit))
             };
@@ -251,11 +257,7 @@ impl Measurement for DirectionsRun<'_> {
     fn products(&self) -> io::Result<Vec<Product>> {
         let DirectionSensor { views, measure, .. } = self.sensor;
         let MeasureContext { stage, context, .. } = self.measured;
-        let reflected = self.reflected.as_ref().map(DirectionsFilm::outcome);
-        let emitted = self.emitted.as_ref().map(DirectionsFilm::outcome);
-        let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
-        let mut products =
-            products::direction_products(views, measure, reflected, emitted, context);
+        let mut products = self.products_of_light(Randomisations::All);
         if let Some(components) = &self.components {
             let outcome = components.outcome();
             for &one in measure {
@@ -264,6 +266,22 @@ impl Measurement for DirectionsRun<'_> {
             }
         }
         Ok(products)
+    }
+
+    fn add_replicates(&self, products: &mut [Product]) -> io::Result<()> {
+        Randomisations::each().for_each(|of| add_replicate(products, &self.products_of_light(of)));
+        Ok(())
+    }
+}
+
+impl DirectionsRun<'_> {
+    /// Products that are made of light, of some randomisations.
+    fn products_of_light(&self, of: Randomisations) -> Vec<Product> {
+        let DirectionSensor { views, measure, .. } = self.sensor;
+        let [reflected, emitted] =
+            [&self.reflected, &self.emitted].map(|film| film.as_ref().map(|film| film.outcome(of)));
+        let (reflected, emitted) = (reflected.as_ref(), emitted.as_ref());
+        products::direction_products(views, measure, reflected, emitted, self.measured.context)
     }
 }
 

@@ -13,12 +13,12 @@ use super::provenance::joint_hashes;
 use super::reading::folder_of;
 use super::scene_world::SceneWorld;
 use super::suns::{grouped_by_sun, sun_of_paths};
-use super::{Failure, Options, Progress, day, params, scene_source};
+use super::{Failure, Options, Progress, day, derivatives, params, scene_source};
 use crate::document::{
     self, Lambertian, Map, Material, Scene, Sensor, Sky, Spectrum, StopCriterion, Sun, System,
     ThermalSky,
 };
-use crate::products::{Day, Night, Report, SweepPoint};
+use crate::products::{CentralDifference, Day, Night, Report, SweepPoint};
 
 /// A scene file that has been read at every point of its sweep, and what its runs share.
 ///
@@ -32,6 +32,7 @@ pub struct SweepRun {
     options: Options,
     scene: Scene,
     points: Vec<SweepPoint>,
+    differences: Vec<CentralDifference>,
     groups: Vec<Vec<usize>>,
     suns: Vec<Option<Sun>>,
     world: SceneWorld,
@@ -45,7 +46,7 @@ impl SweepRun {
     /// Errors of the scene at the first point that has any.
     pub fn read(file: &Path, options: &Options, progress: &dyn Progress) -> Result<Self, Failure> {
         progress.stage("reading the scene");
-        let (reader, scene) = PointReader::new(file, options)?;
+        let (mut reader, scene) = PointReader::new(file, options)?;
         let Some(sweep) = &scene.sweep else {
             let example = "sweep: Grid({ \"sza\": [0.0, 30.0, 60.0] })";
             let text =
@@ -53,9 +54,18 @@ impl SweepRun {
             return Err(Failure::Sweep(text));
         };
         let sweep = sweep.fixed(&options.document.set);
-        let mut points: Vec<SweepPoint> = (0..sweep.len())
-            .map(|index| SweepPoint { params: sweep.point(index), key: String::new(), night: None })
-            .collect();
+        let point = |index: usize| {
+            let params = sweep.point(index, &scene.params);
+            SweepPoint { params, key: String::new(), night: None }
+        };
+        let mut points: Vec<SweepPoint> = (0..sweep.len()).map(point).collect();
+        let (mut options, mut differences) = (options.clone(), Vec::new());
+        if let document::Sweep::Derivatives(steps) = &sweep {
+            options.keeps_replicates = true;
+            reader = reader.with_replicates();
+            differences = derivatives::complete(&reader, &mut points, steps, &sweep)?;
+        }
+        let options = &options;
         let summaries = in_pool(options, || reader.summaries(&points, progress))?;
         for (point, summary) in points.iter_mut().zip(&summaries) {
             (point.key, point.night) = (summary.key.clone(), summary.night.clone());
@@ -76,13 +86,19 @@ impl SweepRun {
         }
         let world = SceneWorld::new(folder_of(file));
         let (file, options) = (file.to_owned(), options.clone());
-        Ok(Self { file, options, scene, points, groups, suns, world, reader })
+        Ok(Self { file, options, scene, points, differences, groups, suns, world, reader })
     }
 
     /// All points, the last parameter fastest.
     #[must_use]
     pub fn points(&self) -> &[SweepPoint] {
         &self.points
+    }
+
+    /// Differences between points that are derivatives of results; none of a sweep over given values.
+    #[must_use]
+    pub fn differences(&self) -> &[CentralDifference] {
+        &self.differences
     }
 
     /// Groups of points by their places in the list of all, in the order to run them in: a group is traced on the same
@@ -107,7 +123,7 @@ impl SweepRun {
     pub fn days(&self) -> Vec<Day> {
         match &self.scene.sweep {
             Some(document::Sweep::Grid(_)) => day::days(&self.points, &self.suns),
-            Some(document::Sweep::Zip(_)) | None => Vec::new(),
+            Some(document::Sweep::Zip(_) | document::Sweep::Derivatives(_)) | None => Vec::new(),
         }
     }
 

@@ -36,7 +36,8 @@ pub use camera::{
     Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,
 };
 pub use films::{
-    Film, ImageOutcome, ImageTiles, Partition, PixelRows, Pixels, ReplicateSums, Schedule,
+    Film, ImageOutcome, ImageTiles, Partition, PixelRows, Pixels, Randomisations, ReplicateSums,
+    Schedule,
 };
 pub use paths::{ComponentColumns, GAP_RINGS};
 pub use photons::{

@@ -32,6 +32,8 @@ broken! {
     components
     crown
     crown_leaves
+    derivative_steps
+    derivatives
     directions
     faces
     formulas

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 use sunfleck::document::{
-    Boundary, Diagnostic, Lambertian, Material, Photons, Prototype, ReadError, ReadOptions,
+    Boundary, Diagnostic, Lambertian, Map, Material, Photons, Prototype, ReadError, ReadOptions,
     Reading, Scene, ScenePath, Sensor, Sky, Spectrum, Sun, TabulatedSpectrum, check, nearest,
     read_file, read_text, unknown_name,
 };
@@ -372,7 +372,7 @@ fn parameters_may_be_texts() {
     assert_eq!(files(&set("soil", "clay.csv")), both("clay.csv"));
     assert_eq!(files(&set("n", "3")), both("dry.csv"));
     let sweep = read(&ReadOptions::default()).scene.sweep.expect("a sweep");
-    assert_eq!(sweep.point(2)[0], ("soil".to_owned(), "b.csv".into()));
+    assert_eq!(sweep.point(2, &Map::new())[0], ("soil".to_owned(), "b.csv".into()));
 
     let wrong = |options: &ReadOptions| messages(&read(options).diagnostics);
     assert_eq!(wrong(&set("n", "many")), ["params: `n` cannot be \"many\": it is a number"]);

@@ -3,12 +3,12 @@
 use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
-    Area, Axis, Band, BandSource, Boundary, Coating, Cover, Directions, Distribution, Ends,
-    Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions, InstanceList,
-    InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj, Origin,
-    Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture, Prospect,
-    Prototype, ReadOptions, Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, Soilspect, Spa,
-    SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun, SunPosition, Sweep, System,
+    Area, Axis, Band, BandSource, Boundary, Coating, Cover, DerivativeSteps, Directions,
+    Distribution, Ends, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions,
+    InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj,
+    Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture,
+    Prospect, Prototype, ReadOptions, Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, Soilspect,
+    Spa, SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun, SunPosition, Sweep, System,
     TableCoordinates, TabulatedSpectrum, Temperature, Terrain, TerrainPlane, ThermalSky, Transport,
     ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file, read_text,
 };
@@ -573,6 +573,8 @@ fn scene() -> BoxedStrategy<Scene> {
     let sweep = prop_oneof![
         map(list(param())).prop_map(Sweep::Grid),
         map(list(param())).prop_map(Sweep::Zip),
+        list(text()).prop_map(|names| Sweep::Derivatives(DerivativeSteps::Relative(names))),
+        map(number()).prop_map(|steps| Sweep::Derivatives(DerivativeSteps::Absolute(steps))),
     ];
     let names = (any::<u32>(), text(), map(param()), map(map(param())), option(sweep));
     let surfaces = (list(band), map(spectrum()), map(material()), map(mesh()));

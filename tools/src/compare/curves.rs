@@ -180,6 +180,7 @@ mod tests {
             standard_error: vec![0.0; 12],
             image: None,
             faces: None,
+            replicates: Vec::new(),
         };
         let curves = Curves::new(&product);
         assert_eq!((curves.axis.as_str(), curves.lines.len()), ("top_m", 6));

@@ -1,7 +1,7 @@
 //! Parameters, variants and sweeps.
 
 use super::super::diagnostic::{Diagnostic, suggestion};
-use super::super::scene::{Param, Scene, Sweep};
+use super::super::scene::{DerivativeSteps, Param, Scene, Sweep};
 use super::{Report, ScenePath, count};
 
 /// A sweep may have so many points.
@@ -62,12 +62,15 @@ fn shown(value: &Param) -> String {
 
 pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
     let Some(sweep) = &scene.sweep else { return };
-    let (Sweep::Grid(axes) | Sweep::Zip(axes)) = sweep;
+    let (axes, is_zip) = match sweep {
+        Sweep::Grid(axes) => (axes, false),
+        Sweep::Zip(axes) => (axes, true),
+        Sweep::Derivatives(steps) => return check_derivatives(steps, scene, report),
+    };
     if axes.is_empty() && report.is_whole("sweep") {
         let help = "write, for example, `Grid({ \"sza\": [0.0, 30.0, 60.0] })`";
         report.error("sweep", "this sweep varies nothing", help);
     }
-    let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
     for (name, values) in axes {
         let path = ScenePath::from("sweep").name(name);
         for (index, value) in values.iter().enumerate() {
@@ -78,17 +81,13 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
         if values.is_empty() {
             report.error(&path, "no values", "write at least one");
         }
-        if !scene.params.contains_key(name) && report.is_readable("params") {
-            let help = if known.is_empty() {
-                let first = values.first().map_or_else(|| "1.0".to_owned(), shown);
-                format!("add it: `params: {{ \"{name}\": {first} }}`")
-            } else {
-                suggestion(name, &known, "a sweep may vary")
-            };
-            report.error(path, format!("no parameter `{name}` to vary"), help);
+        if !scene.params.contains_key(name) {
+            let first = values.first().map_or_else(|| "1.0".to_owned(), shown);
+            let known: Vec<_> = scene.params.keys().map(String::as_str).collect();
+            check_known(path, name, &first, &known, report);
         }
     }
-    if let (Sweep::Zip(axes), Some((first, values))) = (sweep, axes.first()) {
+    if let (true, Some((first, values))) = (is_zip, axes.first()) {
         let other = axes.iter().find(|(_, other)| other.len() != values.len());
         if let Some((name, other)) = other {
             let message = format!(
@@ -106,5 +105,74 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
             report.push(Diagnostic::error("sweep", message).help("split it, or take values out"));
         }
         _ => {}
+    }
+}
+
+/// Checks that there is a parameter; `example` is a value of it, and `known` are those that it might be.
+fn check_known(
+    path: ScenePath,
+    name: &str,
+    example: &str,
+    known: &[&str],
+    report: &mut Report<'_>,
+) {
+    if report.is_readable("params") {
+        let help = if known.is_empty() {
+            format!("add it: `params: {{ \"{name}\": {example} }}`")
+        } else {
+            suggestion(name, known, "a sweep may vary")
+        };
+        report.error(path, format!("no parameter `{name}` to vary"), help);
+    }
+}
+
+/// Smallest step as a fraction of the parameter: spectra have the digits of f32.
+const SMALLEST_STEP: f64 = 1e-5;
+
+fn check_derivatives(steps: &DerivativeSteps, scene: &Scene, report: &mut Report<'_>) {
+    let names = steps.names();
+    if names.is_empty() && report.is_whole("sweep") {
+        let help = "write, for example, `Derivatives([\"cab\", \"lai\"])`";
+        report.error("sweep", "these derivatives are with respect to nothing", help);
+    }
+    let numbers = scene.params.iter().filter(|(_, value)| value.number().is_some());
+    let numbers: Vec<&str> = numbers.map(|(name, _)| name.as_str()).collect();
+    for (index, &name) in names.iter().enumerate() {
+        let path = steps.path(index);
+        if names[..index].contains(&name) {
+            report.error(&path, format!("`{name}` is given twice"), "take one of the two out");
+        }
+        match scene.params.get(name) {
+            Some(Param::Number(own)) => check_step(steps, index, *own, report),
+            Some(Param::Text(text)) => {
+                let message = format!("`{name}` is the text {text:?}, which has no derivative");
+                let help = if numbers.is_empty() {
+                    "derivatives are with respect to numbers of `params`".to_owned()
+                } else {
+                    suggestion(name, &numbers, "there are derivatives with respect to")
+                };
+                report.error(path, message, help);
+            }
+            None => check_known(path, name, "1.0", &numbers, report),
+        }
+    }
+}
+
+/// Checks the step of a parameter, whose own value is given.
+fn check_step(steps: &DerivativeSteps, index: usize, own: f64, report: &mut Report<'_>) {
+    let (name, path, step) = (steps.names()[index], steps.path(index), steps.step(index, own));
+    let least = SMALLEST_STEP * own.abs();
+    match steps {
+        DerivativeSteps::Relative(_) if own == 0.0 => {
+            let help = format!("name a step: `Derivatives({{ \"{name}\": 0.01 }})`");
+            report.error(path, format!("`{name}` is 0, of which 1 % is no step"), help);
+        }
+        DerivativeSteps::Absolute(_) if step > 0.0 && step < least => {
+            let message = format!("expected a step of at least {least:e}, found {step:e}");
+            let help = "spectra have seven digits: smaller steps measure their rounding";
+            report.error(path, message, help);
+        }
+        DerivativeSteps::Absolute(_) => report.above_zero(path, step),
+        DerivativeSteps::Relative(_) => {}
     }
 }

@@ -22,6 +22,7 @@ pub(super) fn qualify(file: &mut Node, namespace: &str) {
                 if let Some(Value::Tuple(axes)) = sweep.body.as_mut().map(|body| &mut body.value) {
                     for axes in axes {
                         qualify_keys(axes, namespace);
+                        qualify_items(axes, namespace);
                     }
                 }
             }
@@ -33,6 +34,15 @@ pub(super) fn qualify(file: &mut Node, namespace: &str) {
 fn qualify_keys(map: &mut Node, namespace: &str) {
     if let Value::Map(entries) = &mut map.value {
         for (name, _) in entries {
+            put_before(name, namespace);
+        }
+    }
+}
+
+/// Puts a namespace before the texts of a list.
+fn qualify_items(list: &mut Node, namespace: &str) {
+    if let Value::List(items) = &mut list.value {
+        for name in items {
             put_before(name, namespace);
         }
     }

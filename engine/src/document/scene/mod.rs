@@ -29,7 +29,7 @@ pub use light::{Sky, Spa, Sun, SunPosition};
 pub use material::{Coating, Lambertian, Leaf, Material, Rpv, Soilspect, SurfaceQuantity};
 pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Prototype};
 pub use param::Param;
-pub use program::{Include, Sweep};
+pub use program::{DerivativeSteps, Include, Sweep};
 pub use reference::{Definition, FilePath, InstancesName, NamePattern, Ref};
 pub use sensor::{
     Cover, Directions, Fisheye, FisheyeProjection, ImageMeasure, ImageOptions, Layers, Look,

@@ -34,6 +34,7 @@ fn views() -> Product {
         standard_error: vec![0.001, 0.002, f64::NAN, f64::NAN, 1e-9, 0.0],
         image: None,
         faces: None,
+        replicates: Vec::new(),
     }
 }
 
@@ -64,6 +65,7 @@ fn image() -> Product {
             }),
         }),
         faces: None,
+        replicates: Vec::new(),
     }
 }
 

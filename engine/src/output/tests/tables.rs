@@ -57,6 +57,7 @@ fn csv_of_several_dimensions_counts_the_last_fastest() {
         standard_error: vec![0.01; 4],
         image: None,
         faces: None,
+        replicates: Vec::new(),
     };
     write(&report(vec![sensor("flux", product)]), folder.path()).unwrap();
     let text = fs::read_to_string(folder.path().join("flux_fapar.csv")).unwrap();
@@ -112,6 +113,7 @@ fn no_cell_is_a_formula() {
         standard_error: vec![-0.5; 14],
         image: None,
         faces: None,
+        replicates: Vec::new(),
     };
     let mut report = report(vec![sensor("=flux", product)]);
     report.scene = "=1, =2; +3\t@4, e-5".to_owned();

@@ -8,10 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::UVec2;
 
 use super::image_outcome::{ImageMeans, ImageOutcome, TileSummary, pixels};
+use super::image_replicates::{half_sample_replicates, replicate_means};
 use super::tile::{REPLICATES_PER_PIXEL, Tile};
 use super::tile_grid::TileGrid;
 use super::tile_store::{self, TileStore, is_in_memory};
-use super::tile_tracer::{IMAGE_SUM_CELLS, TileTracer};
+use super::tile_tracer::{IMAGE_SUM_CELLS, TileTracer, choices_of};
 use super::{Film, Partition, blocks};
 use crate::extract::Stage;
 use crate::sampling::Key;
@@ -32,6 +33,8 @@ const _: () = assert!(
 pub struct ImageTiles<'a> {
     grid: TileGrid,
     columns: usize,
+    /// Key of the choices of half-samples.
+    choices: Key,
     trace: Box<TraceTile<'a>>,
     scratch: ScratchSpace,
     /// Sums of the tiles, once it is traced.
@@ -68,6 +71,7 @@ impl<'a> ImageTiles<'a> {
         Self {
             grid,
             columns,
+            choices: choices_of(key),
             trace: Box::new(trace),
             scratch: ScratchSpace::default(),
             store: None,
@@ -138,18 +142,31 @@ impl<'a> ImageTiles<'a> {
         Ok(ImageOutcome { pixels, mean, mean_error, image_sums: self.image_sums() })
     }
 
+    /// The outcome of each randomisation of the pixels: means over the image, whose spread is the error of the mean. None
+    /// with one sample per pixel, which has no spread.
+    ///
+    /// # Errors
+    /// If the temporary file of its sums cannot be read.
+    ///
+    /// # Panics
+    /// If it was never traced nor restored.
+    pub fn replicates(&self) -> io::Result<Vec<ImageOutcome>> {
+        let ImageOutcome { pixels, mean_error, image_sums, .. } = self.outcome()?;
+        let store = self.store.as_ref().expect("a film is traced before it has an outcome");
+        let means = replicate_means(store, self.columns, self.done, self.choices)?;
+        let outcome = |mean| {
+            let (pixels, mean_error) = (pixels.clone(), mean_error.clone());
+            ImageOutcome { pixels, mean, mean_error, image_sums: image_sums.clone() }
+        };
+        Ok(means.into_iter().map(outcome).collect())
+    }
+
     /// Columns that are summed over the whole image only.
     fn image_sums(&self) -> Replicates {
         if !self.has_image_sums() {
             return Replicates::default();
         }
-        let columns = self.image_sums.bands();
-        let cells: Vec<&[f64]> = self.image_sums.values().chunks_exact(columns).collect();
-        let pairs: Vec<[&[f64]; REPLICATES_PER_PIXEL]> =
-            cells.chunks_exact(REPLICATES_PER_PIXEL).map(|pair| [pair[0], pair[1]]).collect();
-        // The samples of a pixel alternate between its replicates.
-        let samples = [self.done.div_ceil(2) as f64, (self.done / 2) as f64];
-        Replicates::from_half_samples(pairs[0], &pairs[1..], samples)
+        half_sample_replicates(&self.image_sums, self.done)
     }
 }
 

@@ -3,6 +3,7 @@
 mod blocks;
 mod film;
 mod image_outcome;
+mod image_replicates;
 mod image_tiles;
 mod partition;
 mod pixels;
@@ -19,5 +20,5 @@ pub use image_tiles::ImageTiles;
 pub use partition::Partition;
 pub use pixels::{PixelRows, Pixels};
 pub(super) use replicate_row::ReplicateRow;
-pub use replicate_sums::ReplicateSums;
 pub(super) use replicate_sums::SampleTracer;
+pub use replicate_sums::{Randomisations, ReplicateSums};

@@ -12,6 +12,30 @@ use crate::transport::coefficients::Coefficients;
 use crate::transport::state::{restore_f64, restore_u64, save_f64, save_u64};
 use crate::transport::{ProgressFn, RANDOMISATIONS};
 
+/// Randomisations that an outcome is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Randomisations {
+    /// All of them: means with their standard errors.
+    All,
+    /// The one with this number: its values, without errors.
+    One(usize),
+}
+
+impl Randomisations {
+    /// Each of them alone.
+    pub fn each() -> impl Iterator<Item = Self> {
+        (0..RANDOMISATIONS as usize).map(Self::One)
+    }
+
+    /// Returns whether the one with this number is among them.
+    fn contain(self, number: usize) -> bool {
+        match self {
+            Self::All => true,
+            Self::One(one) => one == number,
+        }
+    }
+}
+
 /// Traces the samples of a randomisation.
 pub(in crate::transport) trait SampleTracer: Sync {
     /// Cells and columns of each of its sums.
@@ -149,12 +173,22 @@ impl<'a> ReplicateSums<'a> {
     /// If there is no such sum.
     #[must_use]
     pub fn spread(&self, index: usize) -> Spread {
+        self.spread_of(index, Randomisations::All)
+    }
+
+    /// Spread over some of the randomisations; of sums that are folded, that over all.
+    ///
+    /// # Panics
+    /// If there is no such sum.
+    #[must_use]
+    pub fn spread_of(&self, index: usize, of: Randomisations) -> Spread {
         match &self.store {
             Store::All(rows) => {
                 let (cells, columns) = self.tracer.shapes()[index];
                 let mut spread = Spread::new(cells * columns);
-                let rows: Vec<&ReplicateRow> =
-                    rows.iter().filter(|row| !row.sums.is_empty()).collect();
+                let rows = rows.iter().enumerate().filter(|(number, _)| of.contain(*number));
+                let rows = rows.map(|(_, row)| row).filter(|row| !row.sums.is_empty());
+                let rows: Vec<&ReplicateRow> = rows.collect();
                 let sums = ReplicateRow::evaluated(&rows, index, self.tracer.models());
                 spread.push_sums(&sums.iter().map(AsRef::as_ref).collect::<Vec<_>>(), self.done);
                 spread

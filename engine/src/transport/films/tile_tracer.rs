@@ -20,12 +20,16 @@ const HALF_SAMPLES: u32 = u32::BITS;
 /// pixel.
 fn add_to_image_sums(path: &impl PathTracer, sums: &mut Sums, replicate: usize, choices: u32) {
     path.add_to_image_sums(sums, replicate);
-    for half_sample in 0..HALF_SAMPLES {
-        if (choices >> half_sample & 1) as usize == replicate {
-            let cell = REPLICATES_PER_PIXEL * (1 + half_sample as usize) + replicate;
-            path.add_to_image_sums(sums, cell);
-        }
+    for half_sample in half_samples(choices, replicate) {
+        path.add_to_image_sums(sums, REPLICATES_PER_PIXEL * (1 + half_sample) + replicate);
     }
+}
+
+/// Half-samples that take a replicate of a pixel with these choices.
+pub(super) fn half_samples(choices: u32, replicate: usize) -> impl Iterator<Item = usize> {
+    let all = 0..HALF_SAMPLES;
+    let taken = all.filter(move |half_sample| (choices >> half_sample & 1) as usize == replicate);
+    taken.map(|half_sample| half_sample as usize)
 }
 
 /// Traces the samples of a tile.
@@ -81,7 +85,7 @@ impl<P: PathTracer, F: Fn() -> P> TileTracer<'_, F> {
             is_admitted.then_some(((PixelSample { pixel, row }, ray.direction), ray, sampler))
         });
         // One bit of each pixel per half-sample: the replicate that it takes.
-        let choices = key.path("half-samples");
+        let choices = choices_of(key);
         let width = (tile.high.x - tile.low.x) as usize;
         batch.trace(stage, starts, |tags, paths| {
             let (mut valid, mut samples) = (Vec::new(), Vec::new());
@@ -103,7 +107,12 @@ impl<P: PathTracer, F: Fn() -> P> TileTracer<'_, F> {
     }
 }
 
+/// Key of the choices of half-samples of an image.
+pub(super) fn choices_of(key: Key) -> Key {
+    key.path("half-samples")
+}
+
 /// Number of a pixel's random streams.
-fn number_of(at: UVec2) -> u64 {
+pub(super) fn number_of(at: UVec2) -> u64 {
     u64::from(at.y) << 32 | u64::from(at.x)
 }

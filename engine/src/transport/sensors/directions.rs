@@ -15,8 +15,8 @@ use crate::transport::photons::{
 };
 use crate::transport::reference::ReferencePath;
 use crate::transport::{
-    LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold, ScatteringOrder,
-    spectrum_count,
+    LightSource, OrthographicCamera, Randomisations, ReferencePlane, RouletteThreshold,
+    ScatteringOrder, spectrum_count,
 };
 
 /// System that measures the light of a source, with or without its parts by order of scattering.
@@ -148,9 +148,9 @@ impl<'a> DirectionsFilm<'a> {
         Self { film, places, has_sums_per_spectrum: true, spectra }
     }
 
-    /// The outcome of the samples so far.
+    /// The outcome of the samples of some randomisations so far.
     #[must_use]
-    pub fn outcome(&self) -> DirectionsOutcome {
+    pub fn outcome(&self, of: Randomisations) -> DirectionsOutcome {
         let spread = |spectrum: usize| {
             // The first sums of packets are those of their energy.
             let (sums, start) =
@@ -159,7 +159,7 @@ impl<'a> DirectionsFilm<'a> {
                 let shift = start * place.len();
                 place.clone().map(move |value| (value + shift, *scale))
             });
-            self.film.spread(sums).select(places)
+            self.film.spread_of(sums, of).select(places)
         };
         DirectionsOutcome { spread: spread(0), parts: (1..self.spectra).map(spread).collect() }
     }

@@ -18,7 +18,7 @@ use crate::transport::ray_queue::TracedRay;
 use crate::transport::reference::ReferencePath;
 use crate::transport::scattering_order::spectrum_count;
 use crate::transport::{
-    Camera, LightSource, OrthographicCamera, ReferencePlane, RouletteThreshold,
+    Camera, LightSource, OrthographicCamera, Randomisations, ReferencePlane, RouletteThreshold,
 };
 
 /// An image of photon packets.
@@ -45,10 +45,12 @@ impl<'a> PacketImage<'a> {
         Self { sums, stage, camera, key: key.path("coverage"), coverage }
     }
 
-    fn outcome(&self) -> ImageOutcome {
+    fn outcome(&self, of: Randomisations) -> ImageOutcome {
         let trace = || Coverage::from_rays(&self.camera, self.stage, self.key);
         let coverage = self.coverage.get_or_init(trace);
-        outcome_of_packets(&self.sums, self.stage, &self.camera, coverage)
+        // The first sums are those of the energy.
+        let spreads = (1..self.sums.count()).map(|spectrum| self.sums.spread_of(spectrum, of));
+        outcome_of_packets(&spreads.collect::<Vec<_>>(), self.stage, &self.camera, coverage)
     }
 }
 
@@ -56,7 +58,7 @@ impl<'a> PacketImage<'a> {
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
 pub enum ImageFilm<'a> {
     /// Paths from the sensor.
-    Paths(ImageTiles<'a>),
+    Paths(Box<ImageTiles<'a>>),
     /// Photon packets, and rays that find which parts of the pixels show the scene.
     Packets(Box<PacketImage<'a>>),
 }
@@ -90,7 +92,7 @@ impl<'a> ImageFilm<'a> {
                 ImageTiles::new(stage, image, key, bands, move || ThermalPath::new(stage))
             }
         };
-        Self::Paths(tiles)
+        Self::Paths(Box::new(tiles))
     }
 
     /// Sets the place of sums of paths that take too much memory, before it is traced.
@@ -109,21 +111,32 @@ impl<'a> ImageFilm<'a> {
     pub fn outcome(&self) -> io::Result<ImageOutcome> {
         match self {
             Self::Paths(tiles) => tiles.outcome(),
-            Self::Packets(packets) => Ok(packets.outcome()),
+            Self::Packets(packets) => Ok(packets.outcome(Randomisations::All)),
+        }
+    }
+
+    /// The outcome of each randomisation. That of paths has means alone.
+    ///
+    /// # Errors
+    /// If a temporary file cannot be read.
+    pub fn replicates(&self) -> io::Result<Vec<ImageOutcome>> {
+        match self {
+            Self::Paths(tiles) => tiles.replicates(),
+            Self::Packets(packets) => {
+                Ok(Randomisations::each().map(|of| packets.outcome(of)).collect())
+            }
         }
     }
 }
 
 fn outcome_of_packets(
-    sums: &ReplicateSums<'_>,
+    spreads: &[Spread],
     stage: &Stage,
     camera: &OrthographicCamera,
     coverage: &Coverage,
 ) -> ImageOutcome {
     let (pixels, bands) = (camera.pixels(), stage.bands);
     let per_count = camera.radiance_per_count(stage);
-    // The first sums are those of the energy.
-    let spreads: Vec<Spread> = (1..sums.count()).map(|spectrum| sums.spread(spectrum)).collect();
     let errors: Vec<Vec<f64>> = spreads.iter().map(Spread::standard_error).collect();
     let spectra: Vec<(&[f64], &[f64])> =
         spreads.iter().zip(&errors).map(|(spread, error)| (spread.mean(), &**error)).collect();
