@@ -316,6 +316,29 @@ fn parameters_follow_each_other_by_their_formulas() {
     }
 }
 
+/// *Expected*: derivatives at the value that is set in place of the scene's own.
+#[test]
+fn derivatives_are_taken_at_values_that_are_set() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("test.ron");
+    let scene = SceneText::bare(0.0, "size_m: (4.0, 4.0)")
+        .with("params", r#""rho": 0.3"#)
+        .with("materials", r#""soil": Lambertian(reflectance: Constant("=rho"))"#)
+        .with("sun", "zenith_deg: 0.0, irradiance: Constant(1.0)")
+        .with("sensors", r#""p": Photons(per_m2: 50.0, measure: [Albedo])"#)
+        .with("sweep", r#"Derivatives(["rho"])"#);
+    fs::write(&file, scene.to_string()).expect("a file");
+    let mut options = Options::default();
+    options.document.set.push(("rho".to_owned(), 0.5.into()));
+    let sweep =
+        SweepRun::read(&file, &options, &Unwatched).unwrap_or_else(|failure| panic!("{failure}"));
+    let names: Vec<String> = sweep.points().iter().map(SweepPoint::name).collect();
+    assert_eq!(names, ["rho=0.5", "rho=0.495", "rho=0.505"]);
+    let [difference] = sweep.differences() else { panic!("one parameter") };
+    assert_eq!((difference.at, difference.sides, difference.points), (0.5, [0.495, 0.505], [1, 2]));
+    assert_eq!(sweep.groups(), [[0, 1, 2]]);
+}
+
 /// *Expected*: parameters that change whole numbers, names or nothing are refused, with the place of what they change.
 #[test]
 fn what_is_no_real_number_has_no_derivative() {
