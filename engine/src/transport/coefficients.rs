@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn terms_of_rounding_are_bounded_and_removed() {
         let mut models = SurfaceModels::new(3);
-        let spectrum = models.spectra.add([0.9, 0.1, 0.5].into_iter());
+        let spectrum = models.spectra.add([0.9, 0.1, 0.5]);
         let mut terms = Coefficients::kept();
         let product = terms.products().times(SpectrumProducts::ONE, LobeSpectrum::Table(spectrum));
         terms.add(0, 0, SpectrumProducts::ONE, 2048.0);
