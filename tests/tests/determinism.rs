@@ -5,7 +5,7 @@ use sunfleck_tests::SceneText;
 
 /// Every kind of sensor.
 const SENSORS: &str = r#"
-        "image": Orthographic(size_px: (40, 33), extent_m: (5.0, 5.0), zenith_deg: 20.0, samples_per_px: 17),
+        "image": Orthographic(size_px: (40, 33), extent_m: (5.0, 5.0), zenith_deg: 20.0, samples_per_px: 17, denoised: true),
         "back": Directions(system: Backward, views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02)),
         "forth": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 20.0), until: RelError(0.02), system: Forward),
         "photons": Photons(per_m2: 5000.0, measure: [Albedo, BrfCells(40), Fapar(layer_m: 0.7), Fluxes(pixel_m: 0.5)]),

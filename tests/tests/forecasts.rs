@@ -246,6 +246,7 @@ fn large_images_take_little_memory() {
     output::write(&small, &folder.path().join("out")).expect("files");
     let most = PeakAlloc.peak_usage() - before;
     assert!(most < 24 << 20, "{most} bytes to write 37 MB of values");
+    denoised_images_are_filtered_in_parts(&folder.path().join("denoised"));
     let options = with(scratch(1 << 20, Some(10 << 20)), "refused");
     let failure = traced(2, SENSOR, &options).expect_err("the disk is full").to_string();
     assert!(failure.contains("of temporary files, and 10.0 MiB are free in"), "{failure}");
@@ -254,4 +255,20 @@ fn large_images_take_little_memory() {
         bits(&large) == bits(&resumed),
         "nothing is traced again, and the numbers are the same"
     );
+}
+
+/// *Scene*: an image of 2.6 million values, and a denoised one beside it. *Expected*: writing both takes no more memory
+/// than foretold, which is less than two thirds of their values and errors.
+fn denoised_images_are_filtered_in_parts(out: &Path) {
+    const SENSOR: &str = "Orthographic(size_px: (320, 4000), extent_m: (5.0, 5.0), samples_per_px: 2, denoised: true)";
+    let scratch = ScratchSpace { folder: std::env::temp_dir(), memory: 1 << 20, disk: None };
+    let options = Options { scratch, ..Options::default() };
+    let (report, _) = traced(2, SENSOR, &options).expect("it fits");
+    let foretold = report.sensors[0].forecast.memory;
+    let before = PeakAlloc.current_usage();
+    PeakAlloc.reset_peak_usage();
+    output::write(&report, out).expect("files");
+    let most = (PeakAlloc.peak_usage() - before) as u64;
+    assert!(most < foretold + small(), "{most} of {foretold} bytes to write");
+    assert!(foretold < 26 << 20, "{foretold} bytes");
 }

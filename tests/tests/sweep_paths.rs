@@ -101,7 +101,7 @@ fn soil() -> SceneText {
         .with("sky", r#"Fraction(["=sky", 0.2, 0.0])"#)
         .with("boundary", "Periodic")
         .with("sensors", r#"
-        "image": Orthographic(size_px: (3, 2), extent_m: (3.0, 2.0), samples_per_px: 8, measure: [Brf, Radiance, BrightnessTemperature, GapFraction]),
+        "image": Orthographic(size_px: (3, 2), extent_m: (3.0, 2.0), samples_per_px: 8, measure: [Brf, Radiance, BrightnessTemperature, GapFraction], denoised: true),
         "views": Directions(views: List([(0.0, 0.0), (40.0, 90.0)]), until: Samples(2000), measure: [Brf, Radiance, BrightnessTemperature]),
         "map": Photons(per_m2: 50.0, measure: [Fluxes(pixel_m: 2.0), Absorbed(per: Triangle)])"#)
 }

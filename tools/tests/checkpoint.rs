@@ -23,7 +23,7 @@ const SCENE: &str = r#"Scene(
     sun: (zenith_deg: 50.0, azimuth_deg: 10.0, irradiance: Constant(1.0)),
     boundary: Periodic,
     sensors: {
-        "image": Orthographic(size_px: (40, 33), extent_m: (5.0, 5.0), zenith_deg: 20.0, samples_per_px: 24, measure: [Brf, GapFraction]),
+        "image": Orthographic(size_px: (40, 33), extent_m: (5.0, 5.0), zenith_deg: 20.0, samples_per_px: 24, measure: [Brf, GapFraction], denoised: true),
         "film": Orthographic(size_px: (5, 4), extent_m: (5.0, 5.0), zenith_deg: 20.0, system: Forward, samples_per_px: 1500),
         "eye": Fisheye(size_px: (20, 20), position_m: (2.5, 2.5, 0.2), measure: [Radiance, GapFraction], samples_per_px: 37),
         "views": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), measure: [Brf, Orders, FourComponents], until: Samples(9000)),

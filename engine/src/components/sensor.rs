@@ -74,6 +74,8 @@ pub struct ImageSensor {
     pub until: Vec<StopCriterion>,
     /// Quantities to report.
     pub measure: Vec<ImageMeasure>,
+    /// True if each image of light has a denoised one beside it.
+    pub is_denoised: bool,
     /// Colours of its picture.
     pub picture: PictureColours,
     /// Transport system that estimates it; photon packets support only parallel projections.

@@ -3,6 +3,7 @@ use std::f64::consts::FRAC_1_PI;
 use glam::DVec2;
 
 use super::context::labels;
+use super::denoising::denoised;
 use super::thermal::{brightness, radiance_of_sources};
 use super::{Context, Georeference, Image, PixelRows, Pixels, Product, Rendering, reflectance};
 use crate::components::{ImageMeasure, ImageSensor, Optics, PictureColours};
@@ -10,7 +11,7 @@ use crate::extract::Stage;
 use crate::transport::{ImageOutcome, ScatteringOrder, footprint};
 
 /// The products of an image measurement that are made of light: of what is `reflected`, as `L / E`,
-/// and of what is `emitted`, as far as they were measured.
+/// and of what is `emitted`, as far as they were measured. A denoised image follows each if the sensor asks for it.
 #[must_use]
 pub fn image_products(
     sensor: &ImageSensor,
@@ -51,7 +52,12 @@ pub fn image_products(
             ImageMeasure::FourComponents | ImageMeasure::GapFraction => return None,
         })
     };
-    sensor.measure.iter().filter_map(products).flatten().collect()
+    let products = sensor.measure.iter().filter_map(products).flatten();
+    let with_denoised = |product: Product| {
+        let filtered = if sensor.is_denoised { denoised(&product) } else { None };
+        std::iter::once(product).chain(filtered)
+    };
+    products.flat_map(with_denoised).collect()
 }
 
 /// Values of `L / E` and irradiance to those of a product, shape `[.., bands]`.

@@ -4,6 +4,7 @@
 mod absorbed;
 mod components;
 mod context;
+mod denoising;
 mod directions;
 mod estimates;
 mod image;

@@ -1,6 +1,7 @@
 //! Size of a product before it is measured.
 
 use super::components::component_count;
+use super::denoising;
 use super::image::bytes_of_block;
 use super::{Context, Product};
 use crate::components::{ImageMeasure, ImageSensor, System};
@@ -20,6 +21,8 @@ pub enum ProductSize {
         bands: u64,
         /// True if its pixels are in memory; those of paths are computed when they are written.
         is_kept: bool,
+        /// True if its pixels are filtered when they are written.
+        is_denoised: bool,
     },
     /// Rows of a table.
     Table {
@@ -46,7 +49,13 @@ impl ProductSize {
         let count = |values: usize, bands: usize| (values / bands.max(1)) as u64;
         if let Some(image) = &product.image {
             let (pixels, bands) = ((image.width * image.height) as u64, image.bands.len() as u64);
-            return Self::Image { width: image.width as u64, pixels, bands, is_kept: true };
+            return Self::Image {
+                width: image.width as u64,
+                pixels,
+                bands,
+                is_kept: true,
+                is_denoised: false,
+            };
         }
         if let Some(faces) = &product.faces {
             let bands = faces.bands.len();
@@ -59,6 +68,16 @@ impl ProductSize {
             None => (1, 0),
         };
         Self::Table { rows: count(product.values.len(), bands), axes, bands: bands as u64 }
+    }
+
+    /// Size of the denoised image beside an image.
+    const fn denoised(self) -> Self {
+        match self {
+            Self::Image { width, pixels, bands, is_kept, .. } => {
+                Self::Image { width, pixels, bands, is_kept, is_denoised: true }
+            }
+            other => other,
+        }
     }
 
     /// Number of values, each with an error.
@@ -93,9 +112,14 @@ impl ProductSize {
     #[must_use]
     pub fn memory_of_files(self) -> u64 {
         match self {
-            Self::Image { width, pixels, bands, .. } => {
+            Self::Image { width, pixels, bands, is_denoised, .. } => {
                 let block = bytes_of_block(width, bands).min(self.bytes());
-                COPIES * block + (RANKS * pixels).min(MOST_RANKS)
+                let filter = if is_denoised {
+                    denoising::bytes(width, pixels.div_ceil(width.max(1)), bands)
+                } else {
+                    0
+                };
+                COPIES * block + (RANKS * pixels).min(MOST_RANKS) + filter
             }
             Self::Table { .. } | Self::Faces { .. } => 0,
         }
@@ -134,7 +158,10 @@ pub fn image_sizes(
     let pixels = u64::from(sensor.size.x) * u64::from(sensor.size.y);
     let is_kept = sensor.system == System::Forward || context.scenes > 1;
     let width = u64::from(sensor.size.x);
-    let image = |bands: usize| ProductSize::Image { width, pixels, bands: bands as u64, is_kept };
+    let image = |bands: usize| {
+        let (bands, is_denoised) = (bands as u64, false);
+        ProductSize::Image { width, pixels, bands, is_kept, is_denoised }
+    };
     let index = ProductSize::Table { rows: 1, axes: 0, bands: 1 };
     let of = |measure: &ImageMeasure| match measure {
         ImageMeasure::FourComponents => {
@@ -144,7 +171,14 @@ pub fn image_sizes(
         ImageMeasure::GapFraction => {
             [vec![image(1)], vec![index; usize::from(has_zones) * LEAF_AREA_INDICES]].concat()
         }
-        measure => light_sizes(*measure, light, context, image),
+        measure => {
+            let mut sizes = light_sizes(*measure, light, context, image);
+            if sensor.is_denoised {
+                let filtered = sizes.iter().map(|size| size.denoised()).collect::<Vec<_>>();
+                sizes.extend(filtered);
+            }
+            sizes
+        }
     };
     sensor.measure.iter().flat_map(of).collect()
 }

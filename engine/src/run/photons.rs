@@ -289,7 +289,8 @@ impl ProductCounter {
             Self::Fluxes(counter) => {
                 let pixels = u64::from(counter.size.x) * u64::from(counter.size.y);
                 let width = u64::from(counter.size.x);
-                let size = ProductSize::Image { width, pixels, bands, is_kept: true };
+                let size =
+                    ProductSize::Image { width, pixels, bands, is_kept: true, is_denoised: false };
                 vec![size; 2 * counter.levels.len()]
             }
         }

@@ -58,7 +58,7 @@ fn products_have_the_estimated_extents() {
     let many = |extent: &ProductSize| extent.values() > 3;
     for_each_sensor(
         r#"
-        "map": Orthographic(size_px: (20, 33), extent_m: (5.0, 5.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction]),
+        "map": Orthographic(size_px: (20, 33), extent_m: (5.0, 5.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction], denoised: true),
         "film": Orthographic(size_px: (7, 4), extent_m: (5.0, 5.0), system: Forward, samples_per_px: 50, measure: [Brf, Radiance, Orders]),
         "eye": Fisheye(size_px: (20, 20), position_m: (2.5, 2.5, 0.2), measure: [Radiance, GapFraction]),
         "views": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 15.0), measure: [Brf, Radiance, Orders, BrightnessTemperature, FourComponents, GapFraction], until: Samples(64)),
@@ -90,7 +90,7 @@ fn products_have_the_estimated_extents() {
 fn in_memory(size: ProductSize) -> ProductSize {
     match size {
         ProductSize::Image { width, pixels, bands, .. } => {
-            ProductSize::Image { width, pixels, bands, is_kept: true }
+            ProductSize::Image { width, pixels, bands, is_kept: true, is_denoised: false }
         }
         other => other,
     }

@@ -361,7 +361,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             pair(),
             (samples(), option(ends())),
             list(image()),
-            (picture(), virtual_plane(), system())
+            (picture(), virtual_plane(), system(), any::<bool>())
         )
             .prop_map(
                 |(
@@ -384,7 +384,13 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         samples_per_px: samples.0,
                         samples_per_m2: samples.1,
                         virtual_plane: last.1,
-                        image: ImageOptions { until, measure, picture: last.0, system: last.2 },
+                        image: ImageOptions {
+                            until,
+                            measure,
+                            denoised: last.3,
+                            picture: last.0,
+                            system: last.2,
+                        },
                     })
                 }
             ),
@@ -406,7 +412,13 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                     above_ground: flags.0,
                     sees_sky: flags.1,
                     samples_per_px: flags.2,
-                    image: ImageOptions { until, measure, picture, system: System::Backward },
+                    image: ImageOptions {
+                        until,
+                        measure,
+                        denoised: flags.1,
+                        picture,
+                        system: System::Backward,
+                    },
                 })
             }),
         (
@@ -434,7 +446,13 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         above_ground: flags.0,
                         sees_sky: flags.1,
                         samples_per_px: flags.2,
-                        image: ImageOptions { until, measure, picture, system: System::Backward },
+                        image: ImageOptions {
+                            until,
+                            measure,
+                            denoised: flags.1,
+                            picture,
+                            system: System::Backward,
+                        },
                     })
                 }
             ),

@@ -10,6 +10,7 @@ pub(super) fn check_system(
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
+    check_denoised(path, sensor, report);
     let Some(system) = sensor.system() else { return };
     if let Sensor::Photons(Photons { measure, .. }) = sensor
         && system == System::Analog
@@ -43,6 +44,21 @@ pub(super) fn check_system(
         _ => (WHOLE, "take `system: Analog` out; it is for `Photons`"),
     };
     report.error(path.key("system"), message, help);
+}
+
+/// Checks that there is something to denoise, whose pixels have independent noise.
+fn check_denoised(path: &ScenePath, sensor: &Sensor, report: &mut Report<'_>) {
+    let Some(image) = sensor.image_options().filter(|image| image.denoised) else { return };
+    let at = path.key("denoised");
+    if image.system == System::Forward {
+        let message = "a photon packet counts in several pixels, and a filter needs pixels whose noise is independent";
+        report.error(at, message, "take `denoised: true` or `system: Forward` out");
+    } else if !image.measure.iter().any(ImageMeasure::is_light)
+        && report.is_whole(path.key("measure"))
+    {
+        let message = "what this image measures is not light, which alone is denoised";
+        report.error(at, message, "measure `Brf` or `Radiance` too, or take `denoised: true` out");
+    }
 }
 
 /// Message and help for a measure that a transport system does not estimate; `None` for the first surface along each ray, which paths measure beside it, and where another check reports.

@@ -37,6 +37,7 @@ pub(super) fn image(
         samples,
         until: sensor.until().to_vec(),
         measure: image.measure.clone(),
+        is_denoised: image.denoised,
         picture: resolve_picture(&image.picture, resources)?,
         system: image.system,
     })

@@ -9,6 +9,10 @@ record! {
         until: Option<Ends> = None,
         /// Quantities to report.
         measure: Vec<ImageMeasure> = vec![ImageMeasure::Radiance],
+        /// True if each image of light has a denoised one beside it, such as `brf_denoised`: `D = y + Σ a (G y - y)` with
+        /// Gaussian filters `G` of four widths, whose weights `a` minimise Stein's (1981) unbiased estimate of the squared
+        /// error around each pixel. Its standard errors include the bias of the filter.
+        denoised: bool = false,
         /// Colours of its PNG.
         picture: Picture = Picture::Quicklook,
         /// Transport system that estimates it.

@@ -140,7 +140,7 @@ impl Sensor {
     }
 
     /// The sensor with the quantities that a transport system can measure in a scene; `None` if there are none.
-    /// The largest limit of single products holds for all that are left if it drops some.
+    /// The largest limit of single products holds for all that are left if it drops some. Images are not denoised.
     #[must_use]
     pub fn measured_by(&self, by: System, scene: &Scene) -> Option<Self> {
         let mut sensor = self.clone();
@@ -150,6 +150,7 @@ impl Sensor {
             | Self::Perspective(Perspective { image, .. })
             | Self::Fisheye(Fisheye { image, .. }) => {
                 image.measure.retain(|measure| measure.is_measured_by(by, scene));
+                image.denoised = false;
                 image.system = by;
             }
             Self::Photons(Photons { measure, system, .. }) => {
