@@ -46,7 +46,7 @@ fn denoised_images_have_smaller_errors_and_tell_them() {
     let truth = camera("samples_per_px: 2048");
     let report = scene(&format!(r#""few": {few}, "many": {many}, "truth": {truth}"#));
     let truth = pixels(&report, "truth", "hdrf");
-    for (sensor, most) in [("few", 0.7), ("many", 0.97)] {
+    for (sensor, most) in [("few", 0.7), ("many", 1.0)] {
         let [plain, denoised] = ["hdrf", "hdrf_denoised"].map(|name| pixels(&report, sensor, name));
         assert_eq!(plain.coverage, denoised.coverage);
         for band in 0..2 {
@@ -76,7 +76,7 @@ fn a_measurement_can_end_when_its_denoised_image_is_good_enough() {
     };
     let report = scene(&format!("{}, {}", camera("hdrf"), camera("hdrf_denoised")));
     let [plain, denoised] = [0, 1].map(|at| &report.sensors[at]);
-    assert!(2 * denoised.samples <= plain.samples, "{} and {}", plain.samples, denoised.samples);
+    assert!(5 * denoised.samples < 4 * plain.samples, "{} and {}", plain.samples, denoised.samples);
     let error = denoised.products[1].median_relative_error().expect("pixels can be read");
     assert!(error.is_some_and(|error| error <= 0.2), "{error:?}");
 }
