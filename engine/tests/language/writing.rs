@@ -345,12 +345,26 @@ fn virtual_plane() -> impl Strategy<Value = Option<VirtualPlane>> {
     )
 }
 
+/// Keys of all images, of one of these transport systems.
+fn image_options(systems: Vec<System>) -> impl Strategy<Value = ImageOptions> {
+    let measure = prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
+    let system = prop::sample::select(systems);
+    (option(ends()), list(measure), any::<bool>(), picture(), system).prop_map(
+        |(until, measure, denoised, picture, system)| ImageOptions {
+            until,
+            measure,
+            denoised,
+            picture,
+            system,
+        },
+    )
+}
+
 fn image_sensor() -> BoxedStrategy<Sensor> {
-    let system = || prop::sample::select(System::ALL.to_vec());
-    let image = || prop::sample::select(vec![ImageMeasure::Radiance, ImageMeasure::Brf]);
+    let any_system = || image_options(System::ALL.to_vec());
+    let backward = || image_options(vec![System::Backward]);
     let pair = || (number(), number());
     let triple = || (number(), number(), number());
-    let samples = || (option(any::<u32>()), option(number()));
     let cover = || option(Just(Cover::WholeScene));
     let flags = || any::<(bool, bool, u32)>();
     prop_oneof![
@@ -359,9 +373,9 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
             (option(pair()), cover()),
             option(pair()),
             pair(),
-            (samples(), option(ends())),
-            list(image()),
-            (picture(), virtual_plane(), system(), any::<bool>())
+            (option(any::<u32>()), option(number())),
+            virtual_plane(),
+            any_system()
         )
             .prop_map(
                 |(
@@ -369,9 +383,9 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                     (extent_m, cover),
                     center_m,
                     angles,
-                    (samples, until),
-                    measure,
-                    last,
+                    samples,
+                    virtual_plane,
+                    image,
                 )| {
                     Sensor::Orthographic(Orthographic {
                         size_px,
@@ -383,26 +397,13 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         azimuth_deg: angles.1,
                         samples_per_px: samples.0,
                         samples_per_m2: samples.1,
-                        virtual_plane: last.1,
-                        image: ImageOptions {
-                            until,
-                            measure,
-                            denoised: last.3,
-                            picture: last.0,
-                            system: last.2,
-                        },
+                        virtual_plane,
+                        image,
                     })
                 }
             ),
-        (
-            any::<(u32, u32)>(),
-            (triple(), triple(), triple()),
-            pair(),
-            (flags(), option(ends())),
-            list(image()),
-            picture()
-        )
-            .prop_map(|(size_px, points, fov_deg, (flags, until), measure, picture)| {
+        (any::<(u32, u32)>(), (triple(), triple(), triple()), pair(), flags(), backward())
+            .prop_map(|(size_px, points, fov_deg, flags, image)| {
                 Sensor::Perspective(Perspective {
                     size_px,
                     position_m: points.0,
@@ -412,30 +413,18 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                     above_ground: flags.0,
                     sees_sky: flags.1,
                     samples_per_px: flags.2,
-                    image: ImageOptions {
-                        until,
-                        measure,
-                        denoised: flags.1,
-                        picture,
-                        system: System::Backward,
-                    },
+                    image,
                 })
             }),
         (
             any::<(u32, u32)>(),
             (triple(), look(), option(triple())),
             (number(), projection()),
-            (flags(), option(ends())),
-            (list(image()), picture())
+            flags(),
+            backward()
         )
             .prop_map(
-                |(
-                    size_px,
-                    (position_m, look, up),
-                    (fov_deg, projection),
-                    (flags, until),
-                    (measure, picture),
-                )| {
+                |(size_px, (position_m, look, up), (fov_deg, projection), flags, image)| {
                     Sensor::Fisheye(Fisheye {
                         size_px,
                         position_m,
@@ -446,13 +435,7 @@ fn image_sensor() -> BoxedStrategy<Sensor> {
                         above_ground: flags.0,
                         sees_sky: flags.1,
                         samples_per_px: flags.2,
-                        image: ImageOptions {
-                            until,
-                            measure,
-                            denoised: flags.1,
-                            picture,
-                            system: System::Backward,
-                        },
+                        image,
                     })
                 }
             ),

@@ -18,8 +18,8 @@ pub(super) fn inverse<const N: usize>(matrix: &[[f64; N]; N]) -> Option<[[f64; N
             };
         }
     }
-    let mut inverse = [[0.0; N]; N];
-    for column in 0..N {
+    // Columns of the inverse are its rows.
+    Some(std::array::from_fn(|column| {
         // `L y = e`, then `Lᵀ x = y`.
         let mut x = [0.0; N];
         for row in 0..N {
@@ -30,11 +30,8 @@ pub(super) fn inverse<const N: usize>(matrix: &[[f64; N]; N]) -> Option<[[f64; N
             let known: f64 = (row + 1..N).map(|at| lower[at][row] * x[at]).sum();
             x[row] = (x[row] - known) / lower[row][row];
         }
-        for row in 0..N {
-            inverse[row][column] = x[row];
-        }
-    }
-    Some(inverse)
+        x
+    }))
 }
 
 #[cfg(test)]
@@ -46,8 +43,10 @@ mod tests {
         let matrix = [[4.0, 1.0, 0.5], [1.0, 3.0, -1.0], [0.5, -1.0, 2.0]];
         let inverse = inverse(&matrix).expect("positive definite");
         for (row, values) in matrix.iter().enumerate() {
-            for column in 0..3 {
-                let product: f64 = (0..3).map(|at| values[at] * inverse[at][column]).sum();
+            let products: [f64; 3] = std::array::from_fn(|column| {
+                values.iter().zip(&inverse).map(|(value, row)| value * row[column]).sum()
+            });
+            for (column, product) in products.into_iter().enumerate() {
                 let expected = f64::from(u8::from(row == column));
                 assert!((product - expected).abs() < 1e-14, "{row} {column}: {product}");
             }
