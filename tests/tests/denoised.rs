@@ -34,7 +34,7 @@ fn errors(found: &PixelRows, truth: &PixelRows, band: usize) -> (f64, f64) {
 }
 
 /// *Scene*: trees and hard edges in two bands under sun and sky, at 4 and 64 samples per pixel. *Expected*: squared errors
-/// against 2048 samples fall in each band, and are those that the standard errors tell; the mean of the image is that of
+/// against 1024 samples fall in each band, and are those that the standard errors tell; the mean of the image is that of
 /// the plain one; pixels without data stay without.
 #[test]
 fn denoised_images_have_smaller_errors_and_tell_them() {
@@ -43,7 +43,7 @@ fn denoised_images_have_smaller_errors_and_tell_them() {
     };
     let few = camera("samples_per_px: 4, measure: [Brf, Radiance], denoised: true");
     let many = camera("samples_per_px: 64, denoised: true");
-    let truth = camera("samples_per_px: 2048");
+    let truth = camera("samples_per_px: 1024");
     let report = scene(&format!(r#""few": {few}, "many": {many}, "truth": {truth}"#));
     let truth = pixels(&report, "truth", "hdrf");
     for (sensor, most) in [("few", 0.7), ("many", 1.0)] {

@@ -11,6 +11,7 @@ fn product(width: usize, height: usize, pixels: PixelRows) -> Product {
         dimensions: Vec::new(),
         values: vec![0.25; bands],
         standard_error: vec![0.01; bands],
+        replicates: Vec::new(),
         image: Some(Image {
             width,
             height,
