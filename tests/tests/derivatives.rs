@@ -298,6 +298,29 @@ fn a_derivative_has_far_less_noise_than_independent_points() {
     }
 }
 
+/// *Expected*: gap fractions and components have no derivatives, and take none from the products beside them; a denoised image,
+/// whose mean is that of the plain one, has its derivative.
+#[test]
+fn what_is_not_made_of_light_has_no_derivatives() {
+    let scene = SceneText::bare(0.0, "size_m: (4.0, 4.0)")
+        .with("params", r#""rho": 0.3"#)
+        .with("materials", r#""soil": Lambertian(reflectance: Constant("=rho"))"#)
+        .with("sun", "zenith_deg: 30.0, irradiance: Constant(2.0)")
+        .with("boundary", "Periodic")
+        .with("sensors", r#""i": Orthographic(size_px: (8, 8), extent_m: (4.0, 4.0), samples_per_px: 4, measure: [Brf, GapFraction, Radiance, FourComponents], denoised: true)"#)
+        .with("sweep", r#"Derivatives(["rho"])"#);
+    let found: Vec<(String, f64)> = derivatives(&scene, 1.0)
+        .into_iter()
+        .map(|row| (row.product, row.derivative.value))
+        .collect();
+    let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["brf", "brf_denoised", "radiance", "radiance_denoised"]);
+    let radiance = 2.0 * 30_f64.to_radians().cos() / PI;
+    for ((name, value), truth) in found.iter().zip([1.0, 1.0, radiance, radiance]) {
+        assert!((value - truth).abs() < 1e-5, "{name}: {value}");
+    }
+}
+
 /// *Expected*: a parameter that follows from another by a formula follows it, so that a derivative is that of the scene as a
 /// function of one parameter.
 #[test]
