@@ -19,7 +19,7 @@ const SIDE: f64 = 20.0;
 
 /// Trees in a square grid over ground that goes on without end.
 fn stand(leaf_area_m2: f64, trees_a_side: u32) -> Scene {
-    let band = Band { width_nm: 20.0, ..Band::new("nir".to_owned(), 865.0) };
+    let band = Band { center_nm: Some(865.0), width_nm: 20.0, ..Band::new("nir".to_owned()) };
     let terrain = Terrain::Plane(TerrainPlane::new((SIDE, SIDE), "soil".into()));
     let mut scene = Scene::new(vec![band], terrain);
     scene.title = format!("{leaf_area_m2} m² of leaves a tree, {trees_a_side} trees a side");

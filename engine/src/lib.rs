@@ -14,7 +14,7 @@
 //! use sunfleck::{RunOptions, Scene, Unwatched, check, run};
 //!
 //! let ground = Terrain::Plane(TerrainPlane::new((10.0, 10.0), "soil".into()));
-//! let mut scene = Scene::new(vec![Band::new("red".to_owned(), 660.0)], ground);
+//! let mut scene = Scene::new(vec![Band { center_nm: Some(660.0), ..Band::new("red".to_owned()) }], ground);
 //! let soil = Lambertian::new(Spectrum::Constant(0.2));
 //! scene.materials.insert("soil".to_owned(), Material::Lambertian(soil));
 //! scene.sun = Some(Sun { zenith_deg: Some(30.0), ..Sun::default() });

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use sunfleck::products::Report;
 use sunfleck::run::{Options, Unwatched, run};
-use sunfleck::spectral::{BandWindow, planck, planck_mean};
+use sunfleck::spectral::{BandResponse, BandWindow, planck, planck_mean};
 use sunfleck_tests::{Estimate, SceneText, product};
 
-fn window(center: f64, width: f64) -> BandWindow {
-    BandWindow { center, width }
+fn window(center: f64, width: f64) -> BandResponse {
+    BandResponse::Window(BandWindow { center, width })
 }
 
 /// *Scene*: a periodic canopy, ground and sky, all at 300 K, of any emissivity.
@@ -39,7 +39,7 @@ fn an_isothermal_scene_looks_black_whatever_its_emissivity() {
         "views": Directions(system: Backward, views: List([(0.0, 0.0), (60.0, 90.0)]), until: Samples(30000), measure: [Radiance, BrightnessTemperature]),
         "image": Orthographic(size_px: (4, 4), extent_m: (3.0, 3.0), samples_per_px: 512, measure: [BrightnessTemperature, Brf])"#)
         .measure();
-    let black = [planck_mean(window(10_500.0, 1_000.0), 300.0), planck(8_000.0, 300.0)];
+    let black = [planck_mean(&window(10_500.0, 1_000.0), 300.0), planck(8_000.0, 300.0)];
     let radiance = product(&report, "views", "radiance");
     let kelvin = product(&report, "views", "brightness_temperature");
     for view in 0..2 {
@@ -159,7 +159,7 @@ fn half_shaded_ground_has_the_mean_radiance() {
     let found = product(&report, "views", "radiance");
     for (band, window) in [window(10_000.0, 0.0), window(11_000.0, 6_000.0)].into_iter().enumerate()
     {
-        let black = |kelvin: f64| planck_mean(window, kelvin);
+        let black = |kelvin: f64| planck_mean(&window, kelvin);
         let nadir = 0.5 * (black(320.0) + black(300.0));
         // From the west half of what is seen is the wall's dark side, as warm as its sunlit one; the
         // other half is its shadow.

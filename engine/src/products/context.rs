@@ -1,5 +1,5 @@
 use super::{AxisPoints, Product, ProductAxis};
-use crate::spectral::BandWindow;
+use crate::spectral::BandResponse;
 
 /// Bands and light that all products of a run have in common.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,11 +19,13 @@ pub struct Context {
     pub sources: Vec<BandSources>,
 }
 
-/// Sources of the radiance in a band.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Wavelengths of a band, and sources of its radiance.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BandSources {
-    /// The band's wavelengths.
-    pub window: BandWindow,
+    /// Centre wavelength, nm.
+    pub center_nm: f64,
+    /// Response to the wavelengths.
+    pub response: BandResponse,
     /// True if the band holds the emission of surfaces and sky.
     pub emits: bool,
     /// True if the band holds reflected light of sun and sky.

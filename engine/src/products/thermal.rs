@@ -40,8 +40,8 @@ pub fn brightness((radiance, error): (&[f64], &[f64]), context: &Context) -> (Ve
         .filter_map(|(index, (&value, &error))| {
             let source = &context.sources[index % bands];
             source.emits.then(|| {
-                let kelvin = brightness_temperature(source.window, value);
-                (kelvin, error / planck_mean_slope(source.window, kelvin))
+                let kelvin = brightness_temperature(&source.response, value);
+                (kelvin, error / planck_mean_slope(&source.response, kelvin))
             })
         })
         .unzip()
@@ -51,12 +51,17 @@ pub fn brightness((radiance, error): (&[f64], &[f64]), context: &Context) -> (Ve
 mod tests {
     use super::*;
     use crate::products::BandSources;
-    use crate::spectral::{BandWindow, planck_mean};
+    use crate::spectral::{BandResponse, BandWindow, planck_mean};
 
     #[test]
     fn sources_add_up_band_by_band() {
-        let window = BandWindow { center: 4_000.0, width: 100.0 };
-        let source = |emits, reflects| BandSources { window, emits, reflects };
+        let window = BandResponse::Window(BandWindow { center: 4_000.0, width: 100.0 });
+        let source = |emits, reflects| BandSources {
+            center_nm: 4_000.0,
+            response: window.clone(),
+            emits,
+            reflects,
+        };
         let context = Context {
             scenes: 1,
             bands: ["a", "b", "c"].map(str::to_owned).into(),
@@ -73,8 +78,8 @@ mod tests {
             &context,
         );
         assert_eq!(sum, (vec![1.0, 1.0, 5.0], vec![0.2, 0.1, 0.5]));
-        let black = planck_mean(window, 300.0);
-        let step = planck_mean(window, 300.01) - black;
+        let black = planck_mean(&window, 300.0);
+        let step = planck_mean(&window, 300.01) - black;
         let (kelvin, error) = brightness((&[9.0, black, black], &[0.0, step, step]), &context);
         assert_eq!(kelvin.len(), 2);
         assert!((kelvin[0] - 300.0).abs() < 1e-9 && (error[0] - 0.01).abs() < 1e-5, "{error:?}");

@@ -69,7 +69,7 @@ fn checked(
         let stage = staged(&mut world, &reading.scene, &optics, options.free_memory())?;
         let mut notes: Vec<String> = world.resources.messages.notes().cloned().collect();
         notes.extend(pixels::count_pixels(&mut world.world, &stage, stage.bands)?);
-        let context = context(&reading.scene, &optics);
+        let context = context(&reading.scene, world.resources.responses.all(), &optics);
         let sensors = sensors::in_order(&world.world);
         let scratch = sensors::scratch(&sensors, options);
         let measured = MeasureContext { stage: &stage, context: &context, scratch: &scratch };
@@ -77,7 +77,7 @@ fn checked(
         let mut warnings = world.diagnostics();
         warnings.extend(enclosed::warnings(&sensors, &stage));
         if with_facts {
-            warnings.extend(facts::warn_bright_ground(&reading.scene, &world.world));
+            warnings.extend(facts::warn_bright_ground(&context, &world.world));
         }
         let facts =
             with_facts.then(|| SceneFacts::new(&reading.scene, &world.world, measured, options));

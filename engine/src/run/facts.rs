@@ -17,6 +17,7 @@ use crate::components::{
 };
 use crate::document::{self, Diagnostic, PhotonMeasure, Scene, ScenePath};
 use crate::extract::Stage;
+use crate::products::{BandSources, Context};
 use crate::sampling::Key;
 
 /// Vertical rays along each side of the grid that canopy cover is found with.
@@ -169,7 +170,7 @@ impl SceneFacts {
             canopy_cover,
             canopy_cover_error,
             sun: sun(scene),
-            bands: bands(scene, world, stage),
+            bands: bands(measured.context, world, stage),
             sensors: sensor_facts(scene, world, measured, options),
             geometry_bytes: (memory.mesh_bytes + memory.instance_bytes) as u64,
             ground,
@@ -184,7 +185,7 @@ const SNOW: f32 = 0.9;
 const VISIBLE_END: f64 = 1100.0;
 
 /// Warns of ground that is brighter than fresh snow.
-pub(super) fn warn_bright_ground(scene: &Scene, world: &World) -> Vec<Diagnostic> {
+pub(super) fn warn_bright_ground(context: &Context, world: &World) -> Vec<Diagnostic> {
     let ground: Vec<MaterialId> =
         world.query::<&TerrainPatch>().iter().flat_map(|patch| patch.materials.0.clone()).collect();
     let mut surfaces = world.query::<(&SceneId, &Name, &SurfaceOptics)>();
@@ -192,14 +193,13 @@ pub(super) fn warn_bright_ground(scene: &Scene, world: &World) -> Vec<Diagnostic
         if !ground.contains(&MaterialId(id.0)) {
             return None;
         }
-        let bands = scene.bands.iter().zip(optics.lambertian()?.front());
-        let bright = bands.filter(|(band, _)| band.center_nm < VISIBLE_END);
-        let (band, reflectance) = bright.max_by(|a, b| a.1.total_cmp(b.1))?;
+        let bands = context.bands.iter().zip(&context.sources).zip(optics.lambertian()?.front());
+        let bright = bands.filter(|((_, source), _)| source.center_nm < VISIBLE_END);
+        let ((band, _), reflectance) = bright.max_by(|a, b| a.1.total_cmp(b.1))?;
         (*reflectance > SNOW).then(|| {
             let message = format!(
-                "the ground reflects {:.1} % in band `{}`: more than fresh snow",
-                100.0 * reflectance,
-                band.name
+                "the ground reflects {:.1} % in band `{band}`: more than fresh snow",
+                100.0 * reflectance
             );
             let help = "soil reflects 5 to 40 %: is the spectrum right, and no white reference?";
             Diagnostic::warning(ScenePath::from("materials").name(&name.0), message).help(help)
@@ -301,26 +301,26 @@ fn sun(scene: &Scene) -> Option<SunFacts> {
     Some(SunFacts { zenith_deg, azimuth_deg, from_place_and_time: sun.position.is_some() })
 }
 
-fn bands(scene: &Scene, world: &World, stage: &Stage) -> Vec<BandFacts> {
+fn bands(context: &Context, world: &World, stage: &Stage) -> Vec<BandFacts> {
     let mut suns = world.query::<&SunLight>();
     let sun = suns.iter().next();
-    let facts = |(index, band): (usize, &document::Band)| {
+    let facts = |(index, (name, source)): (usize, (&String, &BandSources))| {
         let irradiance = stage.light.irradiance[index];
         let direct = sun.map_or(0.0, |sun| sun.irradiance[index] * sun.direction.z);
         BandFacts {
-            name: band.name.clone(),
-            center_nm: band.center_nm,
-            width_nm: band.width_nm,
+            name: name.clone(),
+            center_nm: source.center_nm,
+            width_nm: source.response.width(),
             irradiance,
             diffuse_fraction: if irradiance > 0.0 {
                 (1.0 - direct / irradiance).max(0.0)
             } else {
                 0.0
             },
-            emits: band.emits(),
+            emits: source.emits,
         }
     };
-    scene.bands.iter().enumerate().map(facts).collect()
+    context.bands.iter().zip(&context.sources).enumerate().map(facts).collect()
 }
 
 fn sensor_facts(

@@ -64,7 +64,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             seconds: common.seconds * share,
             rays: sensors.iter().map(|report| report.rays).sum(),
             bands: context.bands.clone(),
-            wavelengths: scene.bands.iter().map(|band| band.center_nm).collect(),
+            wavelengths: context.sources.iter().map(|source| source.center_nm).collect(),
             irradiance: context.irradiance.clone(),
             stages: common.stages.iter().map(|(name, s)| (name.clone(), s * share)).collect(),
             skipped: settled.skipped.clone(),

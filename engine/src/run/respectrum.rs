@@ -6,7 +6,7 @@ use super::checkpoint::CheckpointStore;
 use super::provenance::{FileHashes, scene_hash, without_stop_criteria};
 use super::sweep::without_values;
 use super::{Failure, Options, Progress, report_of};
-use crate::document::{Diagnostic, Scene, ScenePath};
+use crate::document::{Bands, Diagnostic, Scene, ScenePath};
 use crate::extract::Stage;
 use crate::products::Report;
 use crate::scattering::{PathMisfit, PathSpectra};
@@ -99,7 +99,7 @@ pub(super) fn paths_hash(scene: &Scene, folder: &Path) -> Result<[u8; 32], Failu
     let mut paths = without_values(scene);
     without_stop_criteria(&mut paths);
     if paths.bands.iter().all(|band| !band.emits()) {
-        paths.bands.clear();
+        paths.bands = Bands::default();
     }
     let files: Vec<_> = paths.files().into_iter().map(|(_, named)| folder.join(named)).collect();
     Ok(*scene_hash(&paths, &files, &FileHashes::default())?.as_bytes())

@@ -1,24 +1,28 @@
 use crate::document::{self, Scene};
 use crate::extract::{Rules, SceneOptics, Setting};
 use crate::products::{BandSources, Context};
-use crate::spectral::BandWindow;
+use crate::spectral::BandResponse;
 
 /// Data of a scene that products are made with.
-pub(super) fn context(scene: &Scene, optics: &SceneOptics) -> Context {
+pub(super) fn context(scene: &Scene, responses: &[BandResponse], optics: &SceneOptics) -> Context {
     Context {
         scenes: 1,
         bands: scene.bands.iter().map(|band| band.name.clone()).collect(),
         irradiance: optics.irradiance(),
         has_sky: optics.has_sky(),
         origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
-        sources: scene.bands.iter().map(sources).collect(),
+        sources: scene.bands.iter().zip(responses).map(sources).collect(),
     }
 }
 
-/// Sources of the radiance in a band.
-fn sources(band: &document::Band) -> BandSources {
-    let window = BandWindow { center: band.center_nm, width: band.width_nm };
-    BandSources { window, emits: band.emits(), reflects: band.reflects() }
+/// Wavelengths of a band, and sources of its radiance.
+fn sources((band, response): (&document::Band, &BandResponse)) -> BandSources {
+    BandSources {
+        center_nm: band.nominal_nm().unwrap_or_else(|| response.center()),
+        response: response.clone(),
+        emits: band.emits(),
+        reflects: band.reflects(),
+    }
 }
 
 /// Settings of a stage.

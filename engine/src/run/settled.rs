@@ -40,7 +40,7 @@ impl SettledScene {
         let messages = &world.resources.messages;
         let files = messages.files();
         Ok(Self {
-            context: context(&scene, &optics),
+            context: context(&scene, world.resources.responses.all(), &optics),
             hash: provenance::hash(&scene, &files, hashes)?,
             skipped: messages.skipped().cloned().collect(),
             notes: messages.notes().cloned().collect(),

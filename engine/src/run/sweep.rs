@@ -15,8 +15,8 @@ use super::scene_world::SceneWorld;
 use super::suns::{grouped_by_sun, sun_of_paths};
 use super::{Failure, Options, Progress, day, derivatives, params, scene_source};
 use crate::document::{
-    self, Lambertian, Map, Material, Scene, Sensor, Sky, Spectrum, StopCriterion, Sun, System,
-    ThermalSky,
+    self, Bands, Lambertian, Map, Material, Scene, Sensor, Sky, Spectrum, StopCriterion, Sun,
+    System, ThermalSky,
 };
 use crate::products::{CentralDifference, Day, Night, Report, SweepPoint};
 
@@ -254,7 +254,7 @@ fn geometry_of(scene: &Scene) -> Scene {
     let material = |_: &Material| Material::Lambertian(Lambertian::new(Spectrum::Constant(0.0)));
     Scene {
         title: String::new(),
-        bands: Vec::new(),
+        bands: Bands::default(),
         spectra: Map::new(),
         materials: scene.materials.iter().map(|(n, m)| (n.clone(), material(m))).collect(),
         sun: None,

@@ -45,7 +45,7 @@ fn for_each_sensor(sensors: &str, test: impl Fn(&SensorEntity, MeasureContext<'_
     let built = SceneWorld::from_scene(&reading.scene, Path::new("")).expect("a world");
     let optics = SceneOptics::from_world(&built.world, reading.scene.bands.len());
     let stage = extract(&built.world, &optics, &setting(&reading.scene), None).expect("a stage");
-    let context = context(&reading.scene, &optics);
+    let context = context(&reading.scene, built.resources.responses.all(), &optics);
     for sensor in in_order(&built.world) {
         let scratch = &ScratchSpace::default();
         test(&sensor, MeasureContext { stage: &stage, context: &context, scratch });

@@ -3,8 +3,12 @@
 mod band;
 mod planck;
 pub mod prospect;
+mod response;
+mod sensors;
 mod solar;
 
 pub use band::{BandWindow, OutsideSpectrum, band_mean};
 pub use planck::{brightness_temperature, planck, planck_mean, planck_mean_slope};
-pub use solar::{ASTM_G173_END_NM, solar_irradiance};
+pub use response::{BandResponse, InvalidResponse, ResponseCurve};
+pub use sensors::{SensorBand, sensor_bands, sensor_names};
+pub use solar::{ASTM_E490, ASTM_G173, SolarSpectrum};

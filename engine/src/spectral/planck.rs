@@ -1,4 +1,4 @@
-use super::BandWindow;
+use super::{BandResponse, BandWindow};
 use crate::units::{BOLTZMANN, LIGHT_SPEED, NM_PER_M, PLANCK};
 
 /// `2 h c²`, W m² sr⁻¹.
@@ -39,13 +39,13 @@ pub fn planck(wavelength_nm: f64, temperature_k: f64) -> f64 {
 
 /// Mean of Planck's radiance over a band, W m⁻² sr⁻¹ nm⁻¹; at its centre where it has no width.
 #[must_use]
-pub fn planck_mean(band: BandWindow, temperature_k: f64) -> f64 {
+pub fn planck_mean(band: &BandResponse, temperature_k: f64) -> f64 {
     mean_and_slope(band, temperature_k).0
 }
 
 /// Derivative of [`planck_mean`] by temperature, W m⁻² sr⁻¹ nm⁻¹ K⁻¹.
 #[must_use]
-pub fn planck_mean_slope(band: BandWindow, temperature_k: f64) -> f64 {
+pub fn planck_mean_slope(band: &BandResponse, temperature_k: f64) -> f64 {
     mean_and_slope(band, temperature_k).1
 }
 
@@ -54,7 +54,7 @@ pub fn planck_mean_slope(band: BandWindow, temperature_k: f64) -> f64 {
 ///
 /// 0 for a radiance of 0; NaN for one that is negative, infinite or not a number.
 #[must_use]
-pub fn brightness_temperature(band: BandWindow, radiance: f64) -> f64 {
+pub fn brightness_temperature(band: &BandResponse, radiance: f64) -> f64 {
     if radiance == 0.0 {
         return 0.0;
     }
@@ -63,7 +63,7 @@ pub fn brightness_temperature(band: BandWindow, radiance: f64) -> f64 {
     }
     // ln L is nearly a straight line in 1 / T, and convex: Newton's steps go to the root from the
     // left and never beyond it.
-    let wavenumber = NM_PER_M / band.center;
+    let wavenumber = NM_PER_M / band.center();
     let at_center = FIRST_RADIATION * wavenumber.powi(5) / (radiance * NM_PER_M);
     let mut inverse = at_center.ln_1p() / (SECOND_RADIATION * wavenumber);
     for _ in 0..100 {
@@ -85,11 +85,27 @@ pub fn brightness_temperature(band: BandWindow, radiance: f64) -> f64 {
 }
 
 /// Mean radiance over the band and its derivative by temperature.
-fn mean_and_slope(band: BandWindow, temperature: f64) -> (f64, f64) {
-    let BandWindow { center, width } = band;
+fn mean_and_slope(band: &BandResponse, temperature: f64) -> (f64, f64) {
     if temperature <= 0.0 {
         return (0.0, 0.0);
     }
+    match band {
+        BandResponse::Window(window) => mean_of_window(*window, temperature),
+        BandResponse::Curve(curve) => {
+            let rule = curve.smooth_rule().iter();
+            let (mean, slope) = rule.fold((0.0, 0.0), |(mean, slope), &(wavelength, weight)| {
+                let radiance = weight * planck(wavelength, temperature);
+                let x = SECOND_RADIATION / temperature * NM_PER_M / wavelength;
+                (mean + radiance, slope + radiance * slope_factor(x))
+            });
+            (mean, slope / temperature)
+        }
+    }
+}
+
+/// Mean radiance over a window and its derivative by temperature.
+fn mean_of_window(window: BandWindow, temperature: f64) -> (f64, f64) {
+    let BandWindow { center, width } = window;
     let per_wavenumber = SECOND_RADIATION / temperature;
     if width <= 0.0 {
         let mean = planck(center, temperature);
@@ -130,8 +146,8 @@ mod tests {
 
     use super::*;
 
-    fn band(center: f64, width: f64) -> BandWindow {
-        BandWindow { center, width }
+    fn band(center: f64, width: f64) -> BandResponse {
+        BandResponse::Window(BandWindow { center, width })
     }
 
     /// Numbers of an independent program, W m⁻² sr⁻¹ µm⁻¹.
@@ -154,11 +170,11 @@ mod tests {
     /// 8 to 14 µm at 300 K: 54.93346 W m⁻² sr⁻¹; all wavelengths: σ T⁴ / π.
     #[test]
     fn means_are_those_of_known_integrals() {
-        let window = planck_mean(band(11_000.0, 6_000.0), 300.0) * 6_000.0;
+        let window = planck_mean(&band(11_000.0, 6_000.0), 300.0) * 6_000.0;
         assert!((window / 54.933_46 - 1.0).abs() < 1e-7, "{window}");
         // From 0.2 mm down to 100 nm; beyond 0.2 mm lie (15 / π⁴) x³ / 3 of all, less 3 x / 8 of that.
         let (low, high) = (100.0, 2e8);
-        let all = planck_mean(band(0.5 * (low + high), high - low), 300.0) * (high - low);
+        let all = planck_mean(&band(0.5 * (low + high), high - low), 300.0) * (high - low);
         let x = SECOND_RADIATION * NM_PER_M / high / 300.0;
         let beyond = 15.0 / std::f64::consts::PI.powi(4) * x.powi(3) * (1.0 - 0.375 * x) / 3.0;
         let expected = 5.670_374_419e-8 * 300_f64.powi(4) / std::f64::consts::PI * (1.0 - beyond);
@@ -168,9 +184,9 @@ mod tests {
     #[test]
     fn a_band_without_width_is_its_centre_and_narrow_ones_tend_to_it() {
         let center = planck(10_500.0, 290.0);
-        assert!((planck_mean(band(10_500.0, 0.0), 290.0) - center).abs() <= f64::EPSILON * center);
+        assert!((planck_mean(&band(10_500.0, 0.0), 290.0) - center).abs() <= f64::EPSILON * center);
         for width in [1e-9, 1e-3, 1.0] {
-            let mean = planck_mean(band(10_500.0, width), 290.0);
+            let mean = planck_mean(&band(10_500.0, width), 290.0);
             assert!((mean / center - 1.0).abs() < 1e-8, "{width}: {mean} {center}");
         }
     }
@@ -178,11 +194,11 @@ mod tests {
     #[test]
     fn cold_and_unlawful_values_are_told_apart() {
         let window = band(10_500.0, 1_000.0);
-        assert_eq!(planck_mean(window, 0.0).to_bits(), 0.0_f64.to_bits());
-        assert_eq!(brightness_temperature(window, 0.0).to_bits(), 0.0_f64.to_bits());
-        assert!(brightness_temperature(window, -1.0).is_nan());
-        assert!(brightness_temperature(window, f64::NAN).is_nan());
-        assert!(brightness_temperature(window, f64::INFINITY).is_nan());
+        assert_eq!(planck_mean(&window, 0.0).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(brightness_temperature(&window, 0.0).to_bits(), 0.0_f64.to_bits());
+        assert!(brightness_temperature(&window, -1.0).is_nan());
+        assert!(brightness_temperature(&window, f64::NAN).is_nan());
+        assert!(brightness_temperature(&window, f64::INFINITY).is_nan());
     }
 
     proptest! {
@@ -193,7 +209,7 @@ mod tests {
             width in prop_oneof![Just(0.0), 0.0..1.9_f64],
         ) {
             let window = band(center, center * width);
-            let found = brightness_temperature(window, planck_mean(window, temperature));
+            let found = brightness_temperature(&window, planck_mean(&window, temperature));
             prop_assert!((found - temperature).abs() < 1e-9, "{found} {temperature}");
         }
 
@@ -206,8 +222,8 @@ mod tests {
         ) {
             let window = band(center, center * width);
             let step = 1e-4 * temperature;
-            let rise = planck_mean(window, temperature + step) - planck_mean(window, temperature - step);
-            let slope = planck_mean_slope(window, temperature);
+            let rise = planck_mean(&window, temperature + step) - planck_mean(&window, temperature - step);
+            let slope = planck_mean_slope(&window, temperature);
             prop_assert!((rise / (2.0 * step) / slope - 1.0).abs() < 1e-5, "{rise} {slope}");
         }
     }

@@ -71,6 +71,8 @@ impl Changes {
     pub const USED_MATERIALS: Self = Self(1 << 23);
     /// Irradiance of sun and sky.
     pub const LIGHT: Self = Self(1 << 24);
+    /// Responses of bands, and the irradiance that fractions are weighted with.
+    pub const RESPONSES: Self = Self(1 << 25);
 
     /// Kinds that the ray engine is built from.
     pub const GEOMETRY: Self =

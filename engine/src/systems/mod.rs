@@ -36,6 +36,7 @@ mod measure_bounds;
 mod measure_extents;
 mod measure_leaf_area;
 mod plant;
+mod resolve_bands;
 mod resolve_crs;
 mod resolve_light;
 mod resolve_optics;
@@ -58,6 +59,7 @@ pub use changes::Changes;
 pub(crate) use coordinate_advice::place_of_instance;
 pub use georeference::{CoordinateSystem, MapFrame, MapTransform};
 pub use messages::Messages;
+pub use resolve_bands::BandResponses;
 pub use resources::Resources;
 pub use schedule::{ScheduleRun, run_schedule};
 

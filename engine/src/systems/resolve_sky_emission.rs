@@ -22,7 +22,7 @@ fn radiance(world: &World, resources: &mut Resources) -> Option<Vec<f64>> {
             note_cold_sky(resources);
             Some(vec![0.0; resources.bands.len()])
         }
-        ThermalSky::BlackBody(kelvin) => Some(black_body_radiance(&resources.bands, *kelvin)),
+        ThermalSky::BlackBody(kelvin) => Some(black_body_radiance(resources, *kelvin)),
         ThermalSky::Radiance(radiance) => {
             resolve_spectrum(radiance, Quantity::Irradiance, &"thermal_sky".into(), resources)
         }

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use hecs::Entity;
 
 use super::georeference::CoordinateSystem;
+use super::resolve_bands::BandResponses;
 use super::spectra::LastLeaf;
 use super::{Changes, Messages};
 use crate::components::{MaterialId, PrototypeId, SceneExtents};
 use crate::document::{
-    Band, Boundary, Diagnostic, Frame, Map, NamePattern, ScenePath, Spectrum, unknown_name,
+    Bands, Boundary, Diagnostic, Frame, Map, NamePattern, ScenePath, Spectrum, unknown_name,
 };
 
 /// Data of a scene that belongs to no entity: settings, entities by name, and messages.
@@ -23,7 +24,9 @@ pub struct Resources {
     /// Seed of the random streams.
     pub seed: u64,
     /// Spectral bands.
-    pub bands: Vec<Band>,
+    pub bands: Bands,
+    /// Responses of the bands, and the irradiance that fractions are weighted with.
+    pub responses: BandResponses,
     /// Named spectra.
     pub spectra: Map<Spectrum>,
     /// Patterns of instances that are left out.
@@ -72,7 +75,8 @@ impl Resources {
             frame: Frame { origin_m: (0.0, 0.0, 0.0), crs: None },
             boundary: Boundary::Isolated,
             seed: 0,
-            bands: Vec::new(),
+            bands: Bands::default(),
+            responses: BandResponses::default(),
             spectra: Map::new(),
             hide: Vec::new(),
             select: Vec::new(),

@@ -12,6 +12,7 @@ use super::measure_bounds::measure_bounds;
 use super::measure_extents::measure_extents;
 use super::measure_leaf_area::measure_leaf_area;
 use super::plant::plant;
+use super::resolve_bands::resolve_bands;
 use super::resolve_crs::resolve_crs;
 use super::resolve_light::resolve_light;
 use super::resolve_optics::resolve_optics;
@@ -56,7 +57,7 @@ macro_rules! schedule {
 
 /// All systems in the order in which they run. Messages are shown in this order.
 ///
-/// `hide_and_select` and `find_used_materials` mark what they write themselves, and only if it differs.
+/// `hide_and_select`, `find_used_materials` and `resolve_bands` mark what they write themselves, and only if it differs.
 const SCHEDULE: &[ScheduledSystem] = schedule! {
     // Ground.
     resolve_crs: FRAME => CRS;
@@ -86,12 +87,13 @@ const SCHEDULE: &[ScheduledSystem] = schedule! {
     check_tiles_crossed: SENSORS | SUN | EXTENTS;
 
     // Spectra.
+    resolve_bands: BANDS | SUN | SPECTRA;
     find_used_materials: INSTANCES | LOADED_MESHES | GROUND;
-    resolve_optics: MATERIALS | SPECTRA | BANDS | USED_MATERIALS;
-    resolve_temperatures: MATERIALS | BANDS | USED_MATERIALS | MEASURES_EMISSION;
-    resolve_light: SUN | SKY | SPECTRA | BANDS => LIGHT;
+    resolve_optics: MATERIALS | SPECTRA | RESPONSES | USED_MATERIALS;
+    resolve_temperatures: MATERIALS | RESPONSES | USED_MATERIALS | MEASURES_EMISSION;
+    resolve_light: SUN | SKY | SPECTRA | RESPONSES => LIGHT;
     warn_dark_bands: LIGHT | SENSORS;
-    resolve_sky_emission: SKY | SPECTRA | BANDS | MEASURES_EMISSION;
+    resolve_sky_emission: SKY | SPECTRA | RESPONSES | MEASURES_EMISSION;
     resolve_sensors: SENSORS | SUN | GROUND | BANDS;
     check_absorption_memory: SENSORS | INSTANCES | GROUND | BANDS;
 };

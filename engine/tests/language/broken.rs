@@ -47,6 +47,7 @@ broken! {
     loops
     missing_keys
     no_bands
+    no_hyperspectral_bands
     no_light
     no_thermal_band
     not_a_scene
@@ -58,6 +59,7 @@ broken! {
     quoted_key
     rasters_of_trees
     repeated_keys
+    responses
     sky_without_sun
     spectra
     string_never_closed
@@ -77,6 +79,7 @@ broken! {
     unit_behind_a_number
     unknown_key
     unknown_names
+    unknown_sensor
     unknown_variants
     variants_written_wrongly
     virtual_planes

@@ -258,7 +258,7 @@ fn a_diagnostic_without_a_place_is_shown_where_its_path_leads() {
 fn a_scene_built_in_rust_is_checked_without_a_file() {
     let mut scene = sound(DESIGN);
     assert_eq!(check(&scene), []);
-    scene.bands[0].center_nm = f64::NAN;
+    scene.bands[0].center_nm = Some(f64::NAN);
     scene.frame.origin_m.2 = f64::INFINITY;
     if let Some(Prototype::Discs { material, .. }) = scene.meshes.get_mut("crown") {
         *material = "laef".into();

@@ -7,10 +7,10 @@ use sunfleck::document::{
     Distribution, Ends, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions,
     InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj,
     Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture,
-    Prospect, Prototype, ReadOptions, Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, Soilspect,
-    Spa, SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun, SunPosition, Sweep, System,
-    TableCoordinates, TabulatedSpectrum, Temperature, Terrain, TerrainPlane, ThermalSky, Transport,
-    ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file, read_text,
+    Prospect, Prototype, ReadOptions, Response, ResponseTable, Roulette, Rpv, Rule, Scatter, Scene,
+    Sensor, Sky, Soilspect, Spa, SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun, SunPosition,
+    Sweep, System, TableCoordinates, TabulatedSpectrum, Temperature, Terrain, TerrainPlane,
+    ThermalSky, Transport, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file, read_text,
 };
 
 use crate::crowns::crown;
@@ -69,6 +69,7 @@ fn spectrum() -> BoxedStrategy<Spectrum> {
                 })
             }),
         Just(Spectrum::AstmG173),
+        Just(Spectrum::AstmE490),
         text().prop_map(Spectrum::Named),
         ((number(), number(), number(), number()), (number(), number(), number(), number()))
             .prop_map(
@@ -562,8 +563,25 @@ fn scene() -> BoxedStrategy<Scene> {
         BandSource::Emission,
         BandSource::Both,
     ]);
-    let band = (text(), number(), number(), source)
-        .prop_map(|(name, center_nm, width_nm, source)| Band { name, center_nm, width_nm, source });
+    let table = (text::<String>(), text(), option(text())).prop_map(|(file, wavelength, value)| {
+        ResponseTable { file: file.into(), wavelength, value, wavelength_unit: None }
+    });
+    let response = prop_oneof![
+        Just(Response::Box),
+        Just(Response::Gaussian),
+        prop::collection::vec((number(), number()), 0..4).prop_map(Response::Points),
+        table.prop_map(Response::Table),
+        (text(), text()).prop_map(Response::Sensor),
+    ];
+    let band = (text(), option(number()), number(), response, source).prop_map(
+        |(name, center_nm, width_nm, response, source)| Band {
+            name,
+            center_nm,
+            width_nm,
+            response,
+            source,
+        },
+    );
     let transport = (any::<u64>(), any::<u32>(), number(), any::<bool>(), option(any::<u32>()))
         .prop_map(|(seed, after_order, kill, first_order_only, max_order)| Transport {
             seed,
@@ -601,7 +619,7 @@ fn scene() -> BoxedStrategy<Scene> {
                 // Reading takes included files into the scene: `include.rs` shows that.
                 include: Map::new(),
                 frame,
-                bands,
+                bands: bands.into(),
                 spectra,
                 materials,
                 meshes,

@@ -217,8 +217,11 @@ fn check_picture(path: &ScenePath, picture: &Picture, scene: &Scene, report: &mu
             exposure_stops.as_ref()
         }
         Picture::Cie { exposure_stops } => {
-            let visible =
-                scene.bands.iter().filter(|band| (380.0..=780.0).contains(&band.center_nm)).count();
+            let visible = scene
+                .bands
+                .iter()
+                .filter(|band| band.nominal_nm().is_some_and(|nm| (380.0..=780.0).contains(&nm)))
+                .count();
             if visible < COLOUR_BANDS && report.is_readable("bands") {
                 let message = format!(
                     "colours need {COLOUR_BANDS} bands or more from 380 to 780 nm, found {visible}"

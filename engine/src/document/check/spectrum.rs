@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::super::scene::{
-    Band, Coating, Leaf, Material, Prospect, Scene, Spectrum, SurfaceQuantity,
+    Band, Coating, Leaf, Material, Prospect, Response, Scene, Spectrum, SurfaceQuantity,
 };
 use super::{Report, ScenePath, count};
 
@@ -30,27 +30,56 @@ pub(super) fn check_bands(scene: &Scene, report: &mut Report<'_>) {
         report.error("bands", "the scene has no band", help);
     }
     let mut names = HashMap::new();
-    for (index, Band { name, center_nm, width_nm, source: _ }) in scene.bands.iter().enumerate() {
-        let path = |key: &'static str| ScenePath::from("bands").index(index).key(key);
+    for (index, band) in scene.bands.iter().enumerate() {
+        let path = ScenePath::from("bands").index(index);
+        let name = &band.name;
         if name.is_empty() {
             let help = "outputs call the band by its name";
-            report.error(path("name"), "this band has no name", help);
+            report.error(path.key("name"), "this band has no name", help);
         } else if let Some(first) = names.insert(name, index) {
             let message = format!("a second band `{name}`");
             let help = format!("`bands[{first}]` has that name already");
-            report.error(path("name"), message, help);
+            report.error(path.key("name"), message, help);
         }
-        report.above_zero(path("center_nm"), *center_nm);
-        if *center_nm > 0.0 && *center_nm < SHORTEST_NM {
-            refuse_micrometres(*center_nm, *width_nm, &path("center_nm"), report);
-            continue;
+        check_response(band, &path, report);
+    }
+}
+
+fn check_response(band: &Band, path: &ScenePath, report: &mut Report<'_>) {
+    let Band { center_nm, width_nm, response, .. } = band;
+    let is_whole = |key: &'static str| report.is_whole(path.key(key));
+    if !["center_nm", "width_nm", "response"].into_iter().all(is_whole) {
+        return;
+    }
+    let center = center_nm.unwrap_or(f64::INFINITY);
+    if center_nm.is_some() {
+        report.above_zero(path.key("center_nm"), center);
+    } else if matches!(response, Response::Box | Response::Gaussian) {
+        let message = format!("band `{}` lacks the key `center_nm`", band.name);
+        report.error(path.key("center_nm"), message, "write, for example, `center_nm: 660.0`");
+        return;
+    }
+    if center > 0.0 && center < SHORTEST_NM {
+        refuse_micrometres(center, *width_nm, &path.key("center_nm"), report);
+        return;
+    }
+    report.at_least(path.key("width_nm"), *width_nm, 0.0);
+    match response {
+        Response::Box if center > 0.0 && *width_nm >= 2.0 * center => {
+            let message =
+                format!("a band of {width_nm} nm around {center} nm reaches to a wavelength of 0");
+            report.error(path.key("width_nm"), message, "the width is that from edge to edge");
         }
-        report.at_least(path("width_nm"), *width_nm, 0.0);
-        if *center_nm > 0.0 && *width_nm >= 2.0 * center_nm {
-            let message = format!(
-                "a band of {width_nm} nm around {center_nm} nm reaches to a wavelength of 0"
-            );
-            report.error(path("width_nm"), message, "the width is that from edge to edge");
+        Response::Gaussian if !(*width_nm > 0.0 && *width_nm < 0.3 * center) => {
+            let message = format!("a normal curve of {width_nm} nm around {center} nm is no band");
+            let help = "write `width_nm`, its full width at half maximum, such as `width_nm: 10.0`";
+            report.error(path.key("width_nm"), message, help);
+        }
+        Response::Table(_) | Response::Box | Response::Gaussian => {}
+        Response::Points(_) | Response::Sensor(_) => {
+            if let Err((message, help)) = band.known_response() {
+                report.error(path.key("response"), message, help);
+            }
         }
     }
 }
@@ -153,9 +182,10 @@ pub(super) fn check_spectrum(
             }
         }
         Spectrum::Table(table) => report.above_zero(path.key("scale"), table.scale),
-        Spectrum::AstmG173 => {
+        Spectrum::AstmG173 | Spectrum::AstmE490 => {
             if matches!(quantity, Quantity::Surface(_)) {
-                let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
+                let message =
+                    "a spectrum of the sun is an irradiance, no reflectance or transmittance";
                 let help = "write `Constant(..)`, `Bands(..)`, `Points(..)`, `Table(..)` or `Prospect(..)`";
                 report.error(path, message, help);
             }

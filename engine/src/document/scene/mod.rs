@@ -1,5 +1,6 @@
 //! Types of a scene file.
 
+mod band;
 mod crown;
 mod ground;
 mod instances;
@@ -17,6 +18,7 @@ mod until;
 
 use indexmap::IndexMap;
 
+pub use band::{Band, BandSet, Bands, Response, ResponseTable};
 pub use crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
 pub use ground::{
     Boundary, Coordinates, LandCover, NoData, RasterWindow, Terrain, TerrainPlane, TerrainRaster,
@@ -59,8 +61,9 @@ record! {
         include: Map<Include> = Map::new(),
         /// Position of the local frame on Earth.
         frame: Frame = Frame { origin_m: (0.0, 0.0, 0.0), crs: None },
-        /// Spectral bands, in the order of all band lists.
-        bands: Vec<Band> => r#"[(name: "red", center_nm: 660.0, width_nm: 10.0)]"#,
+        /// Spectral bands, in the order of all band lists: a list, or those of a sensor, such as
+        /// `Sensor("Sentinel-2A MSI", ["B4", "B8A"])`, or `Hyperspectral(..)`.
+        bands: Bands => r#"[(name: "red", center_nm: 660.0, width_nm: 10.0)]"#,
         /// Spectra that materials and lights may name.
         spectra: Map<Spectrum> = Map::new(),
         /// Surfaces.
@@ -104,19 +107,5 @@ record! {
         /// `"EPSG:32632"`. Rasters and polygons must be in it, and images say so. Without it, it is that
         /// of the first file that names one.
         crs: Option<String> => r#""EPSG:32632""# = None,
-    }
-}
-
-record! {
-    /// A spectral band.
-    pub struct Band ("a band") {
-        /// Its name in all outputs.
-        name: String => r#""red""#,
-        /// Centre wavelength, nm.
-        center_nm: f64 => "660.0",
-        /// Full width, nm; 0 means the centre wavelength alone.
-        width_nm: f64 = 0.0,
-        /// Sources of its radiance.
-        source: BandSource = BandSource::Auto,
     }
 }

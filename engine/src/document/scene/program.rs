@@ -132,7 +132,7 @@ impl Scene {
     /// Bare ground that nothing lights and nothing measures, to which everything else can be added.
     #[must_use]
     pub fn new(bands: Vec<Band>, terrain: Terrain) -> Self {
-        Self { format: 1, bands, terrain, ..Self::start() }
+        Self { format: 1, bands: bands.into(), terrain, ..Self::start() }
     }
 
     /// Paths of all files that it names, each with its path in the document.

@@ -18,6 +18,11 @@ choice! {
         ///
         /// Source: ASTM G173-03, direct + circumsolar.
         AstmG173,
+        /// Irradiance of the sun outside the atmosphere at its mean distance, on a plane that faces it: 119.5 nm to
+        /// 1 mm.
+        ///
+        /// Source: ASTM E490-00a.
+        AstmE490,
         /// One of the scene's `spectra`.
         Named(Ref<Spectrum> => r#""soil""#),
         /// Leaf reflectance or transmittance (whichever the key asks for) by PROSPECT-PRO.

@@ -79,7 +79,7 @@ impl Band {
     #[must_use]
     pub fn emits(&self) -> bool {
         match self.source {
-            BandSource::Auto => self.center_nm > THERMAL_NM,
+            BandSource::Auto => self.nominal_nm().is_some_and(|center| center > THERMAL_NM),
             BandSource::Sunlight => false,
             BandSource::Emission | BandSource::Both => true,
         }

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use super::Resources;
 use crate::document::{Diagnostic, IRRADIANCE, Prospect, ScenePath, Spectrum, unknown_name};
 use crate::spectral::prospect::{LeafChemistry, LeafSpectrum, leaf_spectrum_at};
-use crate::spectral::{ASTM_G173_END_NM, band_mean, solar_irradiance};
+use crate::spectral::{ASTM_E490, ASTM_G173, BandResponse, OutsideSpectrum, SolarSpectrum};
 
-use table::{edges, table_means};
+use table::{table_means, table_points};
 
 /// Irradiance above this is several times that of the sun outside the atmosphere, W m⁻² nm⁻¹.
 pub(super) const STRONG: f64 = 10.0;
@@ -80,20 +80,21 @@ fn warn_strong_light(values: &[f64], path: &ScenePath, resources: &mut Resources
 
 /// Warns of a wide band within which a surface differs so much that its mean says little.
 fn warn_wide_bands(points: &[(f64, f64)], path: &ScenePath, resources: &mut Resources) {
-    for band in &resources.bands {
-        let (low, high) = edges(band);
+    for (band, response) in resources.bands.iter().zip(resources.responses.all()) {
+        let (low, high) = response.range();
+        let width = response.width();
         let within =
             points.iter().filter(|(nm, value)| (low..=high).contains(nm) && value.is_finite());
         let (least, most) = within
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &(_, v)| {
                 (least.min(v), most.max(v))
             });
-        if band.width_nm < WIDE_NM || most - least < VARIED {
+        if width < WIDE_NM || most - least < VARIED {
             continue;
         }
         let message = format!(
-            "band `{}` is {} nm wide, and values differ from {least:.3} to {most:.3} within it",
-            band.name, band.width_nm
+            "band `{}` is {width} nm wide, and values differ from {least:.3} to {most:.3} within it",
+            band.name
         );
         let help = "light is scattered often, so the mean over a band does not give the mean of the \
                         results: write several narrow bands and weight their results with the irradiance";
@@ -126,7 +127,8 @@ fn resolve(
         Spectrum::Bands(values) => Ok(values.clone()),
         Spectrum::Points(points) => mean_over_bands(points, quantity, path, resources),
         Spectrum::Table(table) => table_means(table, quantity, path, resources),
-        Spectrum::AstmG173 => astm_g173(quantity, path, resources),
+        Spectrum::AstmG173 => solar_means(&ASTM_G173, quantity, path, resources),
+        Spectrum::AstmE490 => solar_means(&ASTM_E490, quantity, path, resources),
         Spectrum::Named(name) => {
             let Some(named) = resources.spectra.get(name.as_str()) else {
                 let known = resources.spectra.keys().map(String::as_str);
@@ -163,7 +165,8 @@ fn prospect_means(
         protein: leaf.protein_g_cm2,
         carbon: leaf.carbon_g_cm2,
     };
-    let ranges: Vec<(f64, f64)> = resources.bands.iter().map(edges).collect();
+    let ranges: Vec<(f64, f64)> =
+        resources.responses.all().iter().map(BandResponse::range).collect();
     let is_known = |last: &LastLeaf| last.chemistry == chemistry && last.ranges == ranges;
     let spectrum = match resources.last_leaf.take() {
         Some(last) if is_known(&last) => last.spectrum,
@@ -190,28 +193,29 @@ fn prospect_means(
     means
 }
 
-/// The sun's irradiance of ASTM G173 in each band that holds sunlight, 0 in others.
-fn astm_g173(
+/// The sun's irradiance in each band.
+fn solar_means(
+    sun: &SolarSpectrum,
     quantity: Quantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
     if quantity != Quantity::Irradiance {
-        let message = "`AstmG173` is an irradiance, no reflectance or transmittance";
+        let message = "a spectrum of the sun is an irradiance, no reflectance or transmittance";
         let help = "write Constant, Bands, Points, Table or Prospect";
         return Err(Box::new(Diagnostic::error(path, message).help(help)));
     }
     let mut beyond = Vec::new();
-    let means = resources.bands.iter().map(|band| -> Result<f64, Box<Diagnostic>> {
-        let (center, width) = (band.center_nm, band.width_nm);
-        let mean = solar_irradiance(center, width).map_err(|error| {
+    let bands = resources.bands.iter().zip(resources.responses.all());
+    let means = bands.map(|(band, response)| -> Result<f64, Box<Diagnostic>> {
+        let mean = sun.mean(response).map_err(|error| {
             let message = format!("band `{}`: {error}", band.name);
             Box::new(
                 Diagnostic::error(path, message)
                     .help("move the band, or write `irradiance` of the sun's own"),
             )
         })?;
-        if band.reflects() && center + 0.5 * width > ASTM_G173_END_NM {
+        if band.reflects() && response.range().1 > sun.end_nm() {
             beyond.push(format!("{mean:.3e} in band `{}`", band.name));
         }
         Ok(mean)
@@ -219,8 +223,10 @@ fn astm_g173(
     let means = means.collect::<Result<Vec<f64>, _>>()?;
     if !beyond.is_empty() {
         let message = format!(
-            "ASTM G173 ends at {ASTM_G173_END_NM} nm: beyond it the sun is taken as a black body of \
-                 5772 K that joins it there, without the gases of the air: {} W m⁻² nm⁻¹",
+            "{} ends at {} nm: beyond it the sun is taken as a black body of 5772 K that joins it there, \
+                 without the gases of the air: {} W m⁻² nm⁻¹",
+            sun.name,
+            sun.end_nm(),
             beyond.join(", ")
         );
         let help = "write `irradiance` where that is not good enough";
@@ -239,12 +245,49 @@ fn mean_over_bands(
     if quantity.is_fraction() {
         warn_wide_bands(points, path, resources);
     }
-    let means = resources.bands.iter().map(|band| {
-        band_mean(points, band.center_nm, band.width_nm).map_err(|error| {
+    let bands = resources.bands.iter().zip(resources.responses.all());
+    let means = bands.map(|(band, response)| {
+        band_mean(response, points, quantity, resources).map_err(|error| {
             Box::new(Diagnostic::error(path, format!("band `{}`: {error}", band.name)))
         })
     });
     means.collect()
+}
+
+/// Mean of a spectrum over a band; of a fraction that which times the irradiance is what is reflected.
+fn band_mean(
+    response: &BandResponse,
+    points: &[(f64, f64)],
+    quantity: Quantity,
+    resources: &Resources,
+) -> Result<f64, OutsideSpectrum> {
+    if quantity.is_fraction() {
+        response.mean_of_fraction(points, resources.responses.irradiance())
+    } else {
+        response.mean(points)
+    }
+}
+
+/// Points (wavelength nm, value) of the sun's irradiance, if it has wavelengths.
+pub(super) fn irradiance_points(
+    spectrum: &Spectrum,
+    resources: &mut Resources,
+) -> Option<Vec<(f64, f64)>> {
+    let mut spectrum = spectrum.clone();
+    // Names that go in a circle end after as many steps as there are names.
+    for _ in 0..=resources.spectra.len() {
+        let Spectrum::Named(name) = &spectrum else { break };
+        spectrum = resources.spectra.get(name.as_str())?.clone();
+    }
+    match spectrum {
+        Spectrum::AstmG173 => Some(ASTM_G173.points().to_vec()),
+        Spectrum::AstmE490 => Some(ASTM_E490.points().to_vec()),
+        Spectrum::Points(points) => Some(points),
+        Spectrum::Table(table) => table_points(&table, resources),
+        Spectrum::Constant(_) | Spectrum::Bands(_) | Spectrum::Named(_) | Spectrum::Prospect(_) => {
+            None
+        }
+    }
 }
 
 /// The values, if they can be those of the quantity.

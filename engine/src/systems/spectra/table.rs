@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{Quantity, STRONG, warn_wide_bands};
+use super::{Quantity, STRONG, band_mean, warn_wide_bands};
 use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
-use crate::document::{Band, Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
-use crate::spectral::band_mean;
+use crate::document::{Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
+use crate::spectral::BandResponse;
 use crate::systems::Resources;
 
 /// Reflectances that noise and white references make may lie this far above 1 or below 0.
@@ -27,6 +27,13 @@ const SMALL: f64 = 0.01;
 
 /// Step between wavelengths, nm, over which spectra of leaves and soils are no straight lines.
 const WIDE_GAP_NM: f64 = 50.0;
+
+/// A band and its response.
+#[derive(Clone, Copy)]
+struct SeenBand<'b> {
+    name: &'b str,
+    response: &'b BandResponse,
+}
 
 /// A table of which the scene asks for means over bands.
 struct Values<'a> {
@@ -70,12 +77,15 @@ pub(super) fn table_means(
     } else if quantity == Quantity::Irradiance {
         values.warn_strong(&mut warnings);
     }
-    let bands = &resources.bands;
-    let means = bands.iter().map(|band| {
+    let bands = resources.bands.iter().zip(resources.responses.all());
+    let means = bands.map(|(band, response)| {
+        let band = SeenBand { name: &band.name, response };
         values.check_band(band, is_fraction, &mut warnings)?;
-        values.mean(band, *wavelength_unit, is_fraction, &mut warnings)
+        let mean = values.mean(band, |points| band_mean(response, points, quantity, resources));
+        let mean = mean.map_err(|_outside| Box::new(values.outside(band, *wavelength_unit)))?;
+        Ok(if is_fraction { values.within_bounds(mean, band, &mut warnings) } else { mean })
     });
-    let means = means.collect::<Result<Vec<f64>, _>>();
+    let means = means.collect::<Result<Vec<f64>, Box<Diagnostic>>>();
     if is_fraction {
         let points: Vec<_> = values.points().collect();
         warn_wide_bands(&points, &values.path, resources);
@@ -224,7 +234,7 @@ impl Values<'_> {
     }
 
     /// Warns of a band between rows that lie far apart: what is between them is not known.
-    fn warn_gap(&self, band: &Band, warnings: &mut Vec<Diagnostic>) {
+    fn warn_gap(&self, band: SeenBand<'_>, warnings: &mut Vec<Diagnostic>) {
         let points = &self.table.points;
         let mut steps: Vec<f64> =
             points.windows(2).map(|pair| pair[1].wavelength - pair[0].wavelength).collect();
@@ -263,8 +273,8 @@ impl Values<'_> {
     }
 
     /// Points that the mean over a band is made of.
-    fn used(&self, band: &Band) -> std::ops::Range<usize> {
-        let (low, high) = edges(band);
+    fn used(&self, band: SeenBand<'_>) -> std::ops::Range<usize> {
+        let (low, high) = band.response.range();
         let points = &self.table.points;
         let from = points.partition_point(|point| point.wavelength <= low).saturating_sub(1);
         let to = points.partition_point(|point| point.wavelength < high);
@@ -274,7 +284,7 @@ impl Values<'_> {
     /// Refuses a band that needs values which the table does not have.
     fn check_band(
         &self,
-        band: &Band,
+        band: SeenBand<'_>,
         is_fraction: bool,
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<(), Box<Diagnostic>> {
@@ -304,7 +314,7 @@ impl Values<'_> {
     }
 
     /// Warns of zeros between values that are far from it: deleted channels, mostly.
-    fn warn_zeros(&self, band: &Band, warnings: &mut Vec<Diagnostic>) {
+    fn warn_zeros(&self, band: SeenBand<'_>, warnings: &mut Vec<Diagnostic>) {
         let is_zero = |index: usize| self.scaled[index] == 0.0;
         let Some(zero) = self.used(band).find(|&index| is_zero(index)) else { return };
         let before = (0..zero).rev().find(|&index| !is_zero(index));
@@ -321,37 +331,38 @@ impl Values<'_> {
         }
     }
 
-    fn mean(
+    /// A mean of the points that a band sees.
+    fn mean<E>(
         &self,
-        band: &Band,
-        unit: Option<WavelengthUnit>,
-        is_fraction: bool,
-        warnings: &mut Vec<Diagnostic>,
-    ) -> Result<f64, Box<Diagnostic>> {
+        band: SeenBand<'_>,
+        mean: impl FnOnce(&[(f64, f64)]) -> Result<f64, E>,
+    ) -> Result<f64, E> {
         let used = self.used(band);
         let points = self.table.points[used.clone()].iter().zip(&self.scaled[used]);
         let points: Vec<_> = points.map(|(point, &value)| (point.wavelength, value)).collect();
-        let mean = band_mean(&points, band.center_nm, band.width_nm)
-            .map_err(|_outside| Box::new(self.outside(band, unit)))?;
-        if is_fraction && !(0.0..=1.0).contains(&mean) {
-            let taken = mean.clamp(0.0, 1.0);
+        mean(&points)
+    }
+
+    /// A mean of fractions, from 0 to 1.
+    fn within_bounds(&self, mean: f64, band: SeenBand<'_>, warnings: &mut Vec<Diagnostic>) -> f64 {
+        let taken = mean.clamp(0.0, 1.0);
+        if !(0.0..=1.0).contains(&mean) {
             let message = format!(
                 "the mean of {} in band `{}` is {mean:.6}: {taken} is taken",
                 self.file, band.name
             );
             let help = "correct the table if that is not noise";
             warnings.push(Diagnostic::warning(&self.path, message).help(help));
-            return Ok(taken);
         }
-        Ok(mean)
+        taken
     }
 
     /// The error that a band reaches outside the table, with a unit in which it would not.
-    fn outside(&self, band: &Band, unit: Option<WavelengthUnit>) -> Diagnostic {
+    fn outside(&self, band: SeenBand<'_>, unit: Option<WavelengthUnit>) -> Diagnostic {
         let points: Vec<_> =
             self.table.points.iter().map(|point| (point.wavelength, 0.0)).collect();
-        let (low, high) = edges(band);
-        let message = match band_mean(&points, band.center_nm, band.width_nm) {
+        let (low, high) = band.response.range();
+        let message = match band.response.mean(&points) {
             Err(error) => format!("band `{}`: {error}", band.name),
             Ok(_) => format!("band `{}` reaches outside {}", band.name, self.file),
         };
@@ -372,7 +383,14 @@ impl Values<'_> {
     }
 }
 
-/// Edges of a band, nm.
-pub(super) fn edges(band: &Band) -> (f64, f64) {
-    (band.center_nm - 0.5 * band.width_nm, band.center_nm + 0.5 * band.width_nm)
+/// Points (wavelength nm, value) of a table, without marks for no data; `None` if it cannot be read.
+pub(super) fn table_points(
+    spectrum: &TabulatedSpectrum,
+    resources: &mut Resources,
+) -> Option<Vec<(f64, f64)>> {
+    let TabulatedSpectrum { file, wavelength, value, wavelength_unit, scale, .. } = spectrum;
+    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
+    let table = read_spectrum(&resources.file(file), &columns).ok()?;
+    let points = table.points.iter().map(|point| (point.wavelength, point.value * scale));
+    Some(points.filter(|(_, value)| value.is_finite() && *value >= 0.0).collect())
 }

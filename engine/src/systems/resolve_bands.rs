@@ -1,0 +1,96 @@
+use hecs::World;
+
+use super::spectra::irradiance_points;
+use super::{Changes, Resources};
+use crate::assets::{SpectrumColumns, read_spectrum};
+use crate::document::{self, Band, BandSource, Diagnostic, Response, ResponseTable, ScenePath};
+use crate::spectral::{BandResponse, BandWindow};
+
+/// Responses of all bands, and the irradiance that reflectances and transmittances are weighted with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BandResponses {
+    responses: Vec<BandResponse>,
+    /// Points (wavelength nm, W m⁻² nm⁻¹) of the sun; `None` if no band is a curve, or its irradiance has no wavelengths.
+    irradiance: Option<Vec<(f64, f64)>>,
+}
+
+impl BandResponses {
+    /// Response of each band.
+    #[must_use]
+    pub fn all(&self) -> &[BandResponse] {
+        &self.responses
+    }
+
+    /// Irradiance that fractions are weighted with.
+    pub(super) fn irradiance(&self) -> Option<&[(f64, f64)]> {
+        self.irradiance.as_deref()
+    }
+}
+
+/// Wavelength beyond which bands are assumed to hold emission where their centre is written, nm.
+const THERMAL_NM: f64 = 3000.0;
+
+/// Resolves the responses of all bands. Reads the resources `bands` and `spectra` and `document::Sun`; writes the resource
+/// `responses`, and marks it as changed only where it is.
+pub(super) fn resolve_bands(world: &mut World, resources: &mut Resources) {
+    let bands = resources.bands.clone();
+    let responses: Vec<BandResponse> = bands
+        .iter()
+        .enumerate()
+        .map(|(index, band)| {
+            let path = ScenePath::from("bands").index(index);
+            resolved(band, &path, resources).unwrap_or_else(|problem| {
+                resources.report(*problem);
+                // What follows an error is not run.
+                BandResponse::Window(BandWindow { center: 550.0, width: 0.0 })
+            })
+        })
+        .collect();
+    let has_curves = responses.iter().any(|response| matches!(response, BandResponse::Curve(_)));
+    let sun = world.get::<&document::Sun>(resources.sun).ok().filter(|_| has_curves);
+    let irradiance = sun.and_then(|sun| irradiance_points(&sun.irradiance, resources));
+    let resolved = BandResponses { responses, irradiance };
+    if resolved != resources.responses {
+        resources.responses = resolved;
+        resources.changes |= Changes::RESPONSES;
+    }
+}
+
+fn resolved(
+    band: &Band,
+    path: &ScenePath,
+    resources: &mut Resources,
+) -> Result<BandResponse, Box<Diagnostic>> {
+    let error = |message: String, help: &str| Box::new(Diagnostic::error(path, message).help(help));
+    let known = band.known_response().map_err(|(message, help)| error(message, &help))?;
+    let response = match (known, &band.response) {
+        (None, Response::Table(table)) => response_of_table(table, path, resources)?,
+        (Some(response), _) => response,
+        (None, _) => return Err(error("the response is not known".to_owned(), "write `Box`")),
+    };
+    let center = response.center();
+    if band.source == BandSource::Auto && band.nominal_nm().is_none() && center > THERMAL_NM {
+        let message = format!("band `{}` lies at {center:.0} nm", band.name);
+        let help = "write `source: Emission` for what surfaces emit, or `source: Sunlight`";
+        return Err(error(message, help));
+    }
+    Ok(response)
+}
+
+fn response_of_table(
+    table: &ResponseTable,
+    path: &ScenePath,
+    resources: &mut Resources,
+) -> Result<BandResponse, Box<Diagnostic>> {
+    let ResponseTable { file, wavelength, value, wavelength_unit } = table;
+    let path = path.key("response").key("file");
+    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
+    let table = read_spectrum(&resources.file(file), &columns)
+        .map_err(|error| Box::new(Diagnostic::error(&path, error.to_string())))?;
+    let points = table.points.iter().map(|point| (point.wavelength, point.value)).collect();
+    BandResponse::from_points(points).map_err(|error| {
+        let message = format!("{file}: column {:?}: {error}", table.value);
+        let help = "correct the table: noise below 0 is written as 0";
+        Box::new(Diagnostic::error(&path, message).help(help))
+    })
+}
