@@ -1,6 +1,7 @@
 //! Spectra as functions of wavelength (nm), and what a band sees of them.
 
 mod band;
+mod library;
 mod planck;
 pub mod prospect;
 mod response;
@@ -8,6 +9,7 @@ mod sensors;
 mod solar;
 
 pub use band::{BandWindow, OutsideSpectrum, band_mean};
+pub use library::{library_names, library_spectrum, soil_reflectance};
 pub use planck::{brightness_temperature, planck, planck_mean, planck_mean_slope};
 pub use response::{BandResponse, InvalidResponse, ResponseCurve};
 pub use sensors::{SensorBand, sensor_bands, sensor_names};

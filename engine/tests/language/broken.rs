@@ -40,6 +40,7 @@ broken! {
     fractions
     image
     last_string_never_closed
+    library
     instances
     land_cover_on_a_mesh
     land_cover_on_a_plane

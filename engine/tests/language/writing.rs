@@ -8,9 +8,10 @@ use sunfleck::document::{
     InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj,
     Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture,
     Prospect, Prototype, ReadOptions, Response, ResponseTable, Roulette, Rpv, Rule, Scatter, Scene,
-    Sensor, Sky, Soilspect, Spa, SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun, SunPosition,
-    Sweep, System, TableCoordinates, TabulatedSpectrum, Temperature, Terrain, TerrainPlane,
-    ThermalSky, Transport, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file, read_text,
+    Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun,
+    SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum, Temperature, Terrain,
+    TerrainPlane, ThermalSky, Transport, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file,
+    read_text,
 };
 
 use crate::crowns::crown;
@@ -70,6 +71,9 @@ fn spectrum() -> BoxedStrategy<Spectrum> {
             }),
         Just(Spectrum::AstmG173),
         Just(Spectrum::AstmE490),
+        text().prop_map(Spectrum::Library),
+        (number(), number())
+            .prop_map(|(dryness, brightness)| Spectrum::Soil(SoilMixture { dryness, brightness })),
         text().prop_map(Spectrum::Named),
         ((number(), number(), number(), number()), (number(), number(), number(), number()))
             .prop_map(

@@ -2,10 +2,13 @@
 
 use std::collections::HashMap;
 
+use super::super::diagnostic::suggestion;
 use super::super::scene::{
-    Band, Coating, Leaf, Material, Prospect, Response, Scene, Spectrum, SurfaceQuantity,
+    Band, Coating, Leaf, Material, Prospect, Response, Scene, SoilMixture, Spectrum,
+    SurfaceQuantity,
 };
 use super::{Report, ScenePath, count};
+use crate::spectral::{library_names, library_spectrum};
 
 /// A spectrum may name one that names one, and so on, so often.
 const CHAIN: usize = 16;
@@ -190,6 +193,24 @@ pub(super) fn check_spectrum(
                 report.error(path, message, help);
             }
         }
+        Spectrum::Library(name) => {
+            if library_spectrum(name).is_none() {
+                let known: Vec<&str> = library_names().collect();
+                let message = format!("no spectrum `{name}` comes with sunfleck");
+                report.error(path, message, suggestion(name, &known, "these do"));
+            }
+            refuse_surface_as_light(path, quantity, report);
+        }
+        Spectrum::Soil(SoilMixture { dryness, brightness }) => {
+            for (key, value, most) in [("dryness", *dryness, 1.0), ("brightness", *brightness, 2.0)]
+            {
+                if !(0.0..=most).contains(&value) {
+                    let message = format!("expected a number from 0 to {most}, found {value}");
+                    report.error(path.key(key), message, "1 is the soil as it was measured");
+                }
+            }
+            refuse_surface_as_light(path, quantity, report);
+        }
         Spectrum::Named(name) => {
             let is_leaf = matches!(resolve(name, scene), Some(Spectrum::Prospect(_)));
             if quantity == Quantity::Irradiance && is_leaf {
@@ -246,6 +267,13 @@ fn check_wavelengths(path: &ScenePath, points: &[(f64, f64)], report: &mut Repor
             report.error(at, message, "sort the points: wavelengths must rise");
         }
         before = wavelength;
+    }
+}
+
+fn refuse_surface_as_light(path: &ScenePath, quantity: Quantity, report: &mut Report<'_>) {
+    if quantity == Quantity::Irradiance {
+        let help = "write `AstmG173`, `Constant(..)`, `Bands(..)`, `Points(..)` or `Table(..)`";
+        report.error(path, "this is the reflectance of a surface, no light", help);
     }
 }
 

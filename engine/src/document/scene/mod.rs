@@ -38,7 +38,7 @@ pub use sensor::{
     Orthographic, Per, Perspective, PhotonMeasure, Photons, Picture, Sensor, System, Views,
     VirtualPlane,
 };
-pub use spectrum::{Prospect, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit};
+pub use spectrum::{Prospect, SoilMixture, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
 pub use until::{Ends, StopCriterion};

@@ -23,6 +23,17 @@ choice! {
         ///
         /// Source: ASTM E490-00a.
         AstmE490,
+        /// Reflectance that comes with sunfleck, 400 to 2450 nm or more: `litter_douglas_fir`, `litter_ponderosa_pine`,
+        /// `litter_lodgepole_pine`, `litter_subalpine_fir`, `litter_needles`, `litter_mixed`, `litter_cottonwood`,
+        /// `litter_fern`, `grass_dead`, `grass_golden`, `bark_birch`, `bark_aspen`, `bark_spruce`, `bark_dead`, `twig_dead`,
+        /// `wood_old`, `wood_stump`, `wood_bleached`, `soil_charred`, `bark_charred`, `ash` (measured; the Joint Fire
+        /// Science Program by way of earthlib); `snow_fresh`, `snow_settled`, `snow_old`, `snow_wet` (computed for grains of 60,
+        /// 20, 8 and 4 m² kg⁻¹; Kokhanovsky and Zege 2004).
+        Library(String => r#""bark_birch""#),
+        /// Reflectance of a soil, 400 to 2500 nm: a dry and a wet one, mixed.
+        ///
+        /// Source: the soils of PROSAIL (Jacquemoud et al. 2009).
+        Soil(..SoilMixture),
         /// One of the scene's `spectra`.
         Named(Ref<Spectrum> => r#""soil""#),
         /// Leaf reflectance or transmittance (whichever the key asks for) by PROSPECT-PRO.
@@ -48,6 +59,16 @@ record! {
         /// Factor on all values: 0.0001 for reflectances that are kept as 0 to 10000, 0.001 for an
         /// irradiance in W m⁻² µm⁻¹.
         scale: f64 = 1.0,
+    }
+}
+
+record! {
+    /// Soil between a dry and a wet one: `brightness (dryness ρ_dry + (1 - dryness) ρ_wet)`.
+    pub struct SoilMixture ("a soil") {
+        /// Share of the dry soil, 0 (wet) to 1 (dry).
+        dryness: f64 = 1.0,
+        /// Factor on the reflectance, 0 to 2.
+        brightness: f64 = 1.0,
     }
 }
 

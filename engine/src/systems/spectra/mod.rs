@@ -3,9 +3,14 @@ mod table;
 use std::collections::BTreeSet;
 
 use super::Resources;
-use crate::document::{Diagnostic, IRRADIANCE, Prospect, ScenePath, Spectrum, unknown_name};
+use crate::document::{
+    Diagnostic, IRRADIANCE, Prospect, ScenePath, SoilMixture, Spectrum, unknown_name,
+};
 use crate::spectral::prospect::{LeafChemistry, LeafSpectrum, leaf_spectrum_at};
-use crate::spectral::{ASTM_E490, ASTM_G173, BandResponse, OutsideSpectrum, SolarSpectrum};
+use crate::spectral::{
+    ASTM_E490, ASTM_G173, BandResponse, OutsideSpectrum, SolarSpectrum, library_spectrum,
+    soil_reflectance,
+};
 
 use table::{table_means, table_points};
 
@@ -129,6 +134,15 @@ fn resolve(
         Spectrum::Table(table) => table_means(table, quantity, path, resources),
         Spectrum::AstmG173 => solar_means(&ASTM_G173, quantity, path, resources),
         Spectrum::AstmE490 => solar_means(&ASTM_E490, quantity, path, resources),
+        Spectrum::Library(name) => {
+            // `document::check` knows the names.
+            let points = library_spectrum(name).unwrap_or_default();
+            reflectance_means(points, quantity, path, resources)
+        }
+        Spectrum::Soil(SoilMixture { dryness, brightness }) => {
+            let points = soil_reflectance(*dryness, *brightness);
+            reflectance_means(&points, quantity, path, resources)
+        }
         Spectrum::Named(name) => {
             let Some(named) = resources.spectra.get(name.as_str()) else {
                 let known = resources.spectra.keys().map(String::as_str);
@@ -235,6 +249,21 @@ fn solar_means(
     Ok(means)
 }
 
+/// Mean in each band of a reflectance.
+fn reflectance_means(
+    points: &[(f64, f64)],
+    quantity: Quantity,
+    path: &ScenePath,
+    resources: &mut Resources,
+) -> Result<Vec<f64>, Box<Diagnostic>> {
+    if quantity == Quantity::Irradiance {
+        let message = "this is the reflectance of a surface, no light";
+        let help = "write AstmG173, Constant, Bands, Points or Table";
+        return Err(Box::new(Diagnostic::error(path, message).help(help)));
+    }
+    mean_over_bands(points, quantity, path, resources)
+}
+
 /// Mean in each band of a spectrum given by points.
 fn mean_over_bands(
     points: &[(f64, f64)],
@@ -284,9 +313,12 @@ pub(super) fn irradiance_points(
         Spectrum::AstmE490 => Some(ASTM_E490.points().to_vec()),
         Spectrum::Points(points) => Some(points),
         Spectrum::Table(table) => table_points(&table, resources),
-        Spectrum::Constant(_) | Spectrum::Bands(_) | Spectrum::Named(_) | Spectrum::Prospect(_) => {
-            None
-        }
+        Spectrum::Constant(_)
+        | Spectrum::Bands(_)
+        | Spectrum::Named(_)
+        | Spectrum::Library(_)
+        | Spectrum::Soil(_)
+        | Spectrum::Prospect(_) => None,
     }
 }
 
