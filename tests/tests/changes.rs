@@ -69,13 +69,25 @@ fn unchanged_scene_runs_no_system() {
 
 #[test]
 fn changed_sun_leaves_meshes_ground_instances_and_optics() {
-    let expected = ["check_tiles_crossed", "resolve_light", "warn_dark_bands", "resolve_sensors"];
+    let expected = [
+        "check_tiles_crossed",
+        "resolve_weights",
+        "resolve_light",
+        "warn_dark_bands",
+        "resolve_sensors",
+    ];
     assert_eq!(ran(("zenith_deg: 30.0", "zenith_deg: 40.0")), expected);
 }
 
 #[test]
 fn changed_leaf_spectrum_runs_what_reads_spectra() {
-    let named = ["resolve_optics", "resolve_light", "warn_dark_bands", "resolve_sky_emission"];
+    let named = [
+        "resolve_weights",
+        "resolve_optics",
+        "resolve_light",
+        "warn_dark_bands",
+        "resolve_sky_emission",
+    ];
     assert_eq!(ran((r#"{ "green": Bands([0.05, "#, r#"{ "green": Bands([0.06, "#)), named);
     let own = ["resolve_optics", "resolve_temperatures"];
     assert_eq!(ran(("transmittance: Bands([0.02", "transmittance: Bands([0.03")), own);

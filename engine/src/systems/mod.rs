@@ -43,6 +43,7 @@ mod resolve_optics;
 mod resolve_sensors;
 mod resolve_sky_emission;
 mod resolve_temperatures;
+mod resolve_weights;
 mod spectra;
 mod triangulate_terrain;
 mod warn_dark_bands;

@@ -1,9 +1,8 @@
 use hecs::World;
 
-use super::spectra::irradiance_points;
-use super::{Changes, Resources};
+use super::Resources;
 use crate::assets::{SpectrumColumns, read_spectrum};
-use crate::document::{self, Band, BandSource, Diagnostic, Response, ResponseTable, ScenePath};
+use crate::document::{Band, BandSource, Diagnostic, Response, ResponseTable, ScenePath};
 use crate::spectral::{BandResponse, BandWindow};
 
 /// Responses of all bands, and the irradiance that reflectances and transmittances are weighted with.
@@ -11,7 +10,7 @@ use crate::spectral::{BandResponse, BandWindow};
 pub struct BandResponses {
     responses: Vec<BandResponse>,
     /// Points (wavelength nm, W m⁻² nm⁻¹) of the sun; `None` if no band is a curve, or its irradiance has no wavelengths.
-    irradiance: Option<Vec<(f64, f64)>>,
+    pub(super) irradiance: Option<Vec<(f64, f64)>>,
 }
 
 impl BandResponses {
@@ -30,30 +29,19 @@ impl BandResponses {
 /// Wavelength beyond which bands are assumed to hold emission where their centre is written, nm.
 const THERMAL_NM: f64 = 3000.0;
 
-/// Resolves the responses of all bands. Reads the resources `bands` and `spectra` and `document::Sun`; writes the resource
-/// `responses`, and marks it as changed only where it is.
-pub(super) fn resolve_bands(world: &mut World, resources: &mut Resources) {
+/// Resolves the responses of all bands. Reads the resource `bands`; writes those of the resource `responses`.
+pub(super) fn resolve_bands(_: &mut World, resources: &mut Resources) {
     let bands = resources.bands.clone();
-    let responses: Vec<BandResponse> = bands
-        .iter()
-        .enumerate()
-        .map(|(index, band)| {
-            let path = ScenePath::from("bands").index(index);
-            resolved(band, &path, resources).unwrap_or_else(|problem| {
-                resources.report(*problem);
-                // What follows an error is not run.
-                BandResponse::Window(BandWindow { center: 550.0, width: 0.0 })
-            })
+    let resolve = |(index, band): (usize, &Band)| {
+        let path = ScenePath::from("bands").index(index);
+        resolved(band, &path, resources).unwrap_or_else(|problem| {
+            resources.report(*problem);
+            // What follows an error is not run.
+            BandResponse::Window(BandWindow { center: 550.0, width: 0.0 })
         })
-        .collect();
-    let has_curves = responses.iter().any(|response| matches!(response, BandResponse::Curve(_)));
-    let sun = world.get::<&document::Sun>(resources.sun).ok().filter(|_| has_curves);
-    let irradiance = sun.and_then(|sun| irradiance_points(&sun.irradiance, resources));
-    let resolved = BandResponses { responses, irradiance };
-    if resolved != resources.responses {
-        resources.responses = resolved;
-        resources.changes |= Changes::RESPONSES;
-    }
+    };
+    let responses = bands.iter().enumerate().map(resolve).collect();
+    resources.responses.responses = responses;
 }
 
 fn resolved(

@@ -19,6 +19,7 @@ use super::resolve_optics::resolve_optics;
 use super::resolve_sensors::resolve_sensors;
 use super::resolve_sky_emission::resolve_sky_emission;
 use super::resolve_temperatures::resolve_temperatures;
+use super::resolve_weights::resolve_weights;
 use super::triangulate_terrain::triangulate_terrain;
 use super::warn_dark_bands::warn_dark_bands;
 use super::warn_flat_raster::warn_flat_raster;
@@ -57,7 +58,7 @@ macro_rules! schedule {
 
 /// All systems in the order in which they run. Messages are shown in this order.
 ///
-/// `hide_and_select`, `find_used_materials` and `resolve_bands` mark what they write themselves, and only if it differs.
+/// `hide_and_select`, `find_used_materials` and `resolve_weights` mark what they write themselves, and only if it differs.
 const SCHEDULE: &[ScheduledSystem] = schedule! {
     // Ground.
     resolve_crs: FRAME => CRS;
@@ -87,7 +88,8 @@ const SCHEDULE: &[ScheduledSystem] = schedule! {
     check_tiles_crossed: SENSORS | SUN | EXTENTS;
 
     // Spectra.
-    resolve_bands: BANDS | SUN | SPECTRA;
+    resolve_bands: BANDS => RESPONSES;
+    resolve_weights: RESPONSES | SUN | SPECTRA;
     find_used_materials: INSTANCES | LOADED_MESHES | GROUND;
     resolve_optics: MATERIALS | SPECTRA | RESPONSES | USED_MATERIALS;
     resolve_temperatures: MATERIALS | RESPONSES | USED_MATERIALS | MEASURES_EMISSION;
