@@ -132,7 +132,7 @@ fn respectrum(arguments: &Respectrum) -> anyhow::Result<()> {
 
 fn merge(arguments: &Merge) -> anyhow::Result<()> {
     let options = run::Options {
-        document: arguments.scene.options(),
+        document: arguments.formats.options(&arguments.scene),
         quality: arguments.quality,
         unite: arguments.files.clone(),
         scratch: ScratchSpace::within(&arguments.folder()),
@@ -298,7 +298,7 @@ fn warn_night(point: &SweepPoint) {
 
 fn run_options(arguments: &Run) -> run::Options {
     run::Options {
-        document: arguments.scene.options(),
+        document: arguments.formats.options(&arguments.scene),
         threads: arguments.threads.map(Into::into),
         quality: arguments.quality,
         memory: arguments.memory,

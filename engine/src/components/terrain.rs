@@ -9,6 +9,8 @@ pub struct Projection {
     pub name: String,
     /// Items between the size of a cell and the units, such as `13, North, WGS-84`.
     pub rest: String,
+    /// Number in the registry of EPSG, if it is known.
+    pub epsg: Option<u32>,
     /// Well-known text of the system, if it is known.
     pub wkt: Option<String>,
 }

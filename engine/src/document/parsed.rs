@@ -70,6 +70,9 @@ impl ParsedScene {
         let mut scene = Scene::decode(tree, &mut reader);
         let unused = params.unused();
         scene.params = params.values;
+        if let Some(output) = &options.output {
+            scene.output.clone_from(output);
+        }
         let diagnostics = self.complete(&scene, reader.finish(), &unused);
         Reading { scene, source: Arc::clone(&self.source), diagnostics, options: options.clone() }
     }

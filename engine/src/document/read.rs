@@ -10,7 +10,7 @@ use super::encode::Encode as _;
 use super::parsed::ParsedScene;
 use super::path::ScenePath;
 use super::ron_text::{Group, Node, Text, parse};
-use super::scene::{Param, Scene};
+use super::scene::{FileFormat, Param, Scene};
 use super::source::Source;
 
 /// A scene may hold so many bytes, included files among them; large stands belong into tables.
@@ -25,6 +25,8 @@ pub struct ReadOptions {
     pub point: Vec<(String, Param)>,
     /// The variant to apply.
     pub variant: Option<String>,
+    /// File formats of images, in place of those of the file.
+    pub output: Option<Vec<FileFormat>>,
 }
 
 /// A scene as it was read.

@@ -6,6 +6,7 @@ use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::ops::Range;
 
 use super::band_rows::BandRows;
+use super::envi::RasterSize;
 use crate::products::{Class, Image, Rendering};
 
 /// The classes of an image, if it holds numbers of classes.
@@ -25,12 +26,12 @@ pub(super) fn bytes(block: &BandRows) -> Vec<u8> {
 
 /// Reads the numbers of rows back; NaN where a pixel has no class.
 pub(super) fn read_rows(
-    image: &Image,
+    size: RasterSize,
     rows: Range<usize>,
     mut file: &File,
 ) -> io::Result<Vec<f32>> {
-    let mut bytes = vec![0; rows.len() * image.width];
-    file.seek(SeekFrom::Start((rows.start * image.width) as u64))?;
+    let mut bytes = vec![0; rows.len() * size.width];
+    file.seek(SeekFrom::Start((rows.start * size.width) as u64))?;
     file.read_exact(&mut bytes)?;
     let number = |byte| if byte == 0 { f32::NAN } else { f32::from(byte) };
     Ok(bytes.into_iter().map(number).collect())

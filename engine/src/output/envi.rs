@@ -25,6 +25,19 @@ pub(super) enum Raster {
     Errors,
 }
 
+/// Columns and rows of a raster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RasterSize {
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+impl From<&Image> for RasterSize {
+    fn from(image: &Image) -> Self {
+        Self { width: image.width, height: image.height }
+    }
+}
+
 /// Writes rows of all bands to their places; the file has shape `[bands, rows, columns]`.
 pub(super) fn write_rows(
     image: &Image,
@@ -59,13 +72,13 @@ pub(super) fn write_rows(
 
 /// Reads rows of a band of a raster without classes back; NaN where there are no data.
 pub(super) fn read_rows(
-    image: &Image,
+    size: RasterSize,
     band: usize,
     rows: Range<usize>,
     mut file: &File,
 ) -> io::Result<Vec<f32>> {
-    let mut bytes = vec![0; rows.len() * image.width * VALUE];
-    let place = (band * image.height + rows.start) * image.width * VALUE;
+    let mut bytes = vec![0; rows.len() * size.width * VALUE];
+    let place = (band * size.height + rows.start) * size.width * VALUE;
     file.seek(SeekFrom::Start(place as u64))?;
     file.read_exact(&mut bytes)?;
     let values = bytes.as_chunks().0.iter().map(|&bytes| f32::from_le_bytes(bytes));

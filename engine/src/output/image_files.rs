@@ -1,4 +1,4 @@
-//! Files of an image: all rasters in one pass over its pixels, then pictures from these.
+//! Files of an image: all rasters in one pass over its pixels, then pictures and GeoTIFF from these.
 
 use std::io;
 
@@ -8,7 +8,8 @@ use super::figure::{Caption, Figure};
 use super::picture::Picture;
 use super::picture_input::{LitBands, PictureInput};
 use super::staging::{StagedFile, Staging};
-use super::{OutputError, Source, envi, exr, names};
+use super::{OutputError, Source, envi, exr, geotiff, names};
+use crate::document::FileFormat;
 use crate::products::Image;
 
 /// Writes the files of an image; returns their size in bytes.
@@ -18,43 +19,73 @@ pub(super) fn put(
     names: &names::ProductNames,
     staging: &mut Staging,
 ) -> Result<u64, OutputError> {
-    let mut exr = staging.begin(&names.exr())?;
+    let has = |format| source.report.formats.contains(&format);
+    let mut exr = has(FileFormat::Exr).then(|| staging.begin(&names.exr())).transpose()?;
+    let mut rasters = None;
     let mut size = 0;
-    let mut begin = |name: String, raster| -> Result<StagedFile, OutputError> {
-        let file = staging.begin(&name)?;
-        let header = names::header(&name);
-        size += staging.file(&header, |file| envi::write_header(source, image, raster, file))?;
-        Ok(file)
-    };
-    let mut rasters = Rasters {
-        values: begin(names.img(), Raster::Values)?,
-        errors: begin(names.errors(), Raster::Errors)?,
-        lit: LitBands::new(image.bands.len()),
-    };
+    if has(FileFormat::Envi) {
+        let (files, headers) = Rasters::begin(source, image, names, staging)?;
+        (rasters, size) = (Some(files), headers);
+    } else if has(FileFormat::Png) || has(FileFormat::GeoTiff) {
+        rasters = Some(Rasters::without_names(image, staging)?);
+    }
+    write_blocks(source, image, exr.as_mut(), rasters.as_mut())?;
+    if let Some(exr) = exr {
+        size += exr.finish()?;
+    }
+    let Some(Rasters { mut values, mut errors, lit }) = rasters else { return Ok(size) };
+    let readers = [values.reader()?, errors.reader()?];
+    if has(FileFormat::Envi) {
+        size += values.finish()? + errors.finish()?;
+    }
+    let [values, errors] = readers;
+    if has(FileFormat::GeoTiff) {
+        let rasters = [(Raster::Values, &values), (Raster::Errors, &errors)];
+        for ((raster, pixels), name) in rasters.into_iter().zip(names.geotiffs()) {
+            let mut file = staging.begin(&name)?;
+            let scratch = || staging.scratch();
+            let fill = |file: &mut _| {
+                geotiff::write(source, image, raster, pixels.try_clone()?, &scratch, file)
+            };
+            file.write(fill)?;
+            size += file.finish()?;
+        }
+    }
+    if has(FileFormat::Png) {
+        let wavelengths = source.wavelengths(image);
+        let input = PictureInput { image, wavelengths, lit, values, errors };
+        size += put_pictures(source, &input, [&names.png(), &names.bare()], staging)?;
+    }
+    Ok(size)
+}
+
+/// Writes all pixels, block by block, to the files that there are.
+fn write_blocks(
+    source: &Source<'_>,
+    image: &Image,
+    exr: Option<&mut StagedFile>,
+    mut rasters: Option<&mut Rasters>,
+) -> Result<(), OutputError> {
     let mut failure = None;
-    let blocks = image.blocks().map(|rows| {
-        let block = BandRows::read(source, image, rows);
-        let written = block.and_then(|block| rasters.write(image, &block).map(|()| block));
-        written.map_err(|error| {
+    let mut blocks = image.blocks().map(|rows| {
+        let block = BandRows::read(source, image, rows).and_then(|block| {
+            rasters.as_mut().map_or(Ok(()), |rasters| rasters.write(image, &block))?;
+            Ok(block)
+        });
+        block.map_err(|error| {
             failure = Some(error);
             io::Error::other("the block failed")
         })
     });
-    let written = exr.write(|file| exr::write(source, image, blocks, file));
-    if let Some(error) = failure {
-        return Err(error);
-    }
-    written?;
-    let Rasters { mut values, mut errors, lit } = rasters;
-    let input = PictureInput {
-        image,
-        wavelengths: source.wavelengths(image),
-        lit,
-        values: values.reader()?,
-        errors: errors.reader()?,
+    let written = match exr {
+        Some(exr) => exr.write(|file| exr::write(source, image, blocks, file)),
+        // The failure tells why.
+        None => {
+            blocks.find_map(Result::err);
+            Ok(())
+        }
     };
-    size += exr.finish()? + values.finish()? + errors.finish()?;
-    Ok(size + put_pictures(source, &input, [&names.png(), &names.bare()], staging)?)
+    failure.map_or(written, Err)
 }
 
 /// ENVI rasters that are being written.
@@ -65,6 +96,32 @@ struct Rasters {
 }
 
 impl Rasters {
+    /// Rasters that are results, whose headers have been written, and the size of these in bytes.
+    fn begin(
+        source: &Source<'_>,
+        image: &Image,
+        names: &names::ProductNames,
+        staging: &mut Staging,
+    ) -> Result<(Self, u64), OutputError> {
+        let mut size = 0;
+        let mut begin = |name: String, raster| -> Result<StagedFile, OutputError> {
+            let file = staging.begin(&name)?;
+            let header = names::header(&name);
+            size +=
+                staging.file(&header, |file| envi::write_header(source, image, raster, file))?;
+            Ok(file)
+        };
+        let values = begin(names.img(), Raster::Values)?;
+        let errors = begin(names.errors(), Raster::Errors)?;
+        Ok((Self { values, errors, lit: LitBands::new(image.bands.len()) }, size))
+    }
+
+    /// Rasters from which other files are made, and which are gone then.
+    fn without_names(image: &Image, staging: &Staging) -> Result<Self, OutputError> {
+        let [values, errors] = [staging.begin_unnamed()?, staging.begin_unnamed()?];
+        Ok(Self { values, errors, lit: LitBands::new(image.bands.len()) })
+    }
+
     fn write(&mut self, image: &Image, block: &BandRows) -> Result<(), OutputError> {
         self.lit.add(block);
         let Self { values, errors, .. } = self;

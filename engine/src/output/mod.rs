@@ -1,7 +1,7 @@
 //! Files of a run, with provenance; the only module that writes.
 //!
-//! A folder gets `summary.json`, for each image an EXR, two ENVI rasters and a PNG with a legend and one
-//! without, for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
+//! A folder gets `summary.json`, for each image the formats that the scene asks for (an EXR, two ENVI rasters, two
+//! GeoTIFF, a PNG with a legend and one without), for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
 //! or height. They take the place of older results all at once (`staging`, `swap`).
 
 mod axes;
@@ -16,6 +16,7 @@ mod destination;
 mod envi;
 mod exr;
 mod figure;
+mod geotiff;
 mod image_files;
 mod layout;
 mod legend;
@@ -54,7 +55,7 @@ pub use point_tables::PointTables;
 pub use results::{COEFFICIENTS, Results, ResultsOrigin, Written};
 pub use rows::{harmless, number};
 pub use scale::{axis_title, range_of, tick};
-pub use size::file_size;
+pub use size::{file_size, memory_of_files};
 pub use sweep::SweepTable;
 pub use table::table;
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::document::FileFormat;
 use crate::products::Report;
 
 /// Longest name of a folder, bytes.
@@ -79,12 +80,25 @@ impl ProductNames {
         format!("{}.img", self.errors)
     }
 
-    /// All files of an image.
-    pub(super) fn image(&self) -> Vec<String> {
-        let [img, errors] = [self.img(), self.errors()];
-        let headers = [header(&img), header(&errors)];
-        let [values_header, errors_header] = headers;
-        vec![self.exr(), img, values_header, errors, errors_header, self.png(), self.bare()]
+    /// GeoTIFF of values, and of standard errors and coverage.
+    pub(super) fn geotiffs(&self) -> [String; 2] {
+        [&self.stem, &self.errors].map(|stem| format!("{stem}.tif"))
+    }
+
+    /// All files of an image in these formats.
+    pub(super) fn image(&self, formats: &[FileFormat]) -> Vec<String> {
+        let files = |format| match format {
+            FileFormat::Exr => vec![self.exr()],
+            FileFormat::Envi => {
+                let [img, errors] = [self.img(), self.errors()];
+                let [values_header, errors_header] = [header(&img), header(&errors)];
+                vec![img, values_header, errors, errors_header]
+            }
+            FileFormat::GeoTiff => self.geotiffs().to_vec(),
+            FileFormat::Png => vec![self.png(), self.bare()],
+        };
+        let asked = FileFormat::ALL.into_iter().filter(|format| formats.contains(format));
+        asked.flat_map(files).collect()
     }
 }
 

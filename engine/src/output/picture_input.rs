@@ -63,14 +63,14 @@ impl PictureInput<'_> {
     /// Values of a band in some rows; NaN where there are no data.
     pub(super) fn band(&self, band: usize, rows: Range<usize>) -> io::Result<Vec<f32>> {
         if classes_of(self.image).is_some() {
-            return classification::read_rows(self.image, rows, &self.values);
+            return classification::read_rows(self.image.into(), rows, &self.values);
         }
-        envi::read_rows(self.image, band, rows, &self.values)
+        envi::read_rows(self.image.into(), band, rows, &self.values)
     }
 
     /// Fraction of each pixel that shows the scene.
     pub(super) fn coverage(&self, rows: Range<usize>) -> io::Result<Vec<f32>> {
-        envi::read_rows(self.image, self.image.bands.len(), rows, &self.errors)
+        envi::read_rows(self.image.into(), self.image.bands.len(), rows, &self.errors)
     }
 
     /// Visits all finite values of a band.

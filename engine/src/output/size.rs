@@ -1,3 +1,6 @@
+//! Size of files before they are written.
+
+use crate::document::FileFormat;
 use crate::products::ProductSize;
 
 /// Size of a number and its separator in a table, bytes: about that of the shortest text that reads back as the
@@ -17,11 +20,18 @@ const PIXEL: u64 = 2 * 2;
 /// Size of the files of a product before it is measured, bytes. Compression, the digits of numbers and headers are
 /// estimated.
 #[must_use]
-pub fn file_size(extent: ProductSize) -> u64 {
+pub fn file_size(extent: ProductSize, formats: &[FileFormat]) -> u64 {
     match extent {
         ProductSize::Image { pixels, bands, .. } => {
-            // EXR and ENVI: values, errors and coverage each; PNG.
-            let pixel = 2 * 4 * (2 * bands + 1) + PIXEL;
+            let values = 4 * (2 * bands + 1);
+            let pixel = |format| match format {
+                FileFormat::Exr | FileFormat::Envi => values,
+                // Overviews have a third of the pixels.
+                FileFormat::GeoTiff => values * 4 / 3,
+                FileFormat::Png => PIXEL,
+            };
+            let all = FileFormat::ALL.into_iter().filter(|format| formats.contains(format));
+            let pixel = all.map(pixel).sum();
             pixels.saturating_mul(pixel).saturating_add(HEADERS)
         }
         ProductSize::Table { rows, axes, bands } => {
@@ -34,4 +44,21 @@ pub fn file_size(extent: ProductSize) -> u64 {
             faces.saturating_mul(3 * 15 + 13 + 3 + 8 * bands).saturating_add(HEADER)
         }
     }
+}
+
+/// Rows of tiles of a band that a GeoTIFF is made of: as numbers, as bytes, and compressed.
+const COPIES: u64 = 3;
+
+/// Additional memory for making the files of a product, bytes.
+#[must_use]
+pub fn memory_of_files(extent: ProductSize, formats: &[FileFormat]) -> u64 {
+    let tiles = match extent {
+        ProductSize::Image { width, pixels, .. } if formats.contains(&FileFormat::GeoTiff) => {
+            let values = width.saturating_mul(super::geotiff::TILE as u64).min(pixels);
+            COPIES * 4 * values
+        }
+        _ => 0,
+    };
+    // When the tiles are made, all blocks of rows are gone.
+    extent.memory_of_files().max(tiles)
 }

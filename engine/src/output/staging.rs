@@ -23,7 +23,6 @@ pub(super) struct Staging {
 #[derive(Debug)]
 pub(super) struct StagedFile {
     writer: BufWriter<File>,
-    path: PathBuf,
     /// Path that it will have.
     shown: PathBuf,
 }
@@ -49,9 +48,9 @@ impl StagedFile {
         finish().map_err(|source: io::Error| OutputError::Write { path: self.shown, source })
     }
 
-    /// File to read what it holds so far.
+    /// File to read what it holds so far; both share a place in the file, so that nothing is written to it after that.
     pub(super) fn reader(&mut self) -> Result<File, OutputError> {
-        let file = self.writer.flush().and_then(|()| File::open(&self.path));
+        let file = self.writer.flush().and_then(|()| self.writer.get_ref().try_clone());
         file.map_err(|source| OutputError::Read { path: self.shown.clone(), source })
     }
 }
@@ -114,10 +113,24 @@ impl Staging {
         }
         self.names.push(name.to_owned());
         let path = self.partial.path.join(name);
-        match File::create(&path) {
-            Ok(file) => Ok(StagedFile { writer: BufWriter::new(file), path, shown }),
+        match File::options().read(true).write(true).create(true).truncate(true).open(&path) {
+            Ok(file) => Ok(StagedFile { writer: BufWriter::new(file), shown }),
             Err(source) => Err(OutputError::Write { path: shown, source }),
         }
+    }
+
+    /// Begins a temporary file, which has no name and is no result.
+    pub(super) fn begin_unnamed(&self) -> Result<StagedFile, OutputError> {
+        let shown = self.destination.folder.clone();
+        match self.scratch() {
+            Ok(file) => Ok(StagedFile { writer: BufWriter::new(file), shown }),
+            Err(source) => Err(OutputError::Write { path: shown, source }),
+        }
+    }
+
+    /// A new temporary file without a name, where the results will be.
+    pub(super) fn scratch(&self) -> io::Result<File> {
+        tempfile::tempfile_in(&self.partial.path)
     }
 
     /// Puts all files in place of the results in the folder; returns their paths in the order of

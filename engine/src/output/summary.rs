@@ -279,7 +279,7 @@ fn entry<'a>(report: &Report, product: &'a Product, names: &ProductNames) -> Ent
         standard_error: &product.standard_error,
         files: match (&product.image, &product.faces) {
             (_, Some(_)) => vec![names.ply()],
-            (Some(_), _) => names.image(),
+            (Some(_), _) => names.image(&report.formats),
             (None, None) => {
                 let chart = Lines::new(product).map(|_| names.svg());
                 std::iter::once(names.csv()).chain(chart).collect()

@@ -1,4 +1,5 @@
 use super::{AxisPoints, Product, ProductAxis};
+use crate::document::FileFormat;
 use crate::spectral::BandResponse;
 
 /// Bands and light that all products of a run have in common.
@@ -15,6 +16,8 @@ pub struct Context {
     pub has_sky: bool,
     /// Anchor of the local frame: easting and northing of its origin, m.
     pub origin: (f64, f64),
+    /// File formats of images.
+    pub formats: Vec<FileFormat>,
     /// Sources of the radiance, shape `[bands]`.
     pub sources: Vec<BandSources>,
 }

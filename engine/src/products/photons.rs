@@ -224,6 +224,7 @@ mod tests {
             irradiance: vec![1.5],
             has_sky: false,
             origin: (0.0, 0.0),
+            formats: Vec::new(),
             sources: Vec::new(),
         };
         let product = brf_cells(&spread, &hemisphere, 1.0, &context);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Faces, Image};
 use crate::components::Projection;
-use crate::document::Param;
+use crate::document::{FileFormat, Param};
 
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,6 +140,8 @@ pub struct Report {
     pub projection: Option<Projection>,
     /// Title of the scene.
     pub scene: String,
+    /// File formats of its images.
+    pub formats: Vec<FileFormat>,
     /// Hash of the resolved scene and of all files that it reads, hexadecimal.
     pub hash: String,
     /// Version of sunfleck.

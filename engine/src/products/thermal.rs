@@ -68,6 +68,7 @@ mod tests {
             irradiance: vec![2.0, 2.0, 2.0],
             has_sky: false,
             origin: (0.0, 0.0),
+            formats: Vec::new(),
             sources: vec![source(false, true), source(true, false), source(true, true)],
         };
         let emitted = ([9.0, 1.0, 3.0], [9.0, 0.1, 0.3]);

@@ -131,7 +131,7 @@ pub(super) fn joined_memory(
     let costs = sensors.iter().map(|one| {
         let Begun { mut measurement, .. } =
             begin(&one.name, &one.sensor, measured, options.quality);
-        CostEstimate::new(measurement.as_mut(), &store)
+        CostEstimate::new(measurement.as_mut(), &store, &measured.context.formats)
     });
     cost::shapes(costs)
 }
@@ -148,7 +148,7 @@ fn check_memory(
 ) -> Result<(), Failure> {
     let cost = |name: &str, sensor: &ResolvedSensor| {
         let Begun { mut measurement, .. } = begin(name, sensor, measured, options.quality);
-        CostEstimate::new(measurement.as_mut(), store)
+        CostEstimate::new(measurement.as_mut(), store, &measured.context.formats)
     };
     let problem = cost::check_memory(sensors, options.free_memory(), cost)
         .or_else(|| cost::check_disk(sensors, &options.scratch, cost));

@@ -11,7 +11,7 @@ use super::checkpoint::{CheckpointStore, is_in_memory};
 use super::convergence::{Measurement, Start};
 use super::sensors::SensorEntity;
 use crate::components::ResolvedSensor;
-use crate::document::{Diagnostic, ScenePath};
+use crate::document::{Diagnostic, FileFormat, ScenePath};
 use crate::output;
 use crate::products::{Forecast, ProductSize, data_size};
 use crate::scratch::ScratchSpace;
@@ -44,7 +44,13 @@ pub(super) struct CostEstimate {
 
 impl CostEstimate {
     /// Estimate for a measurement, of which a part of the run may be traced.
-    pub(super) fn new(measurement: &mut dyn Measurement, store: &CheckpointStore) -> Self {
+    ///
+    /// - `formats`: file formats of images
+    pub(super) fn new(
+        measurement: &mut dyn Measurement,
+        store: &CheckpointStore,
+        formats: &[FileFormat],
+    ) -> Self {
         let (mut films, mut beside, mut disk, mut state) = (0, 0, 0, 0);
         for paced in measurement.films() {
             paced.film.restrict(store.share());
@@ -69,8 +75,12 @@ impl CostEstimate {
             products: of_all(ProductSize::memory),
             values: of_all(ProductSize::bytes),
             checkpoint,
-            writing: sizes.iter().map(|extent| extent.memory_of_files()).max().unwrap_or(0),
-            files: of_all(output::file_size),
+            writing: sizes
+                .iter()
+                .map(|&size| output::memory_of_files(size, formats))
+                .max()
+                .unwrap_or(0),
+            files: sum(sizes.iter().map(|&extent| output::file_size(extent, formats))),
             largest: measurement.largest(),
             is_kept: is_whole && measurement.keeps_films(),
         }

@@ -348,8 +348,12 @@ fn sensor_facts(
             pixels,
             samples: limit,
             ends: convergence.until.iter().map(ends).collect::<Vec<_>>().join(" or "),
-            memory_bytes: CostEstimate::new(measurement.as_mut(), &CheckpointStore::disabled())
-                .memory(),
+            memory_bytes: CostEstimate::new(
+                measurement.as_mut(),
+                &CheckpointStore::disabled(),
+                &scene.output,
+            )
+            .memory(),
         }
     };
     in_order(world).iter().map(facts).collect()

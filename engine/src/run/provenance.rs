@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
 use super::Failure;
-use crate::document::{Ends, Fisheye, Perspective, Scene, Sensor};
+use crate::document::{Ends, FileFormat, Fisheye, Perspective, Scene, Sensor};
 use crate::files;
 
 /// Hash of a scene as it was resolved and of the content of each file that it reads, hexadecimal.
@@ -23,7 +23,9 @@ pub(super) fn scene_hash(
     known: &FileHashes,
 ) -> Result<blake3::Hash, Failure> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(scene.resolved().to_ron().as_bytes());
+    // Numbers are the same in every format.
+    let scene = Scene { output: FileFormat::DEFAULT.to_vec(), ..scene.resolved() };
+    hasher.update(scene.to_ron().as_bytes());
     for path in files {
         hasher.update(known.of(path)?.as_bytes());
     }

@@ -58,6 +58,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
         Report {
             projection: projection(common.world),
             scene: scene.title.clone(),
+            formats: scene.output.clone(),
             hash,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed: scene.transport.seed,

@@ -8,7 +8,7 @@ use super::convergence::{Convergence, ErrorCheck, Measurement, PacedFilm, Start,
 use super::cost::{CostEstimate, PilotRun};
 use super::{Failure, Progress};
 use crate::components::StopCriterion;
-use crate::document::{Diagnostic, ScenePath};
+use crate::document::{Diagnostic, FileFormat, ScenePath};
 use crate::products::{Forecast, Product};
 use crate::scratch::ScratchSpace;
 use crate::transport::{Partition, ProgressFn};
@@ -49,13 +49,14 @@ struct Rounds<'a> {
 pub(super) fn measure_until(
     name: &str,
     measurement: &mut dyn Measurement,
+    formats: &[FileFormat],
     convergence: &Convergence,
     store: &mut CheckpointStore,
     progress: &dyn Progress,
     is_pilot_only: bool,
 ) -> Result<MeasurementEnd, Failure> {
     assert!(!convergence.until.is_empty(), "a measurement has a stop criterion");
-    let cost = CostEstimate::new(measurement, store);
+    let cost = CostEstimate::new(measurement, store, formats);
     let start = restore(name, measurement, store)?;
     let pilot = if is_pilot_only {
         PilotRun::alone(cost, start, measurement, convergence.is_fixed())

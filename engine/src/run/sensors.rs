@@ -124,7 +124,9 @@ pub(super) fn measure(
 ) -> Result<SensorReport, Failure> {
     let Begun { mut measurement, convergence } = begin(name, sensor, measured, options.quality);
     let measurement = measurement.as_mut();
-    let end = measure_until(name, measurement, &convergence, store, progress, options.forecast)?;
+    let formats = &measured.context.formats;
+    let end =
+        measure_until(name, measurement, formats, &convergence, store, progress, options.forecast)?;
     let mut products = end.products;
     let keeps_replicates = options.keeps_replicates && !products.is_empty();
     if keeps_replicates && measurement.films().iter().all(|one| one.film.can_grow().is_ok()) {

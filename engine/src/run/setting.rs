@@ -11,6 +11,7 @@ pub(super) fn context(scene: &Scene, responses: &[BandResponse], optics: &SceneO
         irradiance: optics.irradiance(),
         has_sky: optics.has_sky(),
         origin: (scene.frame.origin_m.0, scene.frame.origin_m.1),
+        formats: scene.output.clone(),
         sources: scene.bands.iter().zip(responses).map(sources).collect(),
     }
 }

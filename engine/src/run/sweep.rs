@@ -178,6 +178,7 @@ impl SweepRun {
         Report {
             projection: None,
             scene: self.scene.title.clone(),
+            formats: self.scene.output.clone(),
             hash: hasher.finalize().to_hex().to_string(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed: self.scene.transport.seed,

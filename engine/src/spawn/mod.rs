@@ -37,6 +37,7 @@ pub fn spawn(scene: &Scene, world: &mut World, resources: &mut Resources) -> Cha
         transport,
         variants: _,
         sweep: _,
+        output: _,
     } = scene;
     let is_first = resources.terrain == Entity::DANGLING;
     if is_first {

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
     Area, Axis, Band, BandSource, Boundary, Coating, Cover, DerivativeSteps, Directions,
-    Distribution, Ends, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions,
+    Distribution, Ends, FileFormat, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions,
     InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj,
     Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture,
     Prospect, Prototype, ReadOptions, Response, ResponseTable, Roulette, Rpv, Rule, Scatter, Scene,
@@ -586,6 +586,7 @@ fn scene() -> BoxedStrategy<Scene> {
             source,
         },
     );
+    let output = prop::collection::vec(prop::sample::select(FileFormat::ALL.to_vec()), 0..4);
     let transport = (any::<u64>(), any::<u32>(), number(), any::<bool>(), option(any::<u32>()))
         .prop_map(|(seed, after_order, kill, first_order_only, max_order)| Transport {
             seed,
@@ -608,9 +609,9 @@ fn scene() -> BoxedStrategy<Scene> {
         (list(instances()), list(text()), list(text())),
         (light(), thermal_sky()),
         map(sensor()),
-        transport,
+        (transport, output),
     )
-        .prop_map(|(names, surfaces, ground, instances, light, sensors, transport)| {
+        .prop_map(|(names, surfaces, ground, instances, light, sensors, (transport, output))| {
             let (format, title, params, variants, sweep) = names;
             let (instances, hide, select) = instances;
             let (bands, spectra, materials, meshes) = surfaces;
@@ -639,6 +640,7 @@ fn scene() -> BoxedStrategy<Scene> {
                 transport,
                 variants,
                 sweep,
+                output,
             }
         })
         .boxed()

@@ -14,7 +14,7 @@ use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
 use crate::verify::CHECKS;
 
-pub(crate) use self::shared::{Measured, Out, Run, Scene};
+pub(crate) use self::shared::{Formats, Measured, Out, Run, Scene};
 
 /// Simulates light in forest scenes that are written as text: images, BRF, albedo, absorbed light.
 #[derive(Debug, Parser)]
@@ -248,6 +248,9 @@ pub(crate) struct Merge {
     /// Factor for the number of samples; the same as for the parts
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
     pub(crate) quality: f64,
+
+    #[command(flatten)]
+    pub(crate) formats: Formats,
 }
 
 impl Merge {

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sunfleck::document::{self, System};
+use sunfleck::document::{self, FileFormat, System};
 use sunfleck::output::{OutputError, Results, folder_name};
 use sunfleck::run;
 
@@ -79,6 +79,22 @@ impl Out {
     }
 }
 
+/// File formats of images.
+#[derive(Args, Debug)]
+pub(crate) struct Formats {
+    /// File formats of images, in place of `output` of the scene: Exr, Envi, GeoTiff, Png
+    #[arg(long = "format", value_name = "NAME,..", value_delimiter = ',')]
+    formats: Vec<FileFormat>,
+}
+
+impl Formats {
+    /// Options for reading a scene whose images are written in these formats.
+    pub(crate) fn options(&self, scene: &Scene) -> document::ReadOptions {
+        let output = (!self.formats.is_empty()).then(|| self.formats.clone());
+        document::ReadOptions { output, ..scene.options() }
+    }
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct Run {
     #[command(flatten)]
@@ -98,6 +114,9 @@ pub(crate) struct Run {
     /// Factor for the number of samples: 0.05 for a quick look
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = quality)]
     pub(crate) quality: f64,
+
+    #[command(flatten)]
+    pub(crate) formats: Formats,
 
     /// Largest memory for films and results, such as 4GiB; larger runs are refused [default: free memory]
     #[arg(long, value_name = "SIZE", value_parser = memory)]

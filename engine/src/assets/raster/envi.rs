@@ -141,12 +141,13 @@ impl EnviHeader {
         let named: Vec<&str> =
             rest.iter().take_while(|item| !item.contains('=')).copied().collect();
         let is_named = !is_geographic && !items[0].eq_ignore_ascii_case("arbitrary");
+        let crs = self.crs(items[0], &named, axes);
         let projection = is_named.then(|| Projection {
             name: items[0].to_owned(),
             rest: named.join(", "),
+            epsg: crs.code,
             wkt: self.get("coordinate system string").map(str::to_owned),
         });
-        let crs = self.crs(items[0], &named, axes);
         // Pixel (1, 1) is the outer corner of the first pixel, (1.5, 1.5) its centre.
         let corner = DVec2::new(
             east - (column - 1.0) * width,

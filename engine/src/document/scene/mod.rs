@@ -7,6 +7,7 @@ mod instances;
 mod light;
 mod material;
 mod mesh;
+mod output;
 mod param;
 mod program;
 mod reference;
@@ -30,6 +31,7 @@ pub use instances::{
 pub use light::{Sky, Spa, Sun, SunPosition};
 pub use material::{Coating, Lambertian, Leaf, Material, Rpv, Soilspect, SurfaceQuantity};
 pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Prototype};
+pub use output::FileFormat;
 pub use param::Param;
 pub use program::{DerivativeSteps, Include, Sweep};
 pub use reference::{Definition, FilePath, InstancesName, NamePattern, Ref};
@@ -91,6 +93,9 @@ record! {
         sensors: Map<Sensor> => r#"{ "brf": Directions(views: PrincipalPlane) }"#,
         /// Options of the light transport.
         transport: Transport = Transport::default(),
+        /// File formats of images; an image takes more disk with each. Tables, charts and the summary are always
+        /// written.
+        output: Vec<FileFormat> = FileFormat::DEFAULT.to_vec(),
         /// Named sets of changes to `params`.
         variants: Map<Map<Param>> = Map::new(),
         /// Points that `sunfleck sweep` runs the scene at.

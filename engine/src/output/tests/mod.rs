@@ -8,6 +8,7 @@ mod tables;
 use std::fs;
 
 use super::*;
+use crate::document::FileFormat;
 use crate::products::{
     AxisPoints, Forecast, Georeference, Image, PixelRows, ProductAxis, Rendering, SensorReport,
 };
@@ -39,7 +40,7 @@ fn views() -> Product {
 }
 
 /// 3 by 2 pixels in two bands; the last pixel saw nothing.
-fn image() -> Product {
+pub(in crate::output) fn image() -> Product {
     let mut values: Vec<f32> = (0_u8..12).map(|index| f32::from(index) / 16.0).collect();
     values[10..].fill(f32::NAN);
     let standard_error = values.iter().map(|value| value / 8.0).collect();
@@ -69,7 +70,7 @@ fn image() -> Product {
     }
 }
 
-fn sensor(name: &str, product: Product) -> SensorReport {
+pub(in crate::output) fn sensor(name: &str, product: Product) -> SensorReport {
     SensorReport {
         name: name.to_owned(),
         products: vec![product],
@@ -82,10 +83,11 @@ fn sensor(name: &str, product: Product) -> SensorReport {
     }
 }
 
-fn report(sensors: Vec<SensorReport>) -> Report {
+pub(in crate::output) fn report(sensors: Vec<SensorReport>) -> Report {
     Report {
         projection: None,
         scene: "Birch\n# stand \u{df}".to_owned(),
+        formats: FileFormat::DEFAULT.to_vec(),
         hash: "c0ffee".to_owned(),
         version: "0.1.0".to_owned(),
         seed: u64::MAX,

@@ -75,14 +75,15 @@ pub(in crate::systems) fn frame_projection(
     projection_of(&map.crs.as_ref()?.crs)
 }
 
-/// Projection as ENVI names it; `None` if ENVI has no name for it.
+/// Projection as ENVI names it, with its number; `None` if neither its zone nor its text or number is known.
 pub(in crate::systems) fn projection_of(crs: &Crs) -> Option<Projection> {
     let Some(zone) = crs.utm else {
-        let wkt = crs.wkt.clone()?;
-        return Some(Projection {
+        let is_known = crs.wkt.is_some() || crs.code.is_some();
+        return is_known.then(|| Projection {
             name: "Arbitrary".to_owned(),
             rest: "0, North".to_owned(),
-            wkt: Some(wkt),
+            epsg: crs.code,
+            wkt: crs.wkt.clone(),
         });
     };
     let half = if zone.is_south { "South" } else { "North" };
@@ -99,6 +100,7 @@ pub(in crate::systems) fn projection_of(crs: &Crs) -> Option<Projection> {
     Some(Projection {
         name: "UTM".to_owned(),
         rest: format!("{}, {half}, {known}", zone.number),
+        epsg: crs.code,
         wkt,
     })
 }

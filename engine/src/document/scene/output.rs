@@ -1,0 +1,65 @@
+//! Files that results are written to.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::super::diagnostic::nearest;
+
+choice! {
+    /// File format of images.
+    #[derive(Copy, Eq)]
+    pub enum FileFormat ("a file format") {
+        /// OpenEXR: a float32 channel per band, its standard error and the coverage.
+        Exr,
+        /// ENVI rasters of float32 with text headers, `.img` and `.img.hdr`; standard errors and coverage in a second
+        /// one, `_se.img`.
+        Envi,
+        /// Cloud-optimised GeoTIFF of float32, a band per spectral band; standard errors and coverage in a second one,
+        /// `_se.tif`.
+        GeoTiff,
+        /// Pictures for the eye, with a legend and without.
+        Png,
+    }
+}
+
+impl FileFormat {
+    /// All formats.
+    pub const ALL: [Self; 4] = [Self::Exr, Self::Envi, Self::GeoTiff, Self::Png];
+
+    /// Formats of a scene that names none.
+    pub const DEFAULT: [Self; 3] = [Self::Exr, Self::Envi, Self::Png];
+
+    /// Name in scenes and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exr => "Exr",
+            Self::Envi => "Envi",
+            Self::GeoTiff => "GeoTiff",
+            Self::Png => "Png",
+        }
+    }
+}
+
+impl fmt::Display for FileFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for FileFormat {
+    type Err = String;
+
+    /// Returns the format of a name; its case does not matter.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = Self::ALL.into_iter().find(|format| format.name().eq_ignore_ascii_case(text));
+        named.ok_or_else(|| {
+            let names = Self::ALL.map(Self::name);
+            let all = names.join(", ");
+            match nearest(text, names) {
+                Some(near) => format!("did you mean `{near}`? There are: {all}"),
+                None => format!("there are: {all}"),
+            }
+        })
+    }
+}
