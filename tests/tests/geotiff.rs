@@ -1,4 +1,4 @@
-//! GeoTIFF of a run, read by GDAL (rasterio) and tifffile, against the ENVI rasters beside them.
+//! `GeoTIFF` of a run, read by GDAL (rasterio) and tifffile, against the ENVI rasters beside them.
 //!
 //! Needs a Python with `numpy`, `rasterio` and `tifffile`: `python3`, or the one that `SUNFLECK_PYTHON` names. Without it
 //! the comparison is skipped, and says so.

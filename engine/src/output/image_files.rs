@@ -1,4 +1,4 @@
-//! Files of an image: all rasters in one pass over its pixels, then pictures and GeoTIFF from these.
+//! Files of an image: all rasters in one pass over its pixels, then pictures and `GeoTIFF` from these.
 
 use std::io;
 
@@ -77,13 +77,12 @@ fn write_blocks(
             io::Error::other("the block failed")
         })
     });
-    let written = match exr {
-        Some(exr) => exr.write(|file| exr::write(source, image, blocks, file)),
-        // The failure tells why.
-        None => {
-            blocks.find_map(Result::err);
-            Ok(())
-        }
+    let written = if let Some(exr) = exr {
+        exr.write(|file| exr::write(source, image, blocks, file))
+    } else {
+        // The failure tells why one fails.
+        blocks.find_map(Result::err);
+        Ok(())
     };
     failure.map_or(written, Err)
 }

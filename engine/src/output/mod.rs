@@ -1,7 +1,7 @@
 //! Files of a run, with provenance; the only module that writes.
 //!
 //! A folder gets `summary.json`, for each image the formats that the scene asks for (an EXR, two ENVI rasters, two
-//! GeoTIFF, a PNG with a legend and one without), for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
+//! `GeoTIFF`, a PNG with a legend and one without), for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
 //! or height. They take the place of older results all at once (`staging`, `swap`).
 
 mod axes;

@@ -80,7 +80,7 @@ impl ProductNames {
         format!("{}.img", self.errors)
     }
 
-    /// GeoTIFF of values, and of standard errors and coverage.
+    /// `GeoTIFF` of values, and of standard errors and coverage.
     pub(super) fn geotiffs(&self) -> [String; 2] {
         [&self.stem, &self.errors].map(|stem| format!("{stem}.tif"))
     }

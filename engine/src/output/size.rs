@@ -46,7 +46,7 @@ pub fn file_size(extent: ProductSize, formats: &[FileFormat]) -> u64 {
     }
 }
 
-/// Rows of tiles of a band that a GeoTIFF is made of: as numbers, as bytes, and compressed.
+/// Rows of tiles of a band that a `GeoTIFF` is made of: as numbers, as bytes, and compressed.
 const COPIES: u64 = 3;
 
 /// Additional memory for making the files of a product, bytes.

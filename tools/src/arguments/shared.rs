@@ -82,7 +82,7 @@ impl Out {
 /// File formats of images.
 #[derive(Args, Debug)]
 pub(crate) struct Formats {
-    /// File formats of images, in place of `output` of the scene: Exr, Envi, GeoTiff, Png
+    /// File formats of images, in place of `output` of the scene: `Exr`, `Envi`, `GeoTiff`, `Png`
     #[arg(long = "format", value_name = "NAME,..", value_delimiter = ',')]
     formats: Vec<FileFormat>,
 }

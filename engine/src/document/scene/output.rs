@@ -9,12 +9,12 @@ choice! {
     /// File format of images.
     #[derive(Copy, Eq)]
     pub enum FileFormat ("a file format") {
-        /// OpenEXR: a float32 channel per band, its standard error and the coverage.
+        /// `OpenEXR`: a float32 channel per band, its standard error and the coverage.
         Exr,
         /// ENVI rasters of float32 with text headers, `.img` and `.img.hdr`; standard errors and coverage in a second
         /// one, `_se.img`.
         Envi,
-        /// Cloud-optimised GeoTIFF of float32, a band per spectral band; standard errors and coverage in a second one,
+        /// Cloud-optimised `GeoTIFF` of float32, a band per spectral band; standard errors and coverage in a second one,
         /// `_se.tif`.
         GeoTiff,
         /// Pictures for the eye, with a legend and without.

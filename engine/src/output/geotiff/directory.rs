@@ -1,6 +1,6 @@
 //! Directories of a TIFF file: tags and their values.
 //!
-//! Source: TIFF 6.0 (Adobe, 1992); BigTIFF as in libtiff 4.
+//! Source: TIFF 6.0 (Adobe, 1992); `BigTIFF` as in libtiff 4.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -38,7 +38,7 @@ pub(super) mod tag {
 pub(super) enum Kind {
     /// Offsets of 32 bits.
     Classic,
-    /// BigTIFF: offsets of 64 bits.
+    /// `BigTIFF`: offsets of 64 bits.
     Big,
 }
 

@@ -1,6 +1,6 @@
 //! Place of a raster on the ground and its coordinate reference system.
 //!
-//! Source: OGC GeoTIFF 1.1 (19-008r4).
+//! Source: OGC `GeoTIFF` 1.1 (19-008r4).
 
 use super::directory::{Directory, Field, tag};
 use crate::components::Projection;

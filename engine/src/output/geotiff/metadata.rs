@@ -1,4 +1,4 @@
-//! Texts of a GeoTIFF: provenance, names, units and wavelengths of bands, colours of classes.
+//! Texts of a `GeoTIFF`: provenance, names, units and wavelengths of bands, colours of classes.
 
 use std::fmt::Write as _;
 

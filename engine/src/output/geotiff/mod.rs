@@ -1,4 +1,4 @@
-//! Cloud-optimised GeoTIFF: float32 tiles, overviews, band names, and the place on the ground.
+//! Cloud-optimised `GeoTIFF`: float32 tiles, overviews, band names, and the place on the ground.
 //!
 //! The crate `tiff`, which reads rasters, writes strips and puts a directory behind its pixels. Cloud-optimised files have
 //! tiles, and all directories in front: so their tags are written here. No crate that writes such files streams them

@@ -48,7 +48,7 @@ fn report_of(product: crate::products::Product) -> Report {
     }
 }
 
-/// A GeoTIFF of a report of one product.
+/// A `GeoTIFF` of a report of one product.
 fn written(report: &Report, raster: Raster, big_from: u64) -> Vec<u8> {
     let product = &report.sensors[0].products[0];
     let image = product.image.as_ref().unwrap();
@@ -162,7 +162,8 @@ fn overviews_are_means_and_come_first() {
             let known: Vec<f64> =
                 known.into_iter().flatten().filter(|v| v.is_finite()).map(f64::from).collect();
             let mean = (known.iter().sum::<f64>() / known.len() as f64) as f32;
-            assert!(value == mean || value.is_nan() && mean.is_nan(), "{pixel}: {value} {mean}");
+            let is_same = value.to_bits() == mean.to_bits() || value.is_nan() && mean.is_nan();
+            assert!(is_same, "{pixel}: {value} {mean}");
         }
         below = found;
     }
