@@ -4,14 +4,14 @@ use indexmap::IndexMap;
 use proptest::prelude::*;
 use sunfleck::document::{
     Area, Axis, Band, BandSource, Boundary, Coating, Cover, DerivativeSteps, Directions,
-    Distribution, Ends, FileFormat, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure, ImageOptions,
-    InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map, Material, Obj,
-    Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons, Picture,
-    Prospect, Prototype, ReadOptions, Response, ResponseTable, Roulette, Rpv, Rule, Scatter, Scene,
-    Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, Stems, StopCriterion, Sun,
-    SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum, Temperature, Terrain,
-    TerrainPlane, ThermalSky, Transport, ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file,
-    read_text,
+    Distribution, Ends, FileFormat, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure,
+    ImageOptions, InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map,
+    Material, Obj, Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons,
+    Picture, Prospect, Prototype, ReadOptions, Response, ResponseTable, Roulette, Rpv, Rule,
+    Scatter, Scene, Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, Stems,
+    StopCriterion, Sun, SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum,
+    Temperature, Terrain, TerrainPlane, ThermalSky, Transport, ValueUnit, Views, VirtualPlane,
+    WavelengthUnit, read_file, read_text,
 };
 
 use crate::crowns::crown;
