@@ -179,6 +179,34 @@ fn errors_of_directions_are_right() {
     assert_calibrated(&z.into_iter().enumerate().map(named).collect::<Vec<_>>());
 }
 
+/// *Scene*: an oblique image of the grove, 400 times each of 2, 3, 4 and 32 samples per pixel. *Expected*: calibrated means over
+/// the image, reflected and emitted. The sum of z² over 400 images has the χ² distribution with 400 degrees of freedom,
+/// as the errors themselves have one degree of freedom per pixel: mean of z² 1, standard deviation √(2 / 400), of which four
+/// are allowed. The errors of rows with one sample per pixel each had z² of 2.5 at 4 samples.
+#[test]
+fn errors_of_means_over_images_are_right_at_few_samples() {
+    let image = |samples: u32| {
+        format!(
+            "Orthographic(size_px: (16, 16), cover: Some(WholeScene), zenith_deg: 30.0, azimuth_deg: 80.0, samples_per_px: {samples}, measure: [Radiance])"
+        )
+    };
+    let kinds = [2, 3, 4, 32].map(|samples| (format!("{samples} samples"), image(samples)));
+    let others: Vec<_> = kinds.iter().map(|(kind, text)| (kind.as_str(), text.clone())).collect();
+    let report = crowd(&image(4096), 400, &others);
+    for (kind, _) in &others {
+        for band in 0..3 {
+            let z = deviations(&report, (kind, "radiance"), |product| in_band(product, band));
+            let n = z.len() as f64;
+            let mean_square = z.iter().map(|[z, _]| z * z).sum::<f64>() / n;
+            let bound = 4.0 * (2.0 / n).sqrt();
+            assert!(
+                z.len() == 400 && (mean_square - 1.0).abs() < bound,
+                "{kind}, band {band}: {mean_square:.3}"
+            );
+        }
+    }
+}
+
 /// *Scene*: an oblique image of the grove, 6 times each of 16 and of 256 samples a pixel. *Expected*:
 /// calibrated radiances of pixels, reflected and emitted.
 #[test]

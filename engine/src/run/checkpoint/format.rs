@@ -5,7 +5,7 @@
 //! | bytes | |
 //! |---|---|
 //! | 16 | `sunfleck traced` and a line feed |
-//! | 4 | version of this format, 4 |
+//! | 4 | version of this format, 5 |
 //! | 4, n | length and text of the version of sunfleck: another one may draw other numbers |
 //! | 32 | hash of the scene without what says how long it is measured |
 //! | 4, 4 | which share of the run this is, from 0, and of how many |
@@ -30,7 +30,7 @@ use crate::scratch::{RandomAccessFile, ScratchSpace};
 use crate::transport::Partition;
 
 const MAGIC: [u8; 16] = *b"sunfleck traced\n";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// Writer that hashes what it writes.
 struct HashingWriter<W> {

@@ -7,11 +7,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::blocks;
+use super::image_mean::MeanDeviations;
 use super::pixels::{PixelRows, Pixels};
 use super::tile::{PooledVariance, Tile};
 use super::tile_grid::{SIDE, TileGrid};
 use super::tile_store::TileStore;
-use crate::statistics::{Replicates, Sums, ratio};
+use crate::statistics::{Replicates, Sums};
 use crate::transport::RANDOMISATIONS;
 
 /// Outcome of an image measurement.
@@ -25,7 +26,8 @@ pub struct ImageOutcome {
     pub pixels: Pixels,
     /// Mean radiance over all samples that met the scene, shape `[spectra, bands]`.
     pub mean: Vec<f64>,
-    /// Its standard error.
+    /// Its standard error, from the differences between the two randomisations of each pixel; NaN with one sample per
+    /// pixel, which has no spread.
     pub mean_error: Vec<f64>,
     /// Columns that are summed over the whole image only, shape `[image columns]`.
     pub image_sums: Replicates,
@@ -34,15 +36,20 @@ pub struct ImageOutcome {
 /// Sums and variances of a tile that means over the image take.
 pub(super) struct TileSummary {
     pooled: Vec<PooledVariance>,
+    deviations: Vec<MeanDeviations>,
     sums: Sums,
-    counts: Vec<u64>,
+    count: u64,
 }
 
 impl TileSummary {
     /// Summary of a tile whose pixels have `done` samples each.
     pub(super) fn new(tile: &Tile, done: u64) -> Self {
-        let (sums, counts) = (tile.sums.clone(), tile.counts.clone());
-        Self { pooled: tile.pooled(done as f64), sums, counts }
+        Self {
+            pooled: tile.pooled(done as f64),
+            deviations: MeanDeviations::from_tile(tile, done),
+            sums: tile.sums.clone(),
+            count: tile.valid.iter().flatten().sum(),
+        }
     }
 }
 
@@ -51,8 +58,10 @@ pub(super) struct ImageMeans {
     /// Samples of each pixel.
     done: u64,
     sums: Sums,
-    counts: Vec<u64>,
-    effects: Vec<PooledVariance>,
+    /// Samples that met the scene.
+    count: u64,
+    /// Deviations from the mean of each column.
+    deviations: Vec<MeanDeviations>,
     /// Variances of the columns of each tile, shape `[tiles, columns]`; empty without samples.
     pooled: Vec<PooledVariance>,
 }
@@ -64,8 +73,8 @@ impl ImageMeans {
         Self {
             done,
             sums: Sums::new(RANDOMISATIONS as usize, columns),
-            counts: vec![0; RANDOMISATIONS as usize],
-            effects: vec![PooledVariance::default(); columns],
+            count: 0,
+            deviations: vec![MeanDeviations::default(); columns],
             pooled: Vec::with_capacity(tiles * columns),
         }
     }
@@ -89,10 +98,9 @@ impl ImageMeans {
     /// Adds the next tile.
     pub(super) fn add(&mut self, summary: TileSummary) {
         self.sums.merge(&summary.sums);
-        for (total, part) in self.counts.iter_mut().zip(&summary.counts) {
-            *total += part;
-        }
-        self.effects.iter_mut().zip(&summary.pooled).for_each(|(effect, one)| effect.add(one));
+        self.count += summary.count;
+        let deviations = self.deviations.iter_mut().zip(&summary.deviations);
+        deviations.for_each(|(all, one)| all.merge(one));
         self.pooled.extend(summary.pooled);
     }
 
@@ -101,22 +109,23 @@ impl ImageMeans {
         self.done == done
     }
 
-    /// Means of the columns with their standard errors; NaN without samples.
+    /// Means of the columns with their standard errors; NaN without samples, and standard errors with one sample per
+    /// pixel.
     pub(super) fn means(&self) -> (Vec<f64>, Vec<f64>) {
-        let rows = self.done.clamp(1, RANDOMISATIONS.into()) as usize;
-        let counts: Vec<f64> = self.counts[..rows].iter().map(|&count| count as f64).collect();
-        let columns = self.effects.len();
-        let (mean, mut mean_error) = ratio(&self.sums.values()[..rows * columns], &counts);
-        for (error, effect) in mean_error.iter_mut().zip(&self.effects) {
-            *error *= effect.design_effect().sqrt();
-        }
-        (mean, mean_error)
+        let columns = self.deviations.len();
+        let count = self.count as f64;
+        let of_column = |(column, deviations): (usize, &MeanDeviations)| {
+            let rows = self.sums.values().iter().skip(column).step_by(columns);
+            let mean = rows.sum::<f64>() / count;
+            (mean, deviations.standard_error(mean, count, self.done))
+        };
+        self.deviations.iter().enumerate().map(of_column).unzip()
     }
 }
 
 /// Pixels of tiles with these means.
 pub(super) fn pixels(store: Arc<TileStore>, means: Arc<ImageMeans>) -> Pixels {
-    let source = TilePixels { store, columns: means.effects.len(), means };
+    let source = TilePixels { store, columns: means.deviations.len(), means };
     Pixels::new(move |rows| source.rows(rows))
 }
 

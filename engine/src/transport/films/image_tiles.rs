@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::UVec2;
 
+use super::image_mean::MeanDeviations;
 use super::image_outcome::{ImageMeans, ImageOutcome, TileSummary, pixels};
 use super::image_replicates::{half_sample_replicates, replicate_means};
-use super::tile::{REPLICATES_PER_PIXEL, Tile};
+use super::tile::{PooledVariance, REPLICATES_PER_PIXEL, Tile};
 use super::tile_grid::TileGrid;
 use super::tile_store::{self, TileStore, is_in_memory};
 use super::tile_tracer::{IMAGE_SUM_CELLS, TileTracer, choices_of};
@@ -27,8 +28,8 @@ const _: () = assert!(
     "the row of a sample tells its replicate"
 );
 
-/// Means and variances of the paths from a camera, pixel by pixel. For the errors of sums over the whole image,
-/// the samples of all pixels are also summed in [`RANDOMISATIONS`] rows.
+/// Means and variances of the paths from a camera, pixel by pixel. For means over the whole image, the samples of all
+/// pixels are also summed in [`RANDOMISATIONS`] rows.
 #[expect(missing_debug_implementations, reason = "what it traces has no Debug")]
 pub struct ImageTiles<'a> {
     grid: TileGrid,
@@ -276,9 +277,11 @@ impl Film for ImageTiles<'_> {
         let tile = Tile::bytes((high - low).element_product().into(), self.columns as u64);
         let tiles = if self.is_in_memory() { 0 } else { 2 * waiting * tile };
         let image_sums = waiting * 8 * self.image_sums.values().len() as u64;
-        // Variances of each tile, and the sums of those that are read, when products are computed.
-        let pooled = (self.grid.len() * self.columns * 24) as u64;
-        let outcome = pooled + waiting * 8 * u64::from(RANDOMISATIONS) * (1 + self.columns as u64);
+        // Variances of each tile, and the sums and deviations of those that are read, when products are computed.
+        let columns = self.columns as u64;
+        let pooled = self.grid.len() as u64 * columns * size_of::<PooledVariance>() as u64;
+        let summary = u64::from(RANDOMISATIONS) * 8 + size_of::<MeanDeviations>() as u64;
+        let outcome = pooled + waiting * columns * summary;
         tiles + image_sums.max(outcome)
     }
 

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod film;
+mod image_mean;
 mod image_outcome;
 mod image_replicates;
 mod image_tiles;

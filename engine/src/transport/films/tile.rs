@@ -35,8 +35,6 @@ pub(super) struct Tile {
     pub(super) squares: Vec<f64>,
     /// Sums over all pixels, shape `[randomisations, columns]`.
     pub(super) sums: Sums,
-    /// Number of samples in each row of the sums.
-    pub(super) counts: Vec<u64>,
 }
 
 /// Moments of a column of a pixel.
@@ -77,7 +75,7 @@ impl PooledVariance {
     /// few.
     ///
     /// Source: Kish (1965), "Survey sampling", section 8.2.
-    pub(super) fn design_effect(&self) -> f64 {
+    fn design_effect(&self) -> f64 {
         let prior = PRIOR * self.variance;
         let effect = (self.of_replicates + prior) / (self.of_samples + prior);
         if effect.is_nan() { 1.0 } else { effect }
@@ -91,18 +89,10 @@ impl PooledVariance {
         // The squares of `n` samples are those of `n - effect` independent ones.
         effect * of_sample * (n - 1.0) / (n - effect) / count
     }
-
-    /// Adds the variance of another tile.
-    pub(super) fn add(&mut self, other: &Self) {
-        // The variance of a column without two samples anywhere is NaN.
-        self.variance = self.variance.max(other.variance);
-        self.of_samples += other.of_samples;
-        self.of_replicates += other.of_replicates;
-    }
 }
 
-/// Number of imagined pixels with independent samples in the design effect of a tile.
-const PRIOR: f64 = 8.0;
+/// Number of imagined pixels with independent samples in design effects.
+pub(super) const PRIOR: f64 = 8.0;
 
 /// Weight of the mean variance of a tile's pixels, in samples of a pixel.
 ///
@@ -120,27 +110,26 @@ impl Tile {
             [const { Vec::new() }; REPLICATES_PER_PIXEL],
             [const { Vec::new() }; REPLICATES_PER_PIXEL],
         );
-        Self { low, high, valid, means, squares: Vec::new(), sums, counts: Vec::new() }
+        Self { low, high, valid, means, squares: Vec::new(), sums }
     }
 
     /// Allocates its memory.
     pub(super) fn set_up(&mut self, columns: usize) {
-        if self.counts.is_empty() {
+        if self.valid[0].is_empty() {
             let pixels = self.pixels().count();
             self.means = std::array::from_fn(|_| zeroed(pixels * columns));
             self.squares = zeroed(pixels * columns);
             self.valid = std::array::from_fn(|_| vec![0; pixels]);
             self.sums = Sums::new(RANDOMISATIONS as usize, columns);
-            self.counts = vec![0; RANDOMISATIONS as usize];
         }
     }
 
-    /// Size of the sums of a tile of so many pixels, bytes: samples, means and squares of each pixel, and sums and counts
-    /// of the tile.
+    /// Size of the sums of a tile of so many pixels, bytes: samples, means and squares of each pixel, and sums of the
+    /// tile.
     pub(super) const fn bytes(pixels: u64, columns: u64) -> u64 {
         let replicates = REPLICATES_PER_PIXEL as u64;
         let of_pixels = pixels.saturating_mul(replicates + (replicates + 1) * columns);
-        of_pixels.saturating_add(RANDOMISATIONS as u64 * (1 + columns)).saturating_mul(8)
+        of_pixels.saturating_add(RANDOMISATIONS as u64 * columns).saturating_mul(8)
     }
 
     /// Size of its state, bytes.
@@ -150,7 +139,7 @@ impl Tile {
 
     /// Writes its state.
     pub(super) fn save(&self, out: &mut dyn Write) -> io::Result<()> {
-        for counts in self.valid.iter().chain([&self.counts]) {
+        for counts in &self.valid {
             save_u64(out, counts)?;
         }
         for values in self.means.iter().chain([&self.squares]) {
@@ -161,7 +150,7 @@ impl Tile {
 
     /// Replaces its state; it has its memory already.
     pub(super) fn restore(&mut self, input: &mut dyn Read) -> io::Result<()> {
-        for counts in self.valid.iter_mut().chain([&mut self.counts]) {
+        for counts in &mut self.valid {
             restore_u64(input, counts)?;
         }
         for values in self.means.iter_mut().chain([&mut self.squares]) {
@@ -228,13 +217,12 @@ impl Tile {
         paths: &(impl Iterator<Item = &'p P> + Clone),
         samples: &[PixelSample],
     ) {
-        let Self { valid, means, squares, sums, counts, .. } = self;
+        let Self { valid, means, squares, sums, .. } = self;
         let weights: Vec<f64> = samples
             .iter()
             .map(|&PixelSample { pixel, row }| {
                 let valid = &mut valid[row % REPLICATES_PER_PIXEL][pixel];
                 *valid += 1;
-                counts[row] += 1;
                 1.0 / *valid as f64
             })
             .collect();
