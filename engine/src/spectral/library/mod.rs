@@ -60,6 +60,7 @@ fn columns(text: &'static str) -> impl Iterator<Item = LibrarySpectrum> {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#[allow(clippy::float_cmp, reason = "values of tables come out exact")]
 mod tests {
     use super::*;
 
