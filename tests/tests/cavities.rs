@@ -257,7 +257,7 @@ fn an_integrating_sphere_lights_its_wall_evenly() {
             ),
             "\"wall\": Lambertian(reflectance: Bands([0.5, 0.8])),",
             &[("wall", &wall, "(20.0, 20.0, 2.0)")],
-            "\"side\": Perspective(size_px: (2, 2), position_m: (20.0, 20.0, 2.0), target_m: (21.0, 20.0, 2.0), fov_deg: (4.0, 4.0), samples_per_px: 393216, measure: [Radiance])",
+            "\"side\": Perspective(size_px: (2, 2), position_m: (20.0, 20.0, 2.0), target_m: (21.0, 20.0, 2.0), fov_deg: (4.0, 4.0), samples_per_px: 524288, measure: [Radiance])",
         );
         for (band, rho) in rho.into_iter().enumerate() {
             let first = rho * opening.sin().powi(2) / 4.0;
