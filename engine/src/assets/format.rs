@@ -59,7 +59,7 @@ impl FileContent {
 
 /// Format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct FileFormat {
+pub(super) struct FoundFormat {
     /// Name with its article, as in `a PLY file`.
     pub(super) name: &'static str,
     pub(super) content: FileContent,
@@ -194,7 +194,7 @@ pub(super) fn check(path: &Path, reader: FileReader) -> Result<(), AssetError> {
         },
         None => return Ok(()),
     };
-    let FileFormat { name, content } = format;
+    let FoundFormat { name, content } = format;
     if reader.reads(content) || (!reader.reads_mesh() && content.is_of_mesh()) {
         return Ok(());
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::format::{FileContent, FileFormat, FileReader};
+use super::format::{FileContent, FileReader, FoundFormat};
 
 /// Keywords that the first line of an OBJ file may begin with.
 const OBJ_KEYWORDS: [&str; 11] =
@@ -82,7 +82,7 @@ const MARKUP: [Signature; 6] = [
     (b"<html", "a web page", FileContent::Document),
 ];
 
-impl FileFormat {
+impl FoundFormat {
     const fn new(name: &'static str, content: FileContent) -> Self {
         Self { name, content }
     }
@@ -99,11 +99,11 @@ pub(super) fn by_content(
     length: u64,
     path: &Path,
     reader: FileReader,
-) -> Option<FileFormat> {
+) -> Option<FoundFormat> {
     let starts = |signature: &&Signature| head.starts_with(signature.0);
     let mesh = MESH_SIGNATURES.iter().filter(|_| reader.reads_mesh()).find(starts);
     if let Some(&(_, name, content)) = mesh.or_else(|| SIGNATURES.iter().find(starts)) {
-        return Some(FileFormat::new(name, content));
+        return Some(FoundFormat::new(name, content));
     }
     let text = head.trim_ascii_start();
     if head.starts_with(b"PK\x03\x04") {
@@ -111,9 +111,9 @@ pub(super) fn by_content(
     } else if text.starts_with(b"<") {
         let markup = MARKUP.iter().find(|signature| holds(head, signature.0));
         match markup {
-            Some(&(_, name, content)) => Some(FileFormat::new(name, content)),
+            Some(&(_, name, content)) => Some(FoundFormat::new(name, content)),
             None if text.starts_with(b"<?xml") => {
-                Some(FileFormat::new("an XML file", FileContent::Mesh))
+                Some(FoundFormat::new("an XML file", FileContent::Mesh))
             }
             None => None,
         }
@@ -125,21 +125,21 @@ pub(super) fn by_content(
 }
 
 /// Returns the format of a ZIP archive.
-fn packed_format(head: &[u8], path: &Path) -> FileFormat {
+fn packed_format(head: &[u8], path: &Path) -> FoundFormat {
     let packed = [FileContent::Spreadsheet, FileContent::Features, FileContent::Numbers];
     match by_extension(path) {
         Some(format) if packed.contains(&format.content) => format,
-        _ if holds(head, b"xl/") => FileFormat::new("an Excel workbook", FileContent::Spreadsheet),
+        _ if holds(head, b"xl/") => FoundFormat::new("an Excel workbook", FileContent::Spreadsheet),
         _ if holds(head, b"opendocument.spreadsheet") => {
-            FileFormat::new("an OpenDocument spreadsheet", FileContent::Spreadsheet)
+            FoundFormat::new("an OpenDocument spreadsheet", FileContent::Spreadsheet)
         }
-        _ if holds(head, b".kml") => FileFormat::new("a KMZ file", FileContent::Features),
-        _ => FileFormat::new("a ZIP archive", FileContent::Archive),
+        _ if holds(head, b".kml") => FoundFormat::new("a KMZ file", FileContent::Features),
+        _ => FoundFormat::new("a ZIP archive", FileContent::Archive),
     }
 }
 
 /// Returns the format of a mesh whose first bytes have no fixed words.
-fn mesh_format(head: &[u8], length: u64) -> Option<FileFormat> {
+fn mesh_format(head: &[u8], length: u64) -> Option<FoundFormat> {
     // 80 bytes of text, the number of triangles, and 50 bytes for each.
     let count = head.get(80..84).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
     let is_binary_stl =
@@ -149,17 +149,17 @@ fn mesh_format(head: &[u8], length: u64) -> Option<FileFormat> {
             == u32::try_from(length).ok();
     let text = head.trim_ascii_start();
     if is_binary_stl || (text.starts_with(b"solid") && holds(head, b"facet")) {
-        Some(FileFormat::new("an STL file", FileContent::Mesh))
+        Some(FoundFormat::new("an STL file", FileContent::Mesh))
     } else if is_3ds {
-        Some(FileFormat::new("a 3DS file", FileContent::Mesh))
+        Some(FoundFormat::new("a 3DS file", FileContent::Mesh))
     } else if text.starts_with(b"{") && holds(head, b"\"asset\"") {
-        Some(FileFormat::new("a glTF file", FileContent::Gltf))
+        Some(FoundFormat::new("a glTF file", FileContent::Gltf))
     } else if text.starts_with(b"{") {
-        Some(FileFormat::new("a JSON file", FileContent::Mesh))
+        Some(FoundFormat::new("a JSON file", FileContent::Mesh))
     } else if text.starts_with(b"0") && holds(head, b"SECTION") {
-        Some(FileFormat::new("a DXF file", FileContent::Drawing))
+        Some(FoundFormat::new("a DXF file", FileContent::Drawing))
     } else if is_obj(head) {
-        Some(FileFormat::new("a Wavefront OBJ file", FileContent::Obj))
+        Some(FoundFormat::new("a Wavefront OBJ file", FileContent::Obj))
     } else {
         None
     }
@@ -189,7 +189,7 @@ pub(super) fn is_obj(head: &[u8]) -> bool {
 }
 
 /// Returns the format that the extension of a file's name stands for.
-pub(super) fn by_extension(path: &Path) -> Option<FileFormat> {
+pub(super) fn by_extension(path: &Path) -> Option<FoundFormat> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     let (name, content) = match extension.as_str() {
         "ply" => ("a PLY file", FileContent::Mesh),
@@ -234,5 +234,5 @@ pub(super) fn by_extension(path: &Path) -> Option<FileFormat> {
         "rar" => ("a RAR archive", FileContent::Archive),
         _ => return None,
     };
-    Some(FileFormat::new(name, content))
+    Some(FoundFormat::new(name, content))
 }

@@ -64,8 +64,8 @@ pub fn band_mean(
     Ok(integral / (high - low))
 }
 
-/// The straight line between the two points around a wavelength that lies among them.
-fn value_at(points: &[(f64, f64)], wavelength: f64) -> f64 {
+/// The straight line between the two points around a wavelength; beyond all points the value of the last one there.
+pub(super) fn value_at(points: &[(f64, f64)], wavelength: f64) -> f64 {
     let after = points.partition_point(|&(at, _)| at < wavelength);
     match (after.checked_sub(1).map(|before| points[before]), points.get(after)) {
         (_, Some(&(at, value))) if at <= wavelength => value,

@@ -89,12 +89,11 @@ impl SolarSpectrum {
     /// # Errors
     /// A band that reaches below the first wavelength: a window at all, a curve with more than 1 %.
     pub fn mean(&self, band: &BandResponse) -> Result<f64, OutsideSpectrum> {
-        let (low, high) = band.range();
-        let (end, window) = match band {
-            _ if high <= self.end_nm() => return band.mean(&self.table),
-            BandResponse::Curve(_) => return band.mean(&self.points_to(high)),
-            BandResponse::Window(window) => (self.end_nm(), window),
-        };
+        let ((low, high), end) = (band.range(), self.end_nm());
+        if high <= end {
+            return band.mean(&self.table);
+        }
+        let BandResponse::Window(window) = band else { return band.mean(&self.points_to(high)) };
         let mean_beyond = |from: f64| {
             let window = BandWindow { center: 0.5 * (from + high), width: high - from };
             self.beyond() * planck_mean(&BandResponse::Window(window), SUN_K)

@@ -2,7 +2,9 @@ use hecs::World;
 
 use super::Resources;
 use crate::assets::{SpectrumColumns, read_spectrum};
-use crate::document::{Band, BandSource, Diagnostic, Response, ResponseTable, ScenePath};
+use crate::document::{
+    Band, BandSource, Diagnostic, Response, ResponseTable, ScenePath, THERMAL_NM,
+};
 use crate::spectral::{BandResponse, BandWindow};
 
 /// Responses of all bands, and the irradiance that reflectances and transmittances are weighted with.
@@ -26,9 +28,6 @@ impl BandResponses {
     }
 }
 
-/// Wavelength beyond which bands are assumed to hold emission where their centre is written, nm.
-const THERMAL_NM: f64 = 3000.0;
-
 /// Resolves the responses of all bands. Reads the resource `bands`; writes those of the resource `responses`.
 pub(super) fn resolve_bands(_: &mut World, resources: &mut Resources) {
     let bands = resources.bands.clone();
@@ -36,7 +35,7 @@ pub(super) fn resolve_bands(_: &mut World, resources: &mut Resources) {
         let path = ScenePath::from("bands").index(index);
         resolved(band, &path, resources).unwrap_or_else(|problem| {
             resources.report(*problem);
-            // What follows an error is not run.
+            // A scene with an error is not run: any response will do.
             BandResponse::Window(BandWindow { center: 550.0, width: 0.0 })
         })
     };
@@ -49,18 +48,15 @@ fn resolved(
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<BandResponse, Box<Diagnostic>> {
-    let error = |message: String, help: &str| Box::new(Diagnostic::error(path, message).help(help));
-    let known = band.known_response().map_err(|(message, help)| error(message, &help))?;
-    let response = match (known, &band.response) {
+    let response = match (band.known_response(path)?, &band.response) {
         (None, Response::Table(table)) => response_of_table(table, path, resources)?,
-        (Some(response), _) => response,
-        (None, _) => return Err(error("the response is not known".to_owned(), "write `Box`")),
+        (known, _) => known.expect("responses that are no table are known"),
     };
     let center = response.center();
     if band.source == BandSource::Auto && band.nominal_nm().is_none() && center > THERMAL_NM {
         let message = format!("band `{}` lies at {center:.0} nm", band.name);
         let help = "write `source: Emission` for what surfaces emit, or `source: Sunlight`";
-        return Err(error(message, help));
+        return Err(Box::new(Diagnostic::error(path, message).help(help)));
     }
     Ok(response)
 }

@@ -9,7 +9,7 @@ use sunfleck::document::{self, FileFormat, System};
 use sunfleck::output::{OutputError, Results, folder_name};
 use sunfleck::run;
 
-use super::values::{SystemName, default_systems, memory, quality, setting, system};
+use super::values::{SystemName, default_systems, file_format, memory, quality, setting, system};
 
 #[derive(Args, Debug)]
 pub(crate) struct Scene {
@@ -83,7 +83,7 @@ impl Out {
 #[derive(Args, Debug)]
 pub(crate) struct Formats {
     /// File formats of images, in place of `output` of the scene: `Exr`, `Envi`, `GeoTiff`, `Png`
-    #[arg(long = "format", value_name = "NAME,..", value_delimiter = ',')]
+    #[arg(long = "format", value_name = "NAME,..", value_delimiter = ',', value_parser = file_format)]
     formats: Vec<FileFormat>,
 }
 

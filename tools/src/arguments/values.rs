@@ -1,6 +1,6 @@
 //! Values of arguments: transport systems, parameters, parts of a run, memory.
 
-use sunfleck::document::{self, System, nearest};
+use sunfleck::document::{self, FileFormat, System, nearest};
 use sunfleck::run::Partition;
 
 /// A transport system by its name.
@@ -20,14 +20,24 @@ pub(super) fn default_systems() -> Vec<SystemName> {
 }
 
 pub(super) fn system(text: &str) -> Result<SystemName, String> {
-    let names = System::ALL.map(System::name);
-    System::ALL.into_iter().find(|system| system.name() == text).map(SystemName).ok_or_else(|| {
-        let all = names.join(", ");
-        match nearest(text, names) {
-            Some(near) => format!("did you mean `{near}`? There are: {all}"),
-            None => format!("there are: {all}"),
-        }
-    })
+    let system = System::ALL.into_iter().find(|system| system.name() == text);
+    system.map(SystemName).ok_or_else(|| unknown(text, &System::ALL.map(System::name)))
+}
+
+/// A file format by its name; case does not matter.
+pub(super) fn file_format(text: &str) -> Result<FileFormat, String> {
+    let has_name = |format: &FileFormat| format.name().eq_ignore_ascii_case(text);
+    let format = FileFormat::ALL.into_iter().find(has_name);
+    format.ok_or_else(|| unknown(text, &FileFormat::ALL.map(FileFormat::name)))
+}
+
+/// Advice for a name that is none of these.
+fn unknown(text: &str, names: &[&str]) -> String {
+    let all = names.join(", ");
+    match nearest(text, names.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? There are: {all}"),
+        None => format!("there are: {all}"),
+    }
 }
 
 /// A number, or a text: that of digits behind a zero, `007`, is none that a formula would need.

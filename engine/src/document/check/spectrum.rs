@@ -57,10 +57,6 @@ fn check_response(band: &Band, path: &ScenePath, report: &mut Report<'_>) {
     let center = center_nm.unwrap_or(f64::INFINITY);
     if center_nm.is_some() {
         report.above_zero(path.key("center_nm"), center);
-    } else if matches!(response, Response::Box | Response::Gaussian) {
-        let message = format!("band `{}` lacks the key `center_nm`", band.name);
-        report.error(path.key("center_nm"), message, "write, for example, `center_nm: 660.0`");
-        return;
     }
     if center > 0.0 && center < SHORTEST_NM {
         refuse_micrometres(center, *width_nm, &path.key("center_nm"), report);
@@ -68,6 +64,9 @@ fn check_response(band: &Band, path: &ScenePath, report: &mut Report<'_>) {
     }
     report.at_least(path.key("width_nm"), *width_nm, 0.0);
     match response {
+        Response::Box | Response::Gaussian if center_nm.is_none() => {
+            band.known_response(path).err().into_iter().for_each(|problem| report.push(*problem));
+        }
         Response::Box if center > 0.0 && *width_nm >= 2.0 * center => {
             let message =
                 format!("a band of {width_nm} nm around {center} nm reaches to a wavelength of 0");
@@ -80,9 +79,7 @@ fn check_response(band: &Band, path: &ScenePath, report: &mut Report<'_>) {
         }
         Response::Table(_) | Response::Box | Response::Gaussian => {}
         Response::Points(_) | Response::Sensor(_) => {
-            if let Err((message, help)) = band.known_response() {
-                report.error(path.key("response"), message, help);
-            }
+            band.known_response(path).err().into_iter().for_each(|problem| report.push(*problem));
         }
     }
 }

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::super::decode::{Decode, Reader};
 use super::super::describe::Book;
-use super::super::diagnostic::suggestion;
+use super::super::diagnostic::{Diagnostic, suggestion};
 use super::super::encode::Encode;
 use super::super::leaves::Walk;
+use super::super::path::ScenePath;
 use super::super::ron_text::{Node, Text, Value};
 use super::{BandSource, FilePath, WavelengthUnit};
 use crate::spectral::{BandResponse, BandWindow, SensorBand, sensor_bands, sensor_names};
@@ -41,7 +42,7 @@ choice! {
         Gaussian,
         /// Points (wavelength nm, relative response), joined by straight lines; 0 beyond.
         Points(Vec<(f64, f64)> => "[(640.0, 0.0), (660.0, 1.0), (680.0, 0.0)]"),
-        /// Such points from two columns of a CSV file.
+        /// Points from two columns of a CSV file.
         Table(..ResponseTable),
         /// A band of a sensor that sunfleck knows: their names.
         Sensor((String, String) => r#""Sentinel-2A MSI", "B4""#),
@@ -246,35 +247,41 @@ impl Band {
         })
     }
 
-    /// Its response, unless it stands in a file; `Err` with what is wrong and what to write instead.
+    /// Its response, unless it stands in a file. `path` is that of the band.
     ///
     /// # Errors
     /// A sensor or a band that is not known, points that are no response, and a centre that is missing.
-    pub fn known_response(&self) -> Result<Option<BandResponse>, (String, String)> {
-        let center = || {
-            let help = "write, for example, `center_nm: 660.0`".to_owned();
-            let message = format!("band `{}` lacks the key `center_nm`", self.name);
-            self.center_nm.ok_or((message, help))
+    pub fn known_response(
+        &self,
+        path: &ScenePath,
+    ) -> Result<Option<BandResponse>, Box<Diagnostic>> {
+        let error = |key: &'static str, message: String, help: &str| {
+            Box::new(Diagnostic::error(path.key(key), message).help(help))
         };
-        match &self.response {
-            Response::Box => Ok(Some(BandResponse::Window(BandWindow {
-                center: center()?,
-                width: self.width_nm,
-            }))),
-            Response::Gaussian => Ok(Some(BandResponse::gaussian(center()?, self.width_nm))),
-            Response::Points(points) => {
-                BandResponse::from_points(points.clone()).map(Some).map_err(|error| {
-                    (
-                        error.to_string(),
-                        "write, for example, `Points([(640.0, 0.0), (660.0, 1.0), (680.0, 0.0)])`"
-                            .to_owned(),
-                    )
-                })
+        let center = || {
+            let message = format!("band `{}` lacks the key `center_nm`", self.name);
+            let help = "write, for example, `center_nm: 660.0`";
+            self.center_nm.ok_or_else(|| error("center_nm", message, help))
+        };
+        let response = match &self.response {
+            Response::Box => {
+                BandResponse::Window(BandWindow { center: center()?, width: self.width_nm })
             }
-            Response::Table(_) => Ok(None),
-            Response::Sensor((sensor, band)) => known_band(sensor, band)
-                .map(|band| Some(band.response.clone()))
-                .map_err(|SetProblem { message, help }| (message, help)),
-        }
+            Response::Gaussian => BandResponse::gaussian(center()?, self.width_nm),
+            Response::Points(points) => {
+                let help =
+                    "write, for example, `Points([(640.0, 0.0), (660.0, 1.0), (680.0, 0.0)])`";
+                BandResponse::from_points(points.clone())
+                    .map_err(|problem| error("response", problem.to_string(), help))?
+            }
+            Response::Sensor((sensor, band)) => {
+                let band = known_band(sensor, band);
+                band.map_err(|SetProblem { message, help }| error("response", message, &help))?
+                    .response
+                    .clone()
+            }
+            Response::Table(_) => return Ok(None),
+        };
+        Ok(Some(response))
     }
 }

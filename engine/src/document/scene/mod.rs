@@ -41,6 +41,7 @@ pub use sensor::{
     VirtualPlane,
 };
 pub use spectrum::{Prospect, SoilMixture, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit};
+pub(crate) use thermal::THERMAL_NM;
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};
 pub use until::{Ends, StopCriterion};

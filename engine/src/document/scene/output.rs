@@ -1,10 +1,5 @@
 //! Files that results are written to.
 
-use std::fmt;
-use std::str::FromStr;
-
-use super::super::diagnostic::nearest;
-
 choice! {
     /// File format of images.
     #[derive(Copy, Eq)]
@@ -38,28 +33,5 @@ impl FileFormat {
             Self::GeoTiff => "GeoTiff",
             Self::Png => "Png",
         }
-    }
-}
-
-impl fmt::Display for FileFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for FileFormat {
-    type Err = String;
-
-    /// Returns the format of a name; its case does not matter.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let named = Self::ALL.into_iter().find(|format| format.name().eq_ignore_ascii_case(text));
-        named.ok_or_else(|| {
-            let names = Self::ALL.map(Self::name);
-            let all = names.join(", ");
-            match nearest(text, names) {
-                Some(near) => format!("did you mean `{near}`? There are: {all}"),
-                None => format!("there are: {all}"),
-            }
-        })
     }
 }

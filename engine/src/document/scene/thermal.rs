@@ -3,7 +3,7 @@
 use super::{Band, ImageMeasure, PhotonMeasure, Scene, Spectrum};
 
 /// Beyond this wavelength surfaces on Earth radiate more than they reflect of the sun, nm.
-const THERMAL_NM: f64 = 3000.0;
+pub(crate) const THERMAL_NM: f64 = 3000.0;
 
 choice! {
     /// Sources of the radiance in a band.

@@ -35,14 +35,14 @@ pub(super) mod tag {
 
 /// Width of offsets in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum OffsetWidth {
     /// Offsets of 32 bits.
     Classic,
     /// `BigTIFF`: offsets of 64 bits.
     Big,
 }
 
-impl Kind {
+impl OffsetWidth {
     /// Size of an offset, bytes.
     const fn offset(self) -> usize {
         match self {
@@ -78,7 +78,7 @@ impl Kind {
 
 /// Value of a tag.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Field {
+pub(super) enum TagValue {
     Ascii(String),
     Shorts(Vec<u16>),
     Longs(Vec<u32>),
@@ -87,9 +87,9 @@ pub(super) enum Field {
     Places(Vec<u64>),
 }
 
-impl Field {
+impl TagValue {
     /// Number of the type, number of values, and the values.
-    fn encode(&self, kind: Kind) -> io::Result<(u16, usize, Vec<u8>)> {
+    fn encode(&self, kind: OffsetWidth) -> io::Result<(u16, usize, Vec<u8>)> {
         Ok(match self {
             Self::Ascii(text) => {
                 let mut bytes = text.replace('\0', " ").into_bytes();
@@ -108,7 +108,7 @@ impl Field {
             Self::Places(values) => {
                 let mut bytes = Vec::with_capacity(values.len() * kind.offset());
                 values.iter().try_for_each(|&value| kind.push(value, &mut bytes))?;
-                (if kind == Kind::Big { 16 } else { 4 }, values.len(), bytes)
+                (if kind == OffsetWidth::Big { 16 } else { 4 }, values.len(), bytes)
             }
         })
     }
@@ -116,15 +116,15 @@ impl Field {
 
 /// Tags of an image, by number.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Directory(BTreeMap<u16, Field>);
+pub(super) struct TagDirectory(BTreeMap<u16, TagValue>);
 
-impl Directory {
-    pub(super) fn insert(&mut self, tag: u16, field: Field) {
+impl TagDirectory {
+    pub(super) fn insert(&mut self, tag: u16, field: TagValue) {
         self.0.insert(tag, field);
     }
 
     /// Directory that starts at an offset, and behind it the values that are no part of it.
-    fn encode(&self, start: usize, is_last: bool, kind: Kind) -> io::Result<Vec<u8>> {
+    fn encode(&self, start: usize, is_last: bool, kind: OffsetWidth) -> io::Result<Vec<u8>> {
         let length = kind.count() + self.0.len() * kind.entry() + kind.offset();
         let (mut entries, mut values) = (Vec::with_capacity(length), Vec::new());
         let count = self.0.len() as u64;
@@ -157,10 +157,10 @@ fn pad(bytes: &mut Vec<u8>) {
 
 /// The start of a file: its header and all directories, the first of which follows the header. Its length depends on the
 /// numbers of values alone.
-pub(super) fn encode(directories: &[Directory], kind: Kind) -> io::Result<Vec<u8>> {
+pub(super) fn encode(directories: &[TagDirectory], kind: OffsetWidth) -> io::Result<Vec<u8>> {
     let mut head: Vec<u8> = match kind {
-        Kind::Classic => vec![b'I', b'I', 42, 0, 8, 0, 0, 0],
-        Kind::Big => vec![b'I', b'I', 43, 0, 8, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 0],
+        OffsetWidth::Classic => vec![b'I', b'I', 42, 0, 8, 0, 0, 0],
+        OffsetWidth::Big => vec![b'I', b'I', 43, 0, 8, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 0],
     };
     for (number, directory) in directories.iter().enumerate() {
         let is_last = number + 1 == directories.len();

@@ -2,7 +2,7 @@
 //!
 //! Source: OGC `GeoTIFF` 1.1 (19-008r4).
 
-use super::directory::{Directory, Field, tag};
+use super::directory::{TagDirectory, TagValue, tag};
 use crate::components::Projection;
 use crate::products::Georeference;
 
@@ -15,13 +15,13 @@ const USER_DEFINED: u16 = 32_767;
 pub(super) fn insert(
     place: Georeference,
     projection: Option<&Projection>,
-    directory: &mut Directory,
+    directory: &mut TagDirectory,
 ) {
     let scale = vec![place.pixel_width, place.pixel_height, 0.0];
-    directory.insert(tag::MODEL_PIXEL_SCALE, Field::Doubles(scale));
+    directory.insert(tag::MODEL_PIXEL_SCALE, TagValue::Doubles(scale));
     // The north-west corner of the raster.
     let corner = vec![0.0, 0.0, 0.0, place.west, place.north, 0.0];
-    directory.insert(tag::MODEL_TIEPOINT, Field::Doubles(corner));
+    directory.insert(tag::MODEL_TIEPOINT, TagValue::Doubles(corner));
     let (code, citation) = match projection {
         Some(Projection { epsg: Some(epsg), .. }) if EPSG.contains(epsg) => (*epsg as u16, None),
         // Names of systems as Esri writes them, which GDAL reads.
@@ -39,8 +39,8 @@ pub(super) fn insert(
     keys.push([3076, 0, 1, 9001]);
     let header = [1, 1, 0, keys.len() as u16];
     let numbers = std::iter::once(header).chain(keys).flatten().collect();
-    directory.insert(tag::GEO_KEY_DIRECTORY, Field::Shorts(numbers));
+    directory.insert(tag::GEO_KEY_DIRECTORY, TagValue::Shorts(numbers));
     if let Some(citation) = citation {
-        directory.insert(tag::GEO_ASCII_PARAMS, Field::Ascii(citation));
+        directory.insert(tag::GEO_ASCII_PARAMS, TagValue::Ascii(citation));
     }
 }

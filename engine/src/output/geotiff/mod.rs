@@ -16,7 +16,7 @@ mod tests;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 
-use self::directory::{Directory, Field, Kind, encode, tag};
+use self::directory::{OffsetWidth, TagDirectory, TagValue, encode, tag};
 use self::pyramid::{Level, Pyramid};
 pub(super) use self::tiles::TILE;
 use self::tiles::{TileIndex, write_tiles};
@@ -75,7 +75,7 @@ impl Writer<'_> {
         };
         let Pyramid { levels } = Pyramid::new(base, bands, new_scratch)?;
         let size: u64 = levels.iter().map(|level| level.bytes_of_tiles(bands)).sum();
-        let kind = if size >= self.big_from { Kind::Big } else { Kind::Classic };
+        let kind = if size >= self.big_from { OffsetWidth::Big } else { OffsetWidth::Classic };
         let mut directories = levels
             .iter()
             .enumerate()
@@ -87,8 +87,8 @@ impl Writer<'_> {
         let mut place = head.len() as u64;
         for (level, directory) in levels.iter().zip(&mut directories).rev() {
             let index = write_tiles(level, bands, &mut place, file)?;
-            directory.insert(tag::TILE_OFFSETS, Field::Places(index.offsets));
-            directory.insert(tag::TILE_BYTE_COUNTS, Field::Places(index.lengths));
+            directory.insert(tag::TILE_OFFSETS, TagValue::Places(index.offsets));
+            directory.insert(tag::TILE_BYTE_COUNTS, TagValue::Places(index.lengths));
         }
         file.seek(SeekFrom::Start(0))?;
         file.write_all(&encode(&directories, kind)?)?;
@@ -102,18 +102,18 @@ impl Writer<'_> {
         number: usize,
         bands: usize,
         classes: Option<&[Class]>,
-    ) -> io::Result<Directory> {
+    ) -> io::Result<TagDirectory> {
         let too_large = |_| io::Error::other("a TIFF has at most 65535 bands");
         let count = u16::try_from(bands).map_err(too_large)?;
-        let short = |value: u16| Field::Shorts(vec![value]);
-        let long = |value: usize| Field::Longs(vec![value as u32]);
+        let short = |value: u16| TagValue::Shorts(vec![value]);
+        let long = |value: usize| TagValue::Longs(vec![value as u32]);
         let (bits, format) = if classes.is_some() { (8, 1) } else { (32, 3) };
-        let mut directory = Directory::default();
+        let mut directory = TagDirectory::default();
         let mut insert = |tag, field| directory.insert(tag, field);
         insert(tag::NEW_SUBFILE_TYPE, long(usize::from(number > 0)));
         insert(tag::IMAGE_WIDTH, long(level.width));
         insert(tag::IMAGE_LENGTH, long(level.height));
-        insert(tag::BITS_PER_SAMPLE, Field::Shorts(vec![bits; bands]));
+        insert(tag::BITS_PER_SAMPLE, TagValue::Shorts(vec![bits; bands]));
         insert(tag::COMPRESSION, short(8));
         insert(tag::PHOTOMETRIC, short(if classes.is_some() { 3 } else { 1 }));
         insert(tag::SAMPLES_PER_PIXEL, short(count));
@@ -121,23 +121,26 @@ impl Writer<'_> {
         insert(tag::PREDICTOR, short(if classes.is_some() { 1 } else { 3 }));
         insert(tag::TILE_WIDTH, long(TILE));
         insert(tag::TILE_LENGTH, long(TILE));
-        insert(tag::SAMPLE_FORMAT, Field::Shorts(vec![format; bands]));
+        insert(tag::SAMPLE_FORMAT, TagValue::Shorts(vec![format; bands]));
         if bands > 1 {
-            insert(tag::EXTRA_SAMPLES, Field::Shorts(vec![0; bands - 1]));
+            insert(tag::EXTRA_SAMPLES, TagValue::Shorts(vec![0; bands - 1]));
         }
         if let Some(classes) = classes {
-            insert(tag::COLOR_MAP, Field::Shorts(metadata::colour_map(classes)));
+            insert(tag::COLOR_MAP, TagValue::Shorts(metadata::colour_map(classes)));
         }
-        insert(tag::GDAL_NODATA, Field::Ascii(if classes.is_some() { "0" } else { "nan" }.into()));
+        insert(
+            tag::GDAL_NODATA,
+            TagValue::Ascii(if classes.is_some() { "0" } else { "nan" }.into()),
+        );
         let TileIndex { offsets, lengths } = TileIndex::unknown(level, bands);
-        insert(tag::TILE_OFFSETS, Field::Places(offsets));
-        insert(tag::TILE_BYTE_COUNTS, Field::Places(lengths));
+        insert(tag::TILE_OFFSETS, TagValue::Places(offsets));
+        insert(tag::TILE_BYTE_COUNTS, TagValue::Places(lengths));
         if number == 0 {
             let description = metadata::description(self.source, self.raster);
-            insert(tag::IMAGE_DESCRIPTION, Field::Ascii(description));
-            insert(tag::SOFTWARE, Field::Ascii(metadata::software(self.source)));
+            insert(tag::IMAGE_DESCRIPTION, TagValue::Ascii(description));
+            insert(tag::SOFTWARE, TagValue::Ascii(metadata::software(self.source)));
             let metadata = metadata::gdal(self.source, self.image, self.raster, classes);
-            insert(tag::GDAL_METADATA, Field::Ascii(metadata));
+            insert(tag::GDAL_METADATA, TagValue::Ascii(metadata));
             if let Some(place) = self.image.georeference {
                 geo_keys::insert(place, self.source.report.projection.as_ref(), &mut directory);
             }

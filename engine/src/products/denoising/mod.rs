@@ -175,7 +175,7 @@ impl Strips {
                 .flat_map(|left| columns.clone().map(move |band| (left, band)))
                 .collect();
             let place = |left: usize| left..(left + BLOCK_COLUMNS).min(width);
-            // As many blocks as threads are held at a time.
+            // Memory holds the blocks of these jobs alone.
             for jobs in jobs.chunks(4 * rayon::current_num_threads()) {
                 let blocks = jobs.par_iter().map(|&(left, band)| {
                     denoise_block(&plain, band - first, (&rows, seen.start), &place(left))

@@ -4,6 +4,7 @@ mod smooth_rule;
 
 use std::sync::Arc;
 
+use super::band::value_at;
 use super::{BandWindow, OutsideSpectrum, band_mean};
 use smooth_rule::smooth_rule;
 
@@ -183,8 +184,8 @@ impl ResponseCurve {
         let (Some(&(first, _)), Some(&(last, _))) = (points.first(), points.last()) else {
             return Err(OutsideSpectrum { low, high, first: f64::NAN, last: f64::NAN });
         };
-        let (total, inside) = (self.part(low, high), self.part(first.max(low), last.min(high)));
-        if inside.is_nan() || total - inside > MOST_OUTSIDE * total {
+        let outside = || 1.0 - self.part(first.max(low), last.min(high)) / self.part(low, high);
+        if (first > low || last < high) && outside() > MOST_OUTSIDE {
             return Err(OutsideSpectrum { low, high, first, last });
         }
         let ones = [(first, 1.0)];
@@ -194,21 +195,19 @@ impl ResponseCurve {
         nodes.extend(points.iter().chain(weight).filter(within).map(|&(at, _)| at));
         nodes.sort_by(f64::total_cmp);
         nodes.dedup();
-        let (mut values, mut weights) = (Lines::new(points), Lines::new(weight));
         let (mut sum, mut norm) = (0.0, 0.0);
         let mut add = |at: f64, part: f64| {
-            let weight = part * weights.at(at);
-            sum += weight * values.at(at);
+            let weight = part * value_at(weight, at);
+            sum += weight * value_at(points, at);
             norm += weight;
         };
         match &self.shape {
             CurveShape::Gaussian { .. } => self.shape.for_each_node(&nodes, add),
-            CurveShape::Lines(response) => {
-                let mut response = Lines::new(response);
+            CurveShape::Lines(_) => {
                 for (index, &at) in nodes.iter().enumerate() {
                     let before = index.checked_sub(1).map_or(at, |before| nodes[before]);
                     let after = nodes.get(index + 1).copied().unwrap_or(at);
-                    add(at, 0.5 * (after - before) * response.at(at));
+                    add(at, 0.5 * (after - before) * self.shape.at(at));
                 }
             }
         }
@@ -228,28 +227,24 @@ impl ResponseCurve {
 
 impl CurveShape {
     /// Response between two nodes.
-    fn at(&self, wavelength: f64, lines: &mut Option<Lines<'_>>) -> f64 {
+    fn at(&self, wavelength: f64) -> f64 {
         match self {
             Self::Gaussian { center, fwhm } => {
                 let distance = (wavelength - center) / fwhm;
                 (-4.0 * std::f64::consts::LN_2 * distance * distance).exp()
             }
-            Self::Lines(_) => lines.as_mut().map_or(0.0, |lines| lines.at(wavelength)),
+            Self::Lines(points) => value_at(points, wavelength),
         }
     }
 
     /// Calls a function with the wavelengths of a quadrature, rising, and the response times their weights. Between nodes
     /// it is exact to rounding for the response times a cubic.
     fn for_each_node(&self, nodes: &[f64], mut take: impl FnMut(f64, f64)) {
-        let mut lines = match self {
-            Self::Lines(points) => Some(Lines::new(points)),
-            Self::Gaussian { .. } => None,
-        };
         for pair in nodes.windows(2) {
             let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
             for (node, weight) in GAUSS {
                 let at = middle + half * node;
-                take(at, half * weight * self.at(at, &mut lines));
+                take(at, half * weight * self.at(at));
             }
         }
     }
@@ -280,35 +275,6 @@ impl CurveShape {
         };
         let before = first.checked_sub(1).and_then(|before| points.get(before));
         crossing(last, points.get(last + 1)) - crossing(first, before)
-    }
-}
-
-/// Values on straight lines between points at wavelengths that rise from call to call; beyond the ends those of the ends.
-struct Lines<'p> {
-    points: &'p [Point],
-    /// Index of the first point that is not below the last wavelength.
-    next: usize,
-}
-
-impl<'p> Lines<'p> {
-    const fn new(points: &'p [Point]) -> Self {
-        Self { points, next: 0 }
-    }
-
-    fn at(&mut self, wavelength: f64) -> f64 {
-        while self.points.get(self.next).is_some_and(|point| point.0 < wavelength) {
-            self.next += 1;
-        }
-        let before = self.next.checked_sub(1).map(|before| self.points[before]);
-        match (before, self.points.get(self.next)) {
-            (Some(a), Some(b)) => {
-                let part = (wavelength - a.0) / (b.0 - a.0);
-                a.1 * (1.0 - part) + b.1 * part
-            }
-            (Some((_, value)), None) => value,
-            (None, Some((_, value))) => *value,
-            (None, None) => f64::NAN,
-        }
     }
 }
 

@@ -16,27 +16,23 @@ pub struct SensorBand {
 /// Bands of a sensor; `None` if no sensor has this name.
 #[must_use]
 pub fn sensor_bands(sensor: &str) -> Option<&'static [SensorBand]> {
-    let index = sensor_names().position(|name| name == sensor)?;
-    Some(&BANDS[index])
+    SENSORS.iter().find(|(name, _)| *name == sensor).map(|(_, bands)| bands.as_slice())
 }
 
 /// Names of all known sensors.
 pub fn sensor_names() -> impl Iterator<Item = &'static str> {
-    FILES.iter().map(|(name, _)| *name)
+    SENSORS.iter().map(|(name, _)| *name)
 }
 
-macro_rules! files {
+macro_rules! sensors {
     ($($name:literal: $file:literal;)*) => {
-        /// Name and table of each sensor.
-        const FILES: &[(&str, &str)] = &[$(($name, include_str!($file))),*];
-
-        /// Bands of each sensor, in the order of [`FILES`]; a table is read when its sensor is first asked for.
-        static BANDS: [LazyLock<Vec<SensorBand>>; FILES.len()] =
-            [$(LazyLock::new(|| bands(include_str!($file)))),*];
+        /// Name and bands of each sensor; a table is read when its sensor is first asked for.
+        static SENSORS: [(&str, LazyLock<Vec<SensorBand>>); [$($name),*].len()] =
+            [$(($name, LazyLock::new(|| bands(include_str!($file))))),*];
     };
 }
 
-files! {
+sensors! {
     "Sentinel-2A MSI": "sentinel-2a-msi.csv";
     "Sentinel-2B MSI": "sentinel-2b-msi.csv";
     "Sentinel-2C MSI": "sentinel-2c-msi.csv";

@@ -109,14 +109,19 @@ fn warn_wide_bands(points: &[(f64, f64)], path: &ScenePath, resources: &mut Reso
 }
 
 /// Returns whether a spectrum comes from a file, perhaps by way of names.
-pub(super) fn reads_file<'a>(mut spectrum: &'a Spectrum, resources: &'a Resources) -> bool {
+pub(super) fn reads_file(spectrum: &Spectrum, resources: &Resources) -> bool {
+    matches!(named(spectrum, resources), Spectrum::Table(_))
+}
+
+/// The spectrum that names lead to; a name that leads nowhere stays.
+fn named<'a>(mut spectrum: &'a Spectrum, resources: &'a Resources) -> &'a Spectrum {
     // Names that go in a circle end after as many steps as there are names.
     for _ in 0..=resources.spectra.len() {
         let Spectrum::Named(name) = spectrum else { break };
         let Some(named) = resources.spectra.get(name.as_str()) else { break };
         spectrum = named;
     }
-    matches!(spectrum, Spectrum::Table(_))
+    spectrum
 }
 
 fn resolve(
@@ -302,13 +307,7 @@ pub(super) fn irradiance_points(
     spectrum: &Spectrum,
     resources: &mut Resources,
 ) -> Option<Vec<(f64, f64)>> {
-    let mut spectrum = spectrum.clone();
-    // Names that go in a circle end after as many steps as there are names.
-    for _ in 0..=resources.spectra.len() {
-        let Spectrum::Named(name) = &spectrum else { break };
-        spectrum = resources.spectra.get(name.as_str())?.clone();
-    }
-    match spectrum {
+    match named(spectrum, resources).clone() {
         Spectrum::AstmG173 => Some(ASTM_G173.points().to_vec()),
         Spectrum::AstmE490 => Some(ASTM_E490.points().to_vec()),
         Spectrum::Points(points) => Some(points),

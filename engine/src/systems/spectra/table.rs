@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Quantity, STRONG, band_mean, warn_wide_bands};
-use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
+use crate::assets::{AssetError, SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
 use crate::document::{Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 use crate::spectral::BandResponse;
 use crate::systems::Resources;
@@ -51,10 +51,9 @@ pub(super) fn table_means(
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
-    let TabulatedSpectrum { file, wavelength, value, wavelength_unit, unit, scale } = spectrum;
+    let TabulatedSpectrum { file, wavelength_unit, unit, scale, .. } = spectrum;
     let path = path.key("file");
-    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
-    let table = read_spectrum(&resources.file(file), &columns)
+    let table = read_table(spectrum, resources)
         .map_err(|error| Box::new(Diagnostic::error(&path, error.to_string())))?;
     let is_fraction = quantity.is_fraction();
     let percent = if *unit == Some(ValueUnit::Percent) { 0.01 } else { 1.0 };
@@ -383,14 +382,22 @@ impl Values<'_> {
     }
 }
 
+/// Rows of the table that a spectrum names.
+fn read_table(
+    spectrum: &TabulatedSpectrum,
+    resources: &mut Resources,
+) -> Result<SpectrumTable, AssetError> {
+    let TabulatedSpectrum { file, wavelength, value, wavelength_unit, .. } = spectrum;
+    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
+    read_spectrum(&resources.file(file), &columns)
+}
+
 /// Points (wavelength nm, value) of a table, without marks for no data; `None` if it cannot be read.
 pub(super) fn table_points(
     spectrum: &TabulatedSpectrum,
     resources: &mut Resources,
 ) -> Option<Vec<(f64, f64)>> {
-    let TabulatedSpectrum { file, wavelength, value, wavelength_unit, scale, .. } = spectrum;
-    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
-    let table = read_spectrum(&resources.file(file), &columns).ok()?;
-    let points = table.points.iter().map(|point| (point.wavelength, point.value * scale));
+    let table = read_table(spectrum, resources).ok()?;
+    let points = table.points.iter().map(|point| (point.wavelength, point.value * spectrum.scale));
     Some(points.filter(|(_, value)| value.is_finite() && *value >= 0.0).collect())
 }
