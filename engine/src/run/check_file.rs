@@ -7,7 +7,7 @@ use super::reading::{folder_of, read};
 use super::sensors::MeasureContext;
 use super::setting::context;
 use super::staging::staged;
-use super::{Failure, Options, Progress, SceneFacts, SceneWorld, Unwatched};
+use super::{Failure, LoadedScene, Options, Progress, SceneFacts, SceneWorld, Unwatched};
 use super::{check, enclosed, facts, pixels, sensors};
 use crate::extract::{SceneOptics, Stage};
 
@@ -112,14 +112,10 @@ pub struct Ready {
 /// All errors of the scene, rendered for a person.
 pub fn stage_file(path: &Path, options: &Options) -> Result<Ready, Failure> {
     let mut clock = Clock::start();
-    let reading = read(path, options)?;
     in_pool(options, || {
-        let mut world = SceneWorld::from_scene(&reading.scene, folder_of(path))
-            .map_err(|problems| Failure::Scene(reading.source.render(&problems)))?;
+        let mut loaded = LoadedScene::from_file(path, options, &Unwatched)?;
         clock.lap("load");
-        let optics = SceneOptics::from_world(&world.world, reading.scene.bands.len());
-        let stage = staged(&mut world, &reading.scene, &optics, options.free_memory())
-            .map_err(|failure| failure.with_source(&reading.source))?;
+        let stage = loaded.stage(options, &Unwatched)?;
         clock.lap("build");
         let seconds = |lap: usize| clock.laps[lap].1;
         Ok(Ready { stage, load_seconds: seconds(0), build_seconds: seconds(1) })

@@ -14,6 +14,7 @@ mod facts;
 mod failure;
 mod footprint;
 mod images;
+mod loaded;
 mod options;
 mod photons;
 mod pixels;
@@ -55,6 +56,7 @@ pub use check_file::{Checked, Ready, check_file, check_file_with, describe_file,
 pub use checkpoint::Checkpoint;
 pub use facts::{BandFacts, GroundFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts};
 pub use failure::Failure;
+pub use loaded::LoadedScene;
 pub use options::{Options, Progress, Unwatched};
 pub use respectrum::respectrum;
 pub use scene_world::SceneWorld;
@@ -230,7 +232,10 @@ fn measure_scenes(
         sensors: shared,
         notes,
         warnings: unsaved.into_iter().chain(misfit).collect(),
-        coefficients: PathSpectra::new(&stage.models)
+        coefficients: stage
+            .keeps_coefficients
+            .then(|| PathSpectra::new(&stage.models))
+            .flatten()
             .and_then(|spectra| store.coefficients(&spectra))
             .map(Arc::new),
         seconds: clock.seconds(),

@@ -1,0 +1,100 @@
+//! Execution of the commands: one file a command, or a few that share most of their code.
+
+mod run;
+mod sweep;
+mod text;
+
+use std::io::{self, Write as _};
+
+use anyhow::{Context as _, bail};
+use sunfleck::document;
+use sunfleck::output::Written;
+
+use crate::arguments::{Bench, Command, Keys, OtherBench, Verify};
+use crate::{bench, compare, import_less, verify};
+
+/// Heading of what a scene defines and does not use.
+const SKIPPED: &str = "skipped: ";
+
+/// Heading of a value that was assumed without a key in the scene.
+const NOTE: &str = "note: ";
+
+/// Runs a command.
+pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
+    match command {
+        Command::Run(arguments) => run::trace(arguments),
+        Command::Respectrum(arguments) => run::respectrum(arguments),
+        Command::Merge(arguments) => run::merge(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Compare(arguments) => print(&compare::compare(arguments)?),
+        Command::Check(arguments) => text::check(arguments),
+        Command::Expand(scene) => text::expand(scene),
+        Command::Fmt(arguments) => text::fmt(arguments),
+        Command::Schema => print(&document::json_schema()),
+        Command::Keys(Keys { name: None }) => print(&document::keys_page()),
+        Command::Keys(Keys { name: Some(name) }) => match document::keys_about(name) {
+            Ok(text) => print(&text),
+            Err(error) => bail!(error),
+        },
+        Command::ImportLess(arguments) => {
+            print(&import_less::import(&arguments.folder, &arguments.out())?)
+        }
+        Command::Verify(arguments) => verify(arguments),
+        Command::Bench(Bench { other: Some(OtherBench::Rays(arguments)), .. }) => {
+            print(&bench::rays(arguments)?)
+        }
+        Command::Bench(Bench { error, .. }) => match error {
+            Some(arguments) => print(&bench::error(arguments)?),
+            None => bail!("name a scene: sunfleck bench SCENE"),
+        },
+    }
+}
+
+/// Message of a command that failed.
+pub(crate) fn message(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1) {
+        // Some errors name their cause themselves.
+        let cause = cause.to_string();
+        if !text.ends_with(cause.strip_prefix("error: ").unwrap_or(&cause)) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    // The engine shows each diagnostic with its own heading and excerpt.
+    let headed = ["error: ", "warning: "].iter().any(|heading| text.starts_with(heading));
+    if headed { text.trim_end().to_owned() } else { format!("error: {text}") }
+}
+
+/// Text about files that were written: their number, their folder, and the results that they replace.
+pub(crate) fn told(written: &Written) -> String {
+    let replaced = written.replaced.as_ref().map_or_else(String::new, |old| format!(" ({old})"));
+    format!("{} files in {}{replaced}", written.files.len(), written.folder.display())
+}
+
+fn verify(arguments: &Verify) -> anyhow::Result<()> {
+    if !verify::verify(&arguments.only, arguments.json, print)? {
+        bail!("this program gives wrong results on this machine: see the checks that failed");
+    }
+    Ok(())
+}
+
+pub(crate) fn warn(warnings: &[String]) {
+    let mut stderr = io::stderr().lock();
+    for warning in warnings {
+        let headed = ["warning: ", SKIPPED].iter().any(|heading| warning.starts_with(heading));
+        let heading = if headed { "" } else { "warning: " };
+        // A warning that cannot be shown is no reason to lose the results.
+        drop(writeln!(stderr, "{heading}{}", warning.trim_end()));
+    }
+}
+
+/// Prints `text`; a reader that has gone away (`| head`) has seen enough.
+pub(crate) fn print(text: &str) -> anyhow::Result<()> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(error).context("cannot print the results")
+        }
+        _ => Ok(()),
+    }
+}
