@@ -1,9 +1,9 @@
 use hecs::World;
 
 use super::Resources;
-use crate::assets::{SpectrumColumns, read_spectrum};
+use super::spectra::read_columns;
 use crate::document::{
-    Band, BandSource, Diagnostic, Response, ResponseTable, ScenePath, THERMAL_NM,
+    Band, BandSource, Diagnostic, Response, ScenePath, SpectrumFile, THERMAL_NM,
 };
 use crate::spectral::{BandResponse, BandWindow};
 
@@ -49,7 +49,7 @@ fn resolved(
     resources: &mut Resources,
 ) -> Result<BandResponse, Box<Diagnostic>> {
     let response = match (band.known_response(path)?, &band.response) {
-        (None, Response::Table(table)) => response_of_table(table, path, resources)?,
+        (None, Response::Table(file)) => response_of_file(file, path, resources)?,
         (known, _) => known.expect("responses that are no table are known"),
     };
     let center = response.center();
@@ -61,19 +61,16 @@ fn resolved(
     Ok(response)
 }
 
-fn response_of_table(
-    table: &ResponseTable,
+fn response_of_file(
+    source: &SpectrumFile,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<BandResponse, Box<Diagnostic>> {
-    let ResponseTable { file, wavelength, value, wavelength_unit } = table;
     let path = path.key("response").key("file");
-    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
-    let table = read_spectrum(&resources.file(file), &columns)
-        .map_err(|error| Box::new(Diagnostic::error(&path, error.to_string())))?;
+    let table = read_columns(source, &path, resources)?;
     let points = table.points.iter().map(|point| (point.wavelength, point.value)).collect();
     BandResponse::from_points(points).map_err(|error| {
-        let message = format!("{file}: column {:?}: {error}", table.value);
+        let message = format!("{}: column {:?}: {error}", source.file, table.value);
         let help = "correct the table: noise below 0 is written as 0";
         Box::new(Diagnostic::error(&path, message).help(help))
     })

@@ -114,8 +114,10 @@ fn what_is_included_has_names_of_its_own_and_paths_of_the_scene() {
     assert_eq!(file, "species/birch.obj");
     assert_eq!(parts["trunk"], "birch.bark");
     assert_eq!(material.map(Ref::as_str), Some("birch.leaf"));
-    assert!(matches!(&scene.spectra["bare.bark"], Spectrum::Table(TabulatedSpectrum { file, .. })
-        if file == "species/../spectra/bark.csv"));
+    assert!(
+        matches!(&scene.spectra["bare.bark"], Spectrum::Table(TabulatedSpectrum { source, .. })
+        if source.file == "species/../spectra/bark.csv")
+    );
     assert!(
         matches!(&scene.materials["birch.bark"], Material::Lambertian(Lambertian { reflectance, .. })
         if *reflectance == Spectrum::Named("birch.bark".into()))
@@ -371,9 +373,9 @@ fn texts_are_qualified_by_the_file_that_uses_them() {
         Material::Lambertian(Lambertian { reflectance, .. }) => reflectance.clone(),
         other => panic!("{other:?}"),
     };
-    let Spectrum::Table(TabulatedSpectrum { file, .. }) = reflectance("a.leaf") else {
+    let Spectrum::Table(TabulatedSpectrum { source, .. }) = reflectance("a.leaf") else {
         panic!("a table")
     };
-    assert_eq!(file, "species/../wet.csv");
+    assert_eq!(source.file, "species/../wet.csv");
     assert_eq!(reflectance("a.bark"), Spectrum::Named("a.birch".into()));
 }

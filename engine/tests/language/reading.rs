@@ -352,14 +352,14 @@ fn parameters_may_be_texts() {
         let reading = read(options);
         assert!(reading.is_sound(), "{}", reading.render());
         let Material::Lambertian(Lambertian {
-            reflectance: Spectrum::Table(TabulatedSpectrum { file, value, .. }),
+            reflectance: Spectrum::Table(TabulatedSpectrum { source, .. }),
             ..
         }) = &reading.scene.materials["soil"]
         else {
             panic!("a table")
         };
         assert_eq!(reading.scene.instances[0].meshes(), ["tree"]);
-        (file.clone(), value.clone())
+        (source.file.clone(), source.value.clone())
     };
     let both = |name: &str| (name.into(), Some(name.to_owned()));
     assert_eq!(files(&ReadOptions::default()), both("dry.csv"));

@@ -7,8 +7,8 @@ use sunfleck::document::{
     Distribution, Ends, FileFormat, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure,
     ImageOptions, InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map,
     Material, Obj, Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons,
-    Picture, Prospect, Prototype, ReadOptions, Response, ResponseTable, Roulette, Rpv, Rule,
-    Scatter, Scene, Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, Stems,
+    Picture, Prospect, Prototype, ReadOptions, Response, Roulette, Rpv, Rule, Scatter, Scene,
+    Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, SpectrumFile, Stems,
     StopCriterion, Sun, SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum,
     Temperature, Terrain, TerrainPlane, ThermalSky, Transport, ValueUnit, Views, VirtualPlane,
     WavelengthUnit, read_file, read_text,
@@ -60,14 +60,8 @@ fn spectrum() -> BoxedStrategy<Spectrum> {
             )
         )
             .prop_map(|((file, wavelength, value), (wavelength_unit, unit, scale))| {
-                Spectrum::Table(TabulatedSpectrum {
-                    file,
-                    wavelength,
-                    value,
-                    wavelength_unit,
-                    unit,
-                    scale,
-                })
+                let source = SpectrumFile { file, wavelength, value, wavelength_unit };
+                Spectrum::Table(TabulatedSpectrum { source, unit, scale })
             }),
         Just(Spectrum::AstmG173),
         Just(Spectrum::AstmE490),
@@ -568,7 +562,7 @@ fn scene() -> BoxedStrategy<Scene> {
         BandSource::Both,
     ]);
     let table = (text::<String>(), text(), option(text())).prop_map(|(file, wavelength, value)| {
-        ResponseTable { file: file.into(), wavelength, value, wavelength_unit: None }
+        SpectrumFile { file: file.into(), wavelength, value, wavelength_unit: None }
     });
     let response = prop_oneof![
         Just(Response::Box),

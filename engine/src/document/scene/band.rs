@@ -12,7 +12,7 @@ use super::super::encode::Encode;
 use super::super::leaves::Walk;
 use super::super::path::ScenePath;
 use super::super::ron_text::{Node, Text, Value};
-use super::{BandSource, FilePath, WavelengthUnit};
+use super::{BandSource, SpectrumFile};
 use crate::spectral::{BandResponse, BandWindow, SensorBand, sensor_bands, sensor_names};
 
 record! {
@@ -43,23 +43,9 @@ choice! {
         /// Points (wavelength nm, relative response), joined by straight lines; 0 beyond.
         Points(Vec<(f64, f64)> => "[(640.0, 0.0), (660.0, 1.0), (680.0, 0.0)]"),
         /// Points from two columns of a CSV file.
-        Table(..ResponseTable),
+        Table(..SpectrumFile),
         /// A band of a sensor that sunfleck knows: their names.
         Sensor((String, String) => r#""Sentinel-2A MSI", "B4""#),
-    }
-}
-
-record! {
-    /// Spectral response from two columns of a CSV file.
-    pub struct ResponseTable ("a table of a response") {
-        /// Path, relative to the scene file.
-        file: FilePath => r#""responses/red.csv""#,
-        /// Header of the column of wavelengths, nm.
-        wavelength: String = "wavelength_nm".to_owned(),
-        /// Header of the column of responses; if absent, the second column of the file.
-        value: Option<String> = None,
-        /// Unit of the wavelengths; nanometres if absent.
-        wavelength_unit: Option<WavelengthUnit> = None,
     }
 }
 

@@ -19,7 +19,7 @@ mod until;
 
 use indexmap::IndexMap;
 
-pub use band::{Band, BandSet, Bands, Response, ResponseTable};
+pub use band::{Band, BandSet, Bands, Response};
 pub use crown::{Branches, Clumps, CrownShape, LeafAngle, LeafProfile, LeafShape, Trunk};
 pub use ground::{
     Boundary, Coordinates, LandCover, NoData, RasterWindow, Terrain, TerrainPlane, TerrainRaster,
@@ -40,7 +40,9 @@ pub use sensor::{
     Orthographic, Per, Perspective, PhotonMeasure, Photons, Picture, Sensor, System, Views,
     VirtualPlane,
 };
-pub use spectrum::{Prospect, SoilMixture, Spectrum, TabulatedSpectrum, ValueUnit, WavelengthUnit};
+pub use spectrum::{
+    Prospect, SoilMixture, Spectrum, SpectrumFile, TabulatedSpectrum, ValueUnit, WavelengthUnit,
+};
 pub(crate) use thermal::THERMAL_NM;
 pub use thermal::{BandSource, Temperature, ThermalSky};
 pub use transport::{Roulette, Transport};

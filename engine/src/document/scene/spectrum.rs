@@ -42,8 +42,8 @@ choice! {
 }
 
 record! {
-    /// Spectrum from two columns of a CSV file.
-    pub struct TabulatedSpectrum ("a table of a spectrum") {
+    /// Two columns of a CSV file: wavelengths and values.
+    pub struct SpectrumFile ("a file of a spectrum") {
         /// Path, relative to the scene file.
         file: FilePath => r#""spectra/soil.csv""#,
         /// Header of the column of wavelengths, nm.
@@ -53,6 +53,14 @@ record! {
         /// Unit of the wavelengths; nanometres if absent. A file whose header or titles name another
         /// one is refused without it.
         wavelength_unit: Option<WavelengthUnit> = None,
+    }
+}
+
+record! {
+    /// Spectrum from a file.
+    pub struct TabulatedSpectrum ("a table of a spectrum") {
+        /// File and its columns.
+        source as keys: SpectrumFile,
         /// Unit of reflectances and transmittances; fractions if absent. A file that shows percent is
         /// refused without it.
         unit: Option<ValueUnit> = None,

@@ -12,6 +12,7 @@ use crate::spectral::{
     soil_reflectance,
 };
 
+pub(super) use table::read_columns;
 use table::{table_means, table_points};
 
 /// Irradiance above this is several times that of the sun outside the atmosphere, W m⁻² nm⁻¹.

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use super::{Quantity, STRONG, band_mean, warn_wide_bands};
-use crate::assets::{AssetError, SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
-use crate::document::{Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
+use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
+use crate::document::{
+    Diagnostic, ScenePath, SpectrumFile, TabulatedSpectrum, ValueUnit, WavelengthUnit,
+};
 use crate::spectral::BandResponse;
 use crate::systems::Resources;
 
@@ -51,10 +53,9 @@ pub(super) fn table_means(
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
-    let TabulatedSpectrum { file, wavelength_unit, unit, scale, .. } = spectrum;
+    let TabulatedSpectrum { source, unit, scale } = spectrum;
     let path = path.key("file");
-    let table = read_table(spectrum, resources)
-        .map_err(|error| Box::new(Diagnostic::error(&path, error.to_string())))?;
+    let table = read_columns(source, &path, resources)?;
     let is_fraction = quantity.is_fraction();
     let percent = if *unit == Some(ValueUnit::Percent) { 0.01 } else { 1.0 };
     if !is_fraction && unit.is_some() {
@@ -64,7 +65,7 @@ pub(super) fn table_means(
         return Err(Box::new(Diagnostic::error(path, message).help(help)));
     }
     let values = table.points.iter().map(|point| point.value * scale * percent).collect();
-    let values = Values { table: &table, scaled: values, file, path };
+    let values = Values { table: &table, scaled: values, file: &source.file, path };
     let mut warnings = Vec::new();
     values.warn_other_columns(&mut warnings);
     if is_fraction {
@@ -81,7 +82,8 @@ pub(super) fn table_means(
         let band = SeenBand { name: &band.name, response };
         values.check_band(band, is_fraction, &mut warnings)?;
         let mean = values.mean(band, |points| band_mean(response, points, quantity, resources));
-        let mean = mean.map_err(|_outside| Box::new(values.outside(band, *wavelength_unit)))?;
+        let mean =
+            mean.map_err(|_outside| Box::new(values.outside(band, source.wavelength_unit)))?;
         Ok(if is_fraction { values.within_bounds(mean, band, &mut warnings) } else { mean })
     });
     let means = means.collect::<Result<Vec<f64>, Box<Diagnostic>>>();
@@ -382,14 +384,16 @@ impl Values<'_> {
     }
 }
 
-/// Rows of the table that a spectrum names.
-fn read_table(
-    spectrum: &TabulatedSpectrum,
+/// Points of a file that a spectrum or a response names.
+pub(in crate::systems) fn read_columns(
+    source: &SpectrumFile,
+    path: &ScenePath,
     resources: &mut Resources,
-) -> Result<SpectrumTable, AssetError> {
-    let TabulatedSpectrum { file, wavelength, value, wavelength_unit, .. } = spectrum;
+) -> Result<SpectrumTable, Box<Diagnostic>> {
+    let SpectrumFile { file, wavelength, value, wavelength_unit } = source;
     let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
     read_spectrum(&resources.file(file), &columns)
+        .map_err(|error| Box::new(Diagnostic::error(path, error.to_string())))
 }
 
 /// Points (wavelength nm, value) of a table, without marks for no data; `None` if it cannot be read.
@@ -397,7 +401,8 @@ pub(super) fn table_points(
     spectrum: &TabulatedSpectrum,
     resources: &mut Resources,
 ) -> Option<Vec<(f64, f64)>> {
-    let table = read_table(spectrum, resources).ok()?;
+    let path = ScenePath::from("sun").key("irradiance").key("file");
+    let table = read_columns(&spectrum.source, &path, resources).ok()?;
     let points = table.points.iter().map(|point| (point.wavelength, point.value * spectrum.scale));
     Some(points.filter(|(_, value)| value.is_finite() && *value >= 0.0).collect())
 }
