@@ -48,7 +48,7 @@ fn irradiance_is_the_exact_mean_of_the_solar_spectrum_over_the_band() {
         .collect();
     let report = SceneText::bare(0.2, "size_m: (10.0, 10.0)")
         .with("bands", list.join(", "))
-        .with("sun", r#"zenith_deg: 60.0, irradiance: Table(file: "sun.csv", wavelength: "wavelength", value: "direct")"#)
+        .with("sun", r#"zenith_deg: 60.0, irradiance: Table(file: "sun.csv", wavelength: "wavelength", wavelength_unit: Nanometres, value: "direct")"#)
         .with_file("sun.csv", table)
         .with("boundary", "Periodic")
         .with("sensors", r#""photons": Photons(per_m2: 10.0, measure: [Fluxes(pixel_m: 10.0)])"#)

@@ -5,6 +5,7 @@ use super::crown::CrownError;
 use super::crs::TargetSystem;
 use super::gltf::GltfError;
 use super::raster::RasterError;
+use super::spectrum::SpectrumProblem;
 
 /// Error of a file that a scene cannot use: the file, the line where it has lines, and advice.
 #[non_exhaustive]
@@ -142,12 +143,8 @@ pub enum AssetError {
         key: &'static str,
         nearest: String,
     },
-    #[error(
-        "{}:{line}: {said:?} says that the wavelengths are not in nm; write `wavelength_unit: {unit}` in \
-         the scene, or `wavelength_unit: Nanometres` if they are",
-        .file.display()
-    )]
-    WavelengthUnit { file: PathBuf, line: usize, said: String, unit: &'static str },
+    #[error("{}: {problem}", .file.display())]
+    Spectrum { file: PathBuf, problem: SpectrumProblem },
     #[error(
         "{}:{line}: a wavelength of {written} ({}`{unit}`) is no light; write the `wavelength_unit` of the \
          table in the scene: `Nanometres`, `Micrometres`, `Angstroms` or `Wavenumbers`",

@@ -9,7 +9,7 @@
 //! | [`read_instances`] | a text table | [`StemTable`] |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
 //! | [`read_raster`] | ESRI ASCII grid, ENVI, GeoTIFF | [`Raster`] |
-//! | [`read_spectrum`] | two columns of a table | [`SpectrumTable`] |
+//! | [`read_spectrum`] | text tables, ENVI, ECOSTRESS and USGS libraries, ASD files | [`SpectrumTable`] |
 
 mod areas;
 mod crown;
@@ -44,7 +44,9 @@ pub(crate) use raster::companions;
 pub use raster::{
     Assumed, Projection, Raster, RasterError, RasterExtent, RasterGeoreference, read_raster,
 };
-pub use spectrum::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
+pub use spectrum::{
+    SpectrumColumns, SpectrumFormat, SpectrumPoint, SpectrumProblem, SpectrumTable, read_spectrum,
+};
 
 /// Value from a file, with warnings for the author of the scene.
 #[derive(Clone, Debug, PartialEq)]

@@ -52,17 +52,20 @@ fn spectrum() -> BoxedStrategy<Spectrum> {
         prop::collection::vec(number(), 0..60).prop_map(Spectrum::Bands),
         prop::collection::vec((number(), number()), 0..20).prop_map(Spectrum::Points),
         (
-            (text(), text(), option(text())),
+            (text(), option(text()), option(text()), option(text())),
             (
                 option(prop::sample::select(WavelengthUnit::ALL.to_vec())),
                 option(prop_oneof![Just(ValueUnit::Fraction), Just(ValueUnit::Percent)]),
                 number()
             )
         )
-            .prop_map(|((file, wavelength, value), (wavelength_unit, unit, scale))| {
-                let source = SpectrumFile { file, wavelength, value, wavelength_unit };
-                Spectrum::Table(TabulatedSpectrum { source, unit, scale })
-            }),
+            .prop_map(
+                |((file, wavelength, value, wavelengths), (wavelength_unit, unit, scale))| {
+                    let source =
+                        SpectrumFile { file, wavelength, value, wavelength_unit, wavelengths };
+                    Spectrum::Table(TabulatedSpectrum { source, unit, scale })
+                }
+            ),
         Just(Spectrum::AstmG173),
         Just(Spectrum::AstmE490),
         text().prop_map(Spectrum::Library),
@@ -561,9 +564,16 @@ fn scene() -> BoxedStrategy<Scene> {
         BandSource::Emission,
         BandSource::Both,
     ]);
-    let table = (text::<String>(), text(), option(text())).prop_map(|(file, wavelength, value)| {
-        SpectrumFile { file: file.into(), wavelength, value, wavelength_unit: None }
-    });
+    let table =
+        (text::<String>(), option(text()), option(text())).prop_map(|(file, wavelength, value)| {
+            SpectrumFile {
+                file: file.into(),
+                wavelength,
+                value,
+                wavelength_unit: None,
+                wavelengths: None,
+            }
+        });
     let response = prop_oneof![
         Just(Response::Box),
         Just(Response::Gaussian),

@@ -248,8 +248,7 @@ fn instances(path: &Path) -> Said {
 }
 
 fn spectrum(path: &Path) -> Said {
-    let columns = SpectrumColumns { wavelength: "wavelength_nm", value: None, unit: None };
-    match read_spectrum(path, &columns) {
+    match read_spectrum(path, &SpectrumColumns::default()) {
         Ok(SpectrumTable { points, .. }) => {
             assert!(points.is_sorted_by(|a, b| a.wavelength < b.wavelength), "wavelengths rise");
             (format!("{} points", points.len()), vec![bits(points.len())])

@@ -49,7 +49,7 @@ fn spectra_of_other_columns_and_units() {
         case("71-first-hour/column_beside_its_spread.ron", &[Quiet]),
         case(
             "71-first-hour/fractions_as_percent.ron",
-            &[Warns(&["spread.csv:14", "2.000e-3", "leave `unit` and `scale` out"])],
+            &[Warns(&["spread.csv:14", "2.000e-3", "leave `scale` out"])],
         ),
         case(
             "71-first-hour/gap_in_spectrum.ron",

@@ -261,8 +261,10 @@ fn all_classes_without_a_material_are_one_error() {
 #[test]
 fn a_wrong_column_is_not_mended_by_that_of_the_wavelengths() {
     let spectrum = b"wl,R\n400,0.1\n900,0.2\n";
-    let scene = scene(PLANE)
-        .replace("Constant(0.2)", "Table(file: \"s.csv\", wavelength: \"wl\", value: \"Q\")");
+    let scene = scene(PLANE).replace(
+        "Constant(0.2)",
+        "Table(file: \"s.csv\", wavelength: \"wl\", wavelength_unit: Nanometres, value: \"Q\")",
+    );
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("s.csv"), spectrum).expect("a table");
     let found = told(folder.path(), &scene);

@@ -53,13 +53,13 @@ pub(super) fn values_of(header: &Path) -> Result<PathBuf, RasterError> {
 }
 
 /// `key = value` entries of a header; values in braces may go over several lines.
-struct EnviHeader {
+pub(super) struct EnviHeader {
     name: String,
     entries: Vec<(String, String)>,
 }
 
 impl EnviHeader {
-    fn read(path: &Path) -> Result<Self, RasterError> {
+    pub(super) fn read(path: &Path) -> Result<Self, RasterError> {
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let mut bytes = Vec::new();
         let read = files::open(path).and_then(|f| f.take(LONGEST_HEADER).read_to_end(&mut bytes));
@@ -87,8 +87,14 @@ impl EnviHeader {
         Ok(Self { name, entries })
     }
 
-    fn get(&self, key: &str) -> Option<&str> {
+    /// Entry with a key in small letters.
+    pub(super) fn get(&self, key: &str) -> Option<&str> {
         self.entries.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+    }
+
+    /// Name of its file.
+    pub(super) fn name(&self) -> &str {
+        &self.name
     }
 
     fn error(&self, problem: String) -> RasterError {
@@ -212,7 +218,7 @@ pub(super) fn read(
 }
 
 impl EnviHeader {
-    fn layout(&self) -> Result<SampleLayout, RasterError> {
+    pub(super) fn layout(&self) -> Result<SampleLayout, RasterError> {
         let (columns, rows) = (self.whole("samples", None)?, self.whole("lines", None)?);
         let (kind, size) = match self.whole("data type", None)? {
             1 => (SampleType::Unsigned, 1),

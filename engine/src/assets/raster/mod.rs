@@ -3,6 +3,7 @@
 mod ascii;
 mod directory;
 mod envi;
+mod envi_library;
 mod error;
 mod esri;
 mod geokeys;
@@ -25,6 +26,7 @@ use super::crs::{Axes, Crs, Heights};
 use super::format::{self, FileReader};
 use super::text::open;
 
+pub(super) use envi_library::{EnviLibrary, is_spectral_library};
 pub use error::RasterError;
 pub(crate) use sidecar::companions;
 pub use window::RasterExtent;

@@ -1,5 +1,6 @@
 //! Raw values of a file beside a header: where they lie and what they are.
 
+use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -40,19 +41,8 @@ pub(super) struct SampleLayout {
 impl SampleLayout {
     /// Values of the cells of a window in the first band.
     pub(super) fn read(&self, path: &Path, window: &CellWindow) -> Result<Vec<f64>, RasterError> {
-        let Self { columns, rows, bands, offset, size, .. } = *self;
-        let mut file = files::open(path)
-            .map_err(|_unreadable| RasterError::NoValues(path.display().to_string()))?;
-        let needed = columns
-            .checked_mul(rows)
-            .and_then(|count| count.checked_mul(size))
-            .and_then(|bytes| bytes.checked_mul(bands))
-            .and_then(|bytes| bytes.checked_add(offset));
-        let found = length(&file);
-        if needed.is_none_or(|needed| needed > found) {
-            let needed = needed.unwrap_or(u64::MAX);
-            return Err(RasterError::TooShort { columns, rows, needed, found });
-        }
+        let Self { columns, bands, offset, size, .. } = *self;
+        let mut file = self.open(path)?;
         // Values from one of the first band to the next in a row, and from row to row.
         let (step, stride) = match self.interleave {
             Interleave::Bands => (1, columns),
@@ -72,6 +62,24 @@ impl SampleLayout {
             values.extend(pixels.map(|pixel| self.number(&pixel[..size as usize])));
         }
         Ok(values)
+    }
+
+    /// Opens a file that holds all the values.
+    pub(super) fn open(&self, path: &Path) -> Result<File, RasterError> {
+        let Self { columns, rows, bands, offset, size, .. } = *self;
+        let file = files::open(path)
+            .map_err(|_unreadable| RasterError::NoValues(path.display().to_string()))?;
+        let needed = columns
+            .checked_mul(rows)
+            .and_then(|count| count.checked_mul(size))
+            .and_then(|bytes| bytes.checked_mul(bands))
+            .and_then(|bytes| bytes.checked_add(offset));
+        let found = length(&file);
+        if needed.is_none_or(|needed| needed > found) {
+            let needed = needed.unwrap_or(u64::MAX);
+            return Err(RasterError::TooShort { columns, rows, needed, found });
+        }
+        Ok(file)
     }
 
     fn number(&self, raw: &[u8]) -> f64 {

@@ -36,8 +36,7 @@ fn instances(path: &Path) -> bool {
 }
 
 fn spectrum(path: &Path) -> bool {
-    let columns = SpectrumColumns { wavelength: "wavelength_nm", value: None, unit: None };
-    read_spectrum(path, &columns)
+    read_spectrum(path, &SpectrumColumns::default())
         .inspect(|table| {
             assert!(table.points.is_sorted_by(|a, b| a.wavelength < b.wavelength));
         })

@@ -24,7 +24,7 @@ fn instances(text: &str) -> Result<Vec<Row>, AssetError> {
 }
 
 fn columns<'a>(wavelength: &'a str, value: Option<&'a str>) -> SpectrumColumns<'a> {
-    SpectrumColumns { wavelength, value, unit: None }
+    SpectrumColumns { wavelength: Some(wavelength), value, ..SpectrumColumns::default() }
 }
 
 fn points(table: &SpectrumTable) -> Vec<(f64, f64)> {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::assets::{SpectrumColumns, read_gltf, read_instances, read_obj, read_spectrum};
+use crate::document::WavelengthUnit;
 
 fn data(place: &str) -> Option<PathBuf> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data")).join(place);
@@ -53,7 +54,12 @@ fn every_tree_of_the_collection_loads_at_a_plausible_size() {
 #[test]
 fn the_standard_solar_spectrum_is_read_as_it_is_published() {
     let Some(path) = data("solar/ASTMG173.csv") else { return };
-    let columns = SpectrumColumns { wavelength: "wavelength", value: Some("direct"), unit: None };
+    let columns = SpectrumColumns {
+        wavelength: Some("wavelength"),
+        value: Some("direct"),
+        unit: Some(WavelengthUnit::Nanometres),
+        ..SpectrumColumns::default()
+    };
     let points = read_spectrum(&path, &columns).unwrap().points;
     assert_eq!((points[0].wavelength, points[0].value), (280.0, 2.5361e-26));
     assert_eq!(points.len(), 2002);

@@ -42,7 +42,7 @@ choice! {
         Gaussian,
         /// Points (wavelength nm, relative response), joined by straight lines; 0 beyond.
         Points(Vec<(f64, f64)> => "[(640.0, 0.0), (660.0, 1.0), (680.0, 0.0)]"),
-        /// Points from two columns of a CSV file.
+        /// Points from a file, as those of a spectrum.
         Table(..SpectrumFile),
         /// A band of a sensor that sunfleck knows: their names.
         Sensor((String, String) => r#""Sentinel-2A MSI", "B4""#),

@@ -11,7 +11,7 @@ choice! {
         Bands(Vec<f64> => "[0.1, 0.2]"),
         /// Points (wavelength nm, value), joined by straight lines and averaged over each band.
         Points(Vec<(f64, f64)> => "[(400.0, 0.05), (800.0, 0.3)]"),
-        /// Such points from two columns of a CSV file.
+        /// Such points from a file: a CSV file or a spectral library.
         Table(..TabulatedSpectrum),
         /// Irradiance of the sun and of the 2.9° around it on a plane that faces it, under a clear sky at
         /// air mass 1.5: 280 to 4000 nm.
@@ -42,17 +42,22 @@ choice! {
 }
 
 record! {
-    /// Two columns of a CSV file: wavelengths and values.
+    /// A spectrum in a file: columns of a CSV file (also text that ASD's `ViewSpec` Pro and SPECCHIO export), an ENVI
+    /// spectral library (`.sli` beside its `.hdr`), a text of the ECOSTRESS or of the USGS library (splib07), a binary
+    /// file of an ASD spectrometer. The file tells which.
     pub struct SpectrumFile ("a file of a spectrum") {
         /// Path, relative to the scene file.
         file: FilePath => r#""spectra/soil.csv""#,
-        /// Header of the column of wavelengths, nm.
-        wavelength: String = "wavelength_nm".to_owned(),
-        /// Header of the column of values; if absent, the second column of the file.
+        /// Header of the column of wavelengths; if absent, `wavelength_nm`, or the first column whose name says that it
+        /// holds wavelengths.
+        wavelength: Option<String> = None,
+        /// Header of the column of values, or name of the spectrum in a library; if absent, the second column of the
+        /// file, or its only spectrum.
         value: Option<String> = None,
-        /// Unit of the wavelengths; nanometres if absent. A file whose header or titles name another
-        /// one is refused without it.
+        /// Unit of the wavelengths; if absent, that which the file names. A file that names none is refused without it.
         wavelength_unit: Option<WavelengthUnit> = None,
+        /// File of the wavelengths of a spectrum of the USGS library, whose own file has none.
+        wavelengths: Option<FilePath> = None,
     }
 }
 
@@ -61,8 +66,8 @@ record! {
     pub struct TabulatedSpectrum ("a table of a spectrum") {
         /// File and its columns.
         source as keys: SpectrumFile,
-        /// Unit of reflectances and transmittances; fractions if absent. A file that shows percent is
-        /// refused without it.
+        /// Unit of reflectances and transmittances; if absent, percent where the file says so, else fractions. A file
+        /// with values that are none is refused without it.
         unit: Option<ValueUnit> = None,
         /// Factor on all values: 0.0001 for reflectances that are kept as 0 to 10000, 0.001 for an
         /// irradiance in W m⁻² µm⁻¹.

@@ -1,3 +1,4 @@
+mod file;
 mod table;
 
 use std::collections::BTreeSet;
@@ -12,8 +13,9 @@ use crate::spectral::{
     soil_reflectance,
 };
 
-pub(super) use table::read_columns;
-use table::{table_means, table_points};
+pub(super) use file::read_columns;
+use file::table_points;
+use table::table_means;
 
 /// Irradiance above this is several times that of the sun outside the atmosphere, W m⁻² nm⁻¹.
 pub(super) const STRONG: f64 = 10.0;

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
+use super::file::read_columns;
 use super::{Quantity, STRONG, band_mean, warn_wide_bands};
-use crate::assets::{SpectrumColumns, SpectrumPoint, SpectrumTable, read_spectrum};
-use crate::document::{
-    Diagnostic, ScenePath, SpectrumFile, TabulatedSpectrum, ValueUnit, WavelengthUnit,
-};
+use crate::assets::{SpectrumPoint, SpectrumTable};
+use crate::document::{Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 use crate::spectral::BandResponse;
 use crate::systems::Resources;
 
@@ -57,7 +56,9 @@ pub(super) fn table_means(
     let path = path.key("file");
     let table = read_columns(source, &path, resources)?;
     let is_fraction = quantity.is_fraction();
-    let percent = if *unit == Some(ValueUnit::Percent) { 0.01 } else { 1.0 };
+    // A scale that the scene gives is that of the values as they stand.
+    let of_file = table.unit.filter(|_| is_fraction && *scale >= 1.0);
+    let percent = if unit.or(of_file) == Some(ValueUnit::Percent) { 0.01 } else { 1.0 };
     if !is_fraction && unit.is_some() {
         let message = "`unit` is that of reflectances and transmittances, and this is a radiance \
                            or an irradiance";
@@ -70,8 +71,6 @@ pub(super) fn table_means(
     values.warn_other_columns(&mut warnings);
     if is_fraction {
         values.warn_small(&mut warnings);
-        let is_settled = unit.is_some() || *scale < 1.0;
-        values.check_percent(is_settled)?;
         values.check_scale()?;
         values.warn_noise(&mut warnings);
     } else if quantity == Quantity::Irradiance {
@@ -113,7 +112,12 @@ impl Values<'_> {
     fn place(&self, index: usize) -> String {
         let SpectrumPoint { line, .. } = self.table.points[index];
         let file = Path::new(self.file).display();
-        format!("{file}:{line}: column {:?} is {}", self.table.value, self.shown(index))
+        let (value, shown) = (&self.table.value, self.shown(index));
+        if self.table.format.has_lines() {
+            format!("{file}:{line}: column {value:?} is {shown}")
+        } else {
+            format!("{file}: channel {line} of {value:?} is {shown}")
+        }
     }
 
     /// A value as the file has it.
@@ -139,19 +143,6 @@ impl Values<'_> {
     fn is_noisy(&self, index: usize) -> bool {
         let wavelength = self.table.points[index].wavelength;
         NOISY_NM.iter().any(|&(low, high)| (low..=high).contains(&wavelength))
-    }
-
-    /// Refuses a table that calls its values percent, unless the scene says what they are.
-    fn check_percent(&self, is_settled: bool) -> Result<(), Box<Diagnostic>> {
-        match &self.table.percent {
-            Some(text) if !is_settled => Err(Box::new(self.error(
-                format!("{}: {text:?} says that its values are percent", self.file),
-                "write `unit: Percent` beside `file`, or `unit: Fraction` if they are fractions all \
-                 the same"
-                    .to_owned(),
-            ))),
-            _ => Ok(()),
-        }
     }
 
     /// Refuses a table whose values cannot be fractions, wherever the bands lie.
@@ -229,7 +220,7 @@ impl Values<'_> {
         if written <= 1.0 && scaled < SMALL && scaled < 0.5 * written {
             let message =
                 format!("{}, its largest value, and is taken as {scaled:.3e}", self.place(largest));
-            let help = "if the table holds fractions, leave `unit` and `scale` out";
+            let help = "if the table holds fractions, write `unit: Fraction` and leave `scale` out";
             warnings.push(Diagnostic::warning(&self.path, message).help(help));
         }
     }
@@ -382,27 +373,4 @@ impl Values<'_> {
             None => problem,
         }
     }
-}
-
-/// Points of a file that a spectrum or a response names.
-pub(in crate::systems) fn read_columns(
-    source: &SpectrumFile,
-    path: &ScenePath,
-    resources: &mut Resources,
-) -> Result<SpectrumTable, Box<Diagnostic>> {
-    let SpectrumFile { file, wavelength, value, wavelength_unit } = source;
-    let columns = SpectrumColumns { wavelength, value: value.as_deref(), unit: *wavelength_unit };
-    read_spectrum(&resources.file(file), &columns)
-        .map_err(|error| Box::new(Diagnostic::error(path, error.to_string())))
-}
-
-/// Points (wavelength nm, value) of a table, without marks for no data; `None` if it cannot be read.
-pub(super) fn table_points(
-    spectrum: &TabulatedSpectrum,
-    resources: &mut Resources,
-) -> Option<Vec<(f64, f64)>> {
-    let path = ScenePath::from("sun").key("irradiance").key("file");
-    let table = read_columns(&spectrum.source, &path, resources).ok()?;
-    let points = table.points.iter().map(|point| (point.wavelength, point.value * spectrum.scale));
-    Some(points.filter(|(_, value)| value.is_finite() && *value >= 0.0).collect())
 }
