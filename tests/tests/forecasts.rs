@@ -9,7 +9,9 @@ use peak_alloc::PeakAlloc;
 use sunfleck::components::{Footprint, OrthographicOptics, System, View};
 use sunfleck::output;
 use sunfleck::products::{Forecast, Report};
-use sunfleck::run::{Checkpoint, Failure, Options, Partition, Progress, run, stage_file};
+use sunfleck::run::{
+    Checkpoint, Failure, Options, Partition, Progress, SaveRule, SensorProgress, run, stage_file,
+};
 use sunfleck::sampling::Key;
 use sunfleck::scratch::ScratchSpace;
 use sunfleck::transport::{
@@ -47,7 +49,7 @@ impl Progress for Meter {
             PeakAlloc.reset_peak_usage();
         }
     }
-    fn sensor(&self, _: &str, _: f64) {}
+    fn sensor(&self, _: &SensorProgress<'_>) {}
     fn forecast(&self, _: &str, _: &Forecast) {}
 }
 
@@ -222,8 +224,11 @@ fn large_images_take_little_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     let scratch = |memory, disk| ScratchSpace { folder: folder.path().to_owned(), memory, disk };
     let with = |scratch, name: &str| {
-        let checkpoint =
-            Checkpoint { file: folder.path().join(name), every: 1e9, share: Partition::ALL };
+        let checkpoint = Checkpoint {
+            file: folder.path().join(name),
+            saves: SaveRule::Every(1e9),
+            share: Partition::ALL,
+        };
         Options { scratch, checkpoint: Some(checkpoint), ..Options::default() }
     };
     let names = || fs::read_dir(folder.path()).expect("the folder").count();

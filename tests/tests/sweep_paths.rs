@@ -1,7 +1,7 @@
 //! Points of a sweep that differ in optics, light or temperature alone are traced on the same paths.
 
 use sunfleck::products::{Product, Report};
-use sunfleck::run::{Checkpoint, Options, Partition};
+use sunfleck::run::{Checkpoint, Options, Partition, SaveRule};
 use sunfleck_tests::{Estimate, SceneText, albedo_of_sheets, product};
 
 /// Text of a list of numbers.
@@ -241,7 +241,8 @@ fn coefficients_are_evaluated_late_and_travel_in_checkpoints() {
     let part = |index| {
         let file = folder.path().join(format!("part{index}"));
         let share = Partition { index, count: 2 };
-        let checkpoint = Some(Checkpoint { file: file.clone(), every: 0.0, share });
+        let checkpoint =
+            Some(Checkpoint { file: file.clone(), saves: SaveRule::Every(0.0), share });
         drop(scene.measure_with(&Options { checkpoint, ..Options::default() }));
         file
     };
@@ -254,7 +255,8 @@ fn coefficients_are_evaluated_late_and_travel_in_checkpoints() {
     );
     let saved = |scene: &SceneText| {
         let share = Partition::ALL;
-        let checkpoint = Some(Checkpoint { file: file.clone(), every: 0.0, share });
+        let checkpoint =
+            Some(Checkpoint { file: file.clone(), saves: SaveRule::Every(0.0), share });
         scene.measure_with(&Options { checkpoint, ..Options::default() })
     };
     drop(saved(&shorter));

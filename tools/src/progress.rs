@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use sunfleck::run::{Forecast, Progress};
+use sunfleck::run::{Forecast, Progress, SensorProgress};
 
 /// Steps of a bar from 0 to 1.
 const STEPS: u64 = 1000;
@@ -82,30 +82,65 @@ impl Progress for Bars {
         }
     }
 
-    fn sensor(&self, name: &str, done: f64) {
+    fn sensor(&self, state: &SensorProgress<'_>) {
+        let &SensorProgress { name, done, .. } = state;
         self.pulse.update(|work| {
             if work.sensor.as_deref() != Some(name) {
                 *work = Work { sensor: Some(name.to_owned()), ..Work::new(&work.stage) };
             }
             work.done = done;
+            work.beside = beside(state);
         });
         let mut sensors = self.sensors.lock().unwrap_or_else(PoisonError::into_inner);
         let known = sensors.iter().position(|(known, _)| known == name);
         let index = known.unwrap_or_else(|| {
             let bar = self.all.add(ProgressBar::new(STEPS));
-            bar.set_style(style(
-                "  {msg:20!} {bar:40} {percent:>3} %  {elapsed_precise}  {eta} left",
-            ));
-            bar.set_message(name.to_owned());
+            bar.set_style(style("  {prefix:20!} {wide_bar} {percent:>3} %  {msg:40}"));
+            bar.set_prefix(name.to_owned());
             sensors.push((name.to_owned(), bar));
             sensors.len() - 1
         });
         let bar = &sensors[index].1;
         bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
+        bar.set_message(beside(state));
         if done >= 1.0 {
-            bar.set_style(style("  {msg:20!} {bar:40} {percent:>3} %  {elapsed_precise}"));
+            bar.set_message(format!("{} {}", duration(bar.elapsed().as_secs_f64()), beside(state)));
             bar.abandon();
         }
+    }
+
+    fn shows_errors(&self) -> bool {
+        !self.all.is_hidden()
+    }
+}
+
+/// Text beside a bar: time left, rate and error so far, as far as they are known.
+fn beside(state: &SensorProgress<'_>) -> String {
+    let left = state.seconds_left.filter(|_| state.done < 1.0);
+    let left = left.map(|left| format!("{} left", duration(left)));
+    let rate = state.rays_per_second.map(|rate| format!("{:.1} M rays/s", rate / 1e6));
+    let error = state.relative_error.map(|error| format!("error {}", percent(error)));
+    [left, rate, error].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// Duration with a unit: `8 s`, `3 min 20 s`, `2 h 5 min`.
+fn duration(seconds: f64) -> String {
+    let whole = seconds.max(0.0).round() as u64;
+    match whole {
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        3600..172_800 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+        _ => format!("{} days", whole / 86_400),
+    }
+}
+
+/// Fraction in percent with two digits that count.
+fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    match percent {
+        10.0.. => format!("{percent:.0} %"),
+        1.0..10.0 => format!("{percent:.1} %"),
+        _ => format!("{percent:.2} %"),
     }
 }
 
@@ -125,6 +160,8 @@ struct Work {
     sensor: Option<String>,
     /// Part of the sensor's measurement that is done, 0 to 1.
     done: f64,
+    /// Time left, rate and error of the sensor.
+    beside: String,
     since: Instant,
     spoken: Instant,
     silence: Duration,
@@ -138,6 +175,7 @@ impl Work {
             stage: stage.to_owned(),
             sensor: None,
             done: 0.0,
+            beside: String::new(),
             since: now,
             spoken: now,
             silence: SILENCE,
@@ -153,7 +191,7 @@ impl Work {
 
     /// The line that is due, if one is.
     fn word(&self) -> Option<String> {
-        let Self { stage, sensor, done, since, .. } = self;
+        let Self { stage, sensor, done, beside, since, .. } = self;
         if self.spoken.elapsed() < self.silence || stage.is_empty() {
             return None;
         }
@@ -161,7 +199,9 @@ impl Work {
         Some(match sensor {
             None => format!("{stage}: {seconds} s so far"),
             Some(sensor) if *done > 0.0 => {
-                format!("{sensor}: {:.1} % done after {seconds} s", 100.0 * done)
+                let separator = if beside.is_empty() { "" } else { ", " };
+                let done = 100.0 * done;
+                format!("{sensor}: {done:.1} % done after {seconds} s{separator}{beside}")
             }
             Some(sensor) => format!("{sensor}: first samples, {seconds} s so far"),
         })
@@ -221,7 +261,9 @@ fn style(template: &str) -> ProgressStyle {
 mod tests {
     use std::time::{Duration, Instant};
 
-    use super::{LONGEST_SILENCE, SILENCE, Work};
+    use sunfleck::run::SensorProgress;
+
+    use super::{LONGEST_SILENCE, SILENCE, Work, beside};
 
     #[test]
     fn a_word_is_due_after_two_seconds_and_then_ever_more_rarely() {
@@ -233,6 +275,15 @@ mod tests {
         assert_eq!(work.word().as_deref(), Some("top: first samples, 3 s so far"));
         work.done = 0.25;
         assert_eq!(work.word().as_deref(), Some("top: 25.0 % done after 3 s"));
+        work.beside = beside(&SensorProgress {
+            name: "top",
+            done: 0.25,
+            seconds_left: Some(3725.0),
+            rays_per_second: Some(3.94e6),
+            relative_error: Some(0.0123),
+        });
+        let text = "top: 25.0 % done after 3 s, 1 h 2 min left, 3.9 M rays/s, error 1.2 %";
+        assert_eq!(work.word().as_deref(), Some(text));
         work.was_spoken_of();
         work.spoken = ago(3);
         assert_eq!((work.word(), work.silence), (None, 2 * SILENCE));

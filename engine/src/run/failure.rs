@@ -25,11 +25,28 @@ pub enum Failure {
     Pixels(std::io::Error),
     #[error("{}: {what}; {help}", file.display())]
     Checkpoint { file: PathBuf, what: String, help: String },
+    #[error("cancelled at sensor `{sensor}`, {:.1} % of which was done", 100.0 * done)]
+    Cancelled {
+        sensor: String,
+        done: f64,
+        /// Checkpoint that holds what was done.
+        saved: Option<PathBuf>,
+    },
     #[error("could not start {threads} threads: {reason}")]
     Threads { threads: usize, reason: String },
 }
 
 impl Failure {
+    /// Returns true if the run ended because it was [cancelled](super::Progress::is_cancelled).
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        match self {
+            Self::Cancelled { .. } => true,
+            Self::Point { source, .. } => source.is_cancelled(),
+            _ => false,
+        }
+    }
+
     /// Failure with the lines of the scene that it is about.
     #[must_use]
     pub fn with_source(self, source: &Source) -> Self {

@@ -60,16 +60,41 @@ impl Default for Options {
     }
 }
 
+/// State of a sensor's measurement while it is traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorProgress<'a> {
+    /// Name of the sensor.
+    pub name: &'a str,
+    /// Fraction of the measurement that is done, 0 to 1.
+    pub done: f64,
+    /// Time until its end at the pace so far, s; `None` while it is unknown.
+    pub seconds_left: Option<f64>,
+    /// Rays per second of this run up to the end of the last round of samples.
+    pub rays_per_second: Option<f64>,
+    /// Largest of the median relative standard errors of its products when they were last computed.
+    pub relative_error: Option<f64>,
+}
+
 /// Observer of a run; the library itself shows nothing.
 pub trait Progress: Sync {
     /// A stage starts.
     fn stage(&self, name: &str);
-    /// A fraction of a sensor's measurement, 0 to 1, is done.
-    fn sensor(&self, name: &str, done: f64);
+    /// A part of a sensor's measurement is done.
+    fn sensor(&self, state: &SensorProgress<'_>);
     /// A sensor will run for long.
     fn forecast(&self, name: &str, forecast: &Forecast);
     /// The run goes on in spite of a problem.
     fn warn(&self, _warning: &str) {}
+    /// Returns true if errors are to be computed for [`sensor`](Self::sensor), for which a run then takes up to 2 % of its
+    /// time.
+    fn shows_errors(&self) -> bool {
+        false
+    }
+    /// Returns true if the run is to end as soon as it can save its state; it fails with
+    /// [`Failure::Cancelled`](super::Failure::Cancelled) then.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// Observer that ignores everything.
@@ -78,6 +103,6 @@ pub struct Unwatched;
 
 impl Progress for Unwatched {
     fn stage(&self, _: &str) {}
-    fn sensor(&self, _: &str, _: f64) {}
+    fn sensor(&self, _: &SensorProgress<'_>) {}
     fn forecast(&self, _: &str, _: &Forecast) {}
 }

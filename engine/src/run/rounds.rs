@@ -3,9 +3,10 @@
 use std::io;
 use std::time::Instant;
 
-use super::checkpoint::{CheckpointStore, FilmState, Section};
+use super::checkpoint::{CheckpointStore, FilmState, SaveRule, Section};
 use super::convergence::{Convergence, ErrorCheck, Measurement, PacedFilm, Start, relative_errors};
 use super::cost::{CostEstimate, PilotRun};
+use super::observed::Observed;
 use super::{Failure, Progress};
 use crate::components::StopCriterion;
 use crate::document::{Diagnostic, FileFormat, ScenePath};
@@ -37,6 +38,7 @@ struct Rounds<'a> {
     /// Samples of each randomisation so far.
     done: u64,
     check: Option<ErrorCheck>,
+    observed: Observed,
 }
 
 /// Adds samples until one of the criteria holds. Resumes the measurement if `store` holds it, and saves it there.
@@ -63,9 +65,18 @@ pub(super) fn measure_until(
     } else {
         PilotRun::new(cost, start)
     };
-    let (clock, done, check) = (Instant::now(), start.samples, None);
-    let mut rounds =
-        Rounds { name, convergence, progress, is_pilot_only, pilot, start, clock, done, check };
+    let mut rounds = Rounds {
+        name,
+        convergence,
+        progress,
+        is_pilot_only,
+        pilot,
+        start,
+        clock: Instant::now(),
+        done: start.samples,
+        check: None,
+        observed: Observed::new(measurement, start.seconds),
+    };
     let needs_errors = convergence.needs_errors();
     let mut checks = convergence.schedule.evaluations().take_while(|_| needs_errors).peekable();
     loop {
@@ -75,13 +86,14 @@ pub(super) fn measure_until(
             let errors = relative_errors(measurement).map_err(Failure::Pixels)?;
             rounds.check = Some(ErrorCheck { samples: done, errors });
         }
+        rounds.update_errors(measurement).map_err(Failure::Pixels)?;
         let seconds = rounds.seconds();
         let criterion = rounds.criterion_that_holds(seconds);
         let all = || store.is_complete().then_some(StopCriterion::Samples(done));
         let criterion = criterion.or_else(all);
         rounds.save(measurement, store, seconds, criterion.is_some())?;
         if let Some(criterion) = criterion {
-            progress.sensor(name, 1.0);
+            rounds.observed.report(name, 1.0, 0.0, progress);
             let is_whole = store.share() == Partition::ALL && !is_pilot_only;
             let products = if is_whole { measurement.products() } else { Ok(Vec::new()) };
             let products = products.map_err(Failure::Pixels)?;
@@ -89,6 +101,9 @@ pub(super) fn measure_until(
             let forecast =
                 rounds.pilot.forecast().unwrap_or_else(|| rounds.pilot.forecast_of(seconds));
             return Ok(MeasurementEnd { products, criterion, errors, seconds, forecast });
+        }
+        if progress.is_cancelled() {
+            return Err(rounds.cancelled(measurement, store, seconds)?);
         }
         let can_grow = measurement.films().iter().all(|paced| paced.film.can_grow().is_ok());
         if let Some(forecast) = rounds.forecast(seconds, can_grow) {
@@ -99,7 +114,8 @@ pub(super) fn measure_until(
         checks.next_if_eq(&done);
         let limit = convergence.limit();
         let goal = checks.peek().map_or(limit, |&check| check.min(limit));
-        let goal = rounds.next_goal(goal, seconds, can_grow, store.longest_round());
+        let longest = store.longest_round(seconds);
+        let goal = rounds.next_goal(goal, seconds, can_grow, longest);
         rounds.trace(measurement, goal, can_grow).map_err(Failure::Pixels)?;
     }
 }
@@ -144,11 +160,19 @@ impl Rounds<'_> {
             }
             return Ok(());
         }
-        let schedule = &self.convergence.schedule;
-        let is_end_of_block = schedule.last(self.done) == self.done;
-        if !store.is_enabled() || !is_end_of_block || self.done == 0 {
+        if store.saves() == Some(SaveRule::WhenCancelled) {
+            // What takes longer to keep than to trace again is not kept.
+            let mut films = measurement.films();
+            let bytes = films.iter_mut().map(|paced| paced.film.bytes_of_state()).sum::<u64>();
+            if is_end && seconds > WORTH_KEEPING && bytes < LARGEST_KEPT && self.can_save() {
+                store.set_section(self.section(measurement, store, seconds)?);
+            }
             return Ok(());
         }
+        if !store.is_enabled() || !self.can_save() {
+            return Ok(());
+        }
+        let schedule = &self.convergence.schedule;
         // A run cannot be resumed behind the last end of a block.
         let is_last = is_end || schedule.last(self.convergence.limit()) == self.done;
         if is_last || store.is_due() {
@@ -158,6 +182,26 @@ impl Rounds<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Returns whether the samples so far are whole blocks, which alone can be resumed.
+    fn can_save(&self) -> bool {
+        self.done > 0 && self.convergence.schedule.last(self.done) == self.done
+    }
+
+    /// Saves the measurement, if it can be resumed, and what was saved of sensors before it; returns the failure of the run.
+    fn cancelled(
+        &self,
+        measurement: &mut dyn Measurement,
+        store: &mut CheckpointStore,
+        seconds: f64,
+    ) -> Result<Failure, Failure> {
+        if self.can_save() && store.saves().is_some() {
+            store.set_section(self.section(measurement, store, seconds)?);
+        }
+        let done = self.done as f64 / self.expected_end(self.done as f64, seconds);
+        let (sensor, saved) = (self.name.to_owned(), store.save_cancelled()?);
+        Ok(Failure::Cancelled { sensor, done: done.clamp(0.0, 1.0), saved })
     }
 
     /// State of the measurement.
@@ -234,15 +278,40 @@ impl Rounds<'_> {
             let (samples, seconds) = (done + fraction * added, self.seconds());
             let end = self.expected_end(samples, seconds);
             // The next check may decide: nothing is complete before it.
-            self.progress.sensor(self.name, (samples / end).min(0.999));
+            let done = (samples / end).min(0.999);
+            let left = (end - samples) / self.pilot.pace(samples, seconds);
+            self.observed.report(self.name, done, left, self.progress);
             if !can_grow && self.pilot.is_over(seconds) {
                 self.report_forecast(samples, seconds, end);
             }
         })?;
         self.done = goal;
+        let seconds = self.seconds();
+        self.observed.count_rays(measurement, seconds);
         Ok(())
     }
+
+    /// Updates the errors that the observer shows.
+    fn update_errors(&mut self, measurement: &mut dyn Measurement) -> io::Result<()> {
+        if !self.progress.shows_errors() || self.done == 0 || self.is_pilot_only {
+            return Ok(());
+        }
+        let check = self.check.as_ref().filter(|check| check.samples == self.done);
+        if let Some(check) = check {
+            self.observed.take_errors(&check.errors);
+            return Ok(());
+        }
+        let (start, clock) = (self.start.seconds, self.clock);
+        let seconds = || start + clock.elapsed().as_secs_f64();
+        self.observed.compute_errors(measurement, seconds)
+    }
 }
+
+/// Time of a measurement that is kept for a run that may be cancelled at a later sensor, s.
+const WORTH_KEEPING: f64 = 10.0;
+
+/// Size of the largest state that is kept for that, bytes.
+const LARGEST_KEPT: u64 = 32 << 20;
 
 /// Restores the films from a checkpoint.
 fn restore(

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use sunfleck::output;
 use sunfleck::products::{Forecast, Product, Report};
-use sunfleck::run::{Options, Progress, check_file, run_file};
+use sunfleck::run::{Options, Progress, SensorProgress, check_file, run_file};
 
 use super::project;
 use super::readers::Said;
@@ -46,7 +46,7 @@ struct LongRun;
 
 impl Progress for Impatient {
     fn stage(&self, _: &str) {}
-    fn sensor(&self, _: &str, _: f64) {}
+    fn sensor(&self, _: &SensorProgress<'_>) {}
     fn forecast(&self, _: &str, forecast: &Forecast) {
         if forecast.seconds > PATIENCE {
             resume_unwind(Box::new(LongRun));

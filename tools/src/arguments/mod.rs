@@ -12,6 +12,8 @@ use sunfleck::run::Partition;
 
 use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
+use crate::commands::{Completions, Man, New};
+use crate::console::Console;
 use crate::verify::CHECKS;
 
 pub(crate) use self::shared::{Formats, Measured, Out, Run, Scene};
@@ -55,8 +57,27 @@ pub(crate) enum Command {
     Schema,
     /// Print every key of the scene language with values, units, defaults and examples, as Markdown
     Keys(Keys),
+    /// Write a small commented scene to start from
+    New(New),
     /// Convert a project folder of LESS 1.8.8 to a scene and report how each setting was converted
     ImportLess(ImportLess),
+    /// Print a script that completes commands and options in a shell
+    Completions(Completions),
+    /// Print the manual page, or write one for each command
+    Man(Man),
+}
+
+impl Command {
+    /// Manner in which the command speaks.
+    pub(crate) const fn console(&self) -> Console {
+        match self {
+            Self::Run(arguments) => arguments.run.console,
+            Self::Sweep(arguments) => arguments.console,
+            Self::Merge(arguments) => arguments.console,
+            Self::Respectrum(arguments) => arguments.console,
+            _ => Console::TEXT,
+        }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -218,6 +239,9 @@ pub(crate) struct Respectrum {
     /// Replace results of another scene
     #[arg(long)]
     pub(crate) force: bool,
+
+    #[command(flatten)]
+    pub(crate) console: Console,
 }
 
 impl Respectrum {
@@ -251,6 +275,9 @@ pub(crate) struct Merge {
 
     #[command(flatten)]
     pub(crate) formats: Formats,
+
+    #[command(flatten)]
+    pub(crate) console: Console,
 }
 
 impl Merge {

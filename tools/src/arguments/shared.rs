@@ -9,6 +9,8 @@ use sunfleck::document::{self, FileFormat, System};
 use sunfleck::output::{OutputError, Results, folder_name};
 use sunfleck::run;
 
+use crate::console::Console;
+
 use super::values::{SystemName, default_systems, file_format, memory, quality, setting, system};
 
 #[derive(Args, Debug)]
@@ -117,6 +119,9 @@ pub(crate) struct Run {
 
     #[command(flatten)]
     pub(crate) formats: Formats,
+
+    #[command(flatten)]
+    pub(crate) console: Console,
 
     /// Largest memory for films and results, such as 4GiB; larger runs are refused [default: free memory]
     #[arg(long, value_name = "SIZE", value_parser = memory)]

@@ -1,10 +1,15 @@
 //! Execution of the commands: one file a command, or a few that share most of their code.
 
+mod new;
 mod run;
+mod scenes;
+mod shell;
 mod sweep;
 mod text;
 
 use std::io::{self, Write as _};
+use std::path::Path;
+use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
 use sunfleck::document;
@@ -12,6 +17,9 @@ use sunfleck::output::Written;
 
 use crate::arguments::{Bench, Command, Keys, OtherBench, Verify};
 use crate::{bench, compare, import_less, verify};
+
+pub(crate) use new::New;
+pub(crate) use shell::{Completions, Man};
 
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
@@ -39,6 +47,9 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::ImportLess(arguments) => {
             print(&import_less::import(&arguments.folder, &arguments.out())?)
         }
+        Command::New(arguments) => new::new(arguments),
+        Command::Completions(arguments) => shell::completions(arguments),
+        Command::Man(arguments) => shell::man(arguments),
         Command::Verify(arguments) => verify(arguments),
         Command::Bench(Bench { other: Some(OtherBench::Rays(arguments)), .. }) => {
             print(&bench::rays(arguments)?)
@@ -48,6 +59,16 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
             None => bail!("name a scene: sunfleck bench SCENE"),
         },
     }
+}
+
+/// Shows what is wrong with the command line; where a scene is missing, with the scenes here.
+pub(crate) fn refuse(error: &clap::Error) -> ExitCode {
+    // Whoever has gone away has seen enough.
+    drop(error.print());
+    if scenes::is_missing(error) {
+        drop(io::stderr().write_all(scenes::listing(Path::new("")).as_bytes()));
+    }
+    ExitCode::from(error.exit_code() as u8)
 }
 
 /// Message of a command that failed.
@@ -76,6 +97,16 @@ fn verify(arguments: &Verify) -> anyhow::Result<()> {
         bail!("this program gives wrong results on this machine: see the checks that failed");
     }
     Ok(())
+}
+
+/// Argument as a shell reads it.
+fn quoted(argument: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./=+,:@%".contains(letter);
+    if !argument.is_empty() && argument.chars().all(is_plain) {
+        argument.to_owned()
+    } else {
+        format!("'{}'", argument.replace('\'', r"'\''"))
+    }
 }
 
 pub(crate) fn warn(warnings: &[String]) {

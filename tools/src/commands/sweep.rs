@@ -1,66 +1,44 @@
 //! `sweep`: a scene at every point of its sweep, and one table.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
+use serde_json::json;
 use sunfleck::output::{DerivativeTable, PointTables, Results, SweepTable, Written};
 use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::{output, run};
 
 use super::run::run_options;
-use super::{print, warn};
 use crate::arguments::Run;
-use crate::progress::Bars;
+use crate::console::Console;
 
 pub(super) fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let folder = arguments.folder("_sweep");
-    let scene = &arguments.scene.file;
+    let (scene, console) = (&arguments.scene.file, arguments.console);
     let results = Results::open(&folder, "sweep", scene, arguments.out.force)?;
-    let bars = Bars::new();
-    let sweep = run::SweepRun::read(scene, &run_options(arguments), &bars);
-    bars.clear();
+    let observer = console.observer();
+    let sweep = run::SweepRun::read(scene, &run_options(arguments), &observer);
+    observer.clear();
     let mut sweep = sweep?;
-    let (points, sweep_report) = (sweep.points().to_vec(), sweep.report());
-    let mut tables = PointTables::open(&folder, &points)?;
-    let distinct: usize = sweep.groups().iter().map(Vec::len).sum();
-    let (mut shown, mut ran, mut dark) = (BTreeSet::new(), 0, 0);
-    let mut is_first = true;
+    let points = sweep.points().to_vec();
+    let tables = PointTables::open(&folder, &points)?;
+    let mut done = Done { tables, console, shown: BTreeSet::new(), ran: 0, dark: 0 };
     for (group, places) in sweep.groups().to_vec().into_iter().enumerate() {
         let of_group: Vec<SweepPoint> = places.iter().map(|&place| points[place].clone()).collect();
-        let finished: Vec<bool> = of_group.iter().map(|point| tables.contains(point)).collect();
-        if !finished.contains(&false) {
-            continue;
-        }
-        of_group.iter().for_each(warn_night);
-        let bars = Bars::new();
-        bars.heading(&heading(places[0], &of_group, points.len()));
-        sweep.run(group, &bars, |part, reports| -> anyhow::Result<()> {
-            let (group, finished) = (&of_group[part.clone()], &finished[part]);
-            let unfinished: Vec<usize> =
-                (0..group.len()).filter(|&index| !finished[index]).collect();
-            bars.clear();
-            for (report, point) in reports.iter().zip(group) {
-                warn_once(report, point, &mut shown);
-            }
-            if is_first {
-                // From now on the folder says which scene its points are of.
-                results.write_texts(&sweep_report, &[])?;
-            }
-            is_first = false;
-            tables.write(&reports, group, &unfinished)?;
-            let of_night = unfinished.iter().filter(|&&index| group[index].darkness().is_some());
-            let of_night = of_night.count();
-            (ran, dark) = (ran + unfinished.len() - of_night, dark + of_night);
-            Ok(())
-        })?;
-        bars.clear();
+        let heading = heading(places[0], &of_group, points.len());
+        let run = done.run_group(&mut sweep, group, &of_group, &heading, &results);
+        run.map_err(|error| cancelled(error, &folder, console))?;
     }
+    let Done { tables, ran, dark, .. } = done;
+    let distinct: usize = sweep.groups().iter().map(Vec::len).sum();
     let table = SweepTable::new(&points, &tables)?;
     let daily = output::daily_sums(&sweep.days(), &points, &tables)?;
     let derivatives = DerivativeTable::new(sweep.differences(), &points, &tables)?;
     let (daily, of) = (daily.as_ref(), derivatives.as_ref());
     let written = results.write_sweep(&sweep.report(), &points, &table, daily, of)?;
     let derivatives = derivatives.map(|table| derivatives_text(&table, &written));
-    print(&format!(
+    console.written(&written);
+    console.say(&format!(
         "{}: {ran} {} run, {}{} kept; geometry built {}\n{}",
         written.folder.join("sweep.csv").display(),
         if ran == 1 { "point" } else { "points" },
@@ -72,6 +50,83 @@ pub(super) fn sweep(arguments: &Run) -> anyhow::Result<()> {
         },
         derivatives.unwrap_or_default()
     ))
+}
+
+/// Tables of the points that are done, and what was said about them.
+struct Done {
+    tables: PointTables,
+    console: Console,
+    /// Warnings that were shown.
+    shown: BTreeSet<String>,
+    /// Number of points that were run.
+    ran: usize,
+    /// Number of points without light.
+    dark: usize,
+}
+
+impl Done {
+    /// Runs those points of a group that have no table yet, and writes their tables.
+    fn run_group(
+        &mut self,
+        sweep: &mut run::SweepRun,
+        group: usize,
+        points: &[SweepPoint],
+        heading: &str,
+        results: &Results,
+    ) -> anyhow::Result<()> {
+        let finished: Vec<bool> = points.iter().map(|point| self.tables.contains(point)).collect();
+        if !finished.contains(&false) {
+            return Ok(());
+        }
+        points.iter().for_each(|point| warn_night(point, self.console));
+        let observer = self.console.observer();
+        observer.heading(heading);
+        let report = sweep.report();
+        sweep.run(group, &observer, |part, reports| -> anyhow::Result<()> {
+            let (points, finished) = (&points[part.clone()], &finished[part]);
+            let unfinished: Vec<usize> =
+                (0..points.len()).filter(|&index| !finished[index]).collect();
+            observer.clear();
+            for (report, point) in reports.iter().zip(points) {
+                self.warn_once(report, point);
+            }
+            if self.ran + self.dark == 0 {
+                // From now on the folder says which scene its points are of.
+                results.write_texts(&report, &[])?;
+            }
+            self.tables.write(&reports, points, &unfinished)?;
+            let of_night = unfinished.iter().filter(|&&index| points[index].darkness().is_some());
+            let of_night = of_night.count();
+            self.ran += unfinished.len() - of_night;
+            self.dark += of_night;
+            Ok(())
+        })?;
+        observer.clear();
+        Ok(())
+    }
+
+    /// Shows the warnings of a point that no point before it had; the one about its night has been shown.
+    fn warn_once(&mut self, report: &Report, point: &SweepPoint) {
+        let is_of_night =
+            |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
+        for text in report.warnings.iter().filter(|text| !is_of_night(text)) {
+            if self.shown.insert(text.clone()) {
+                self.console.warn(&[format!("at {}: {text}", point.name())]);
+            }
+        }
+    }
+}
+
+/// Error of a sweep; if it was cancelled, with what is kept.
+fn cancelled(error: anyhow::Error, folder: &Path, console: Console) -> anyhow::Error {
+    if !error.downcast_ref::<run::Failure>().is_some_and(run::Failure::is_cancelled) {
+        return error;
+    }
+    console.event(&json!({ "event": "cancelled", "folder": folder }));
+    anyhow::anyhow!(
+        "{error}; the points before it are kept in {}, and the same command goes on from there",
+        folder.display()
+    )
 }
 
 /// Text about derivatives that were written.
@@ -95,22 +150,13 @@ fn heading(first: usize, group: &[SweepPoint], all: usize) -> String {
     }
 }
 
-/// Shows the warnings of a point that no point before it had; the one about its night has been shown.
-fn warn_once(report: &Report, point: &SweepPoint, shown: &mut BTreeSet<String>) {
-    let is_of_night =
-        |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
-    for text in report.warnings.iter().filter(|text| !is_of_night(text)) {
-        if shown.insert(text.clone()) {
-            warn(&[format!("at {}: {text}", point.name())]);
-        }
-    }
-}
-
 /// Says what a sun below the horizon means at a point of a sweep.
-fn warn_night(point: &SweepPoint) {
+fn warn_night(point: &SweepPoint, console: Console) {
     match &point.night {
-        Some(Night::Dark(why)) => warn(&[format!("at {}: nothing is traced: {why}", point.name())]),
-        Some(Night::WithoutSun(what)) => warn(&[format!("at {}: {what}", point.name())]),
+        Some(Night::Dark(why)) => {
+            console.warn(&[format!("at {}: nothing is traced: {why}", point.name())])
+        }
+        Some(Night::WithoutSun(what)) => console.warn(&[format!("at {}: {what}", point.name())]),
         None => {}
     }
 }

@@ -4,9 +4,9 @@
 mod format;
 mod section;
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use std::{fs, io};
 
 use super::Failure;
 use crate::output;
@@ -22,10 +22,19 @@ pub(super) use section::{FilmState, Section, is_in_memory};
 pub struct Checkpoint {
     /// The file.
     pub file: PathBuf,
-    /// Time between two saves, s.
-    pub every: f64,
+    /// Rule for when the run saves its state.
+    pub saves: SaveRule,
     /// Part of the run that is traced.
     pub share: Partition,
+}
+
+/// Rule for when a run saves its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SaveRule {
+    /// At intervals of so many seconds and at its end. The run is resumed from the file if that exists.
+    Every(f64),
+    /// When it is cancelled, and never else: what the file holds is not read, and nothing is written in a run that ends.
+    WhenCancelled,
 }
 
 /// State of the measurements of a run, and the file that it is saved to.
@@ -53,11 +62,14 @@ impl Checkpoint {
     /// # Errors
     /// If it cannot be written.
     pub(super) fn try_file(&self) -> Result<(), Failure> {
+        if self.saves == SaveRule::WhenCancelled {
+            return Ok(());
+        }
         let unwritable = |source: io::Error| {
             let what = format!("cannot be written: {source}");
             wrong(&self.file, &what, "name a file in a folder that exists and may be written to")
         };
-        match std::fs::metadata(&self.file) {
+        match fs::metadata(&self.file) {
             Ok(metadata) if !metadata.is_file() => Err(not_regular(&self.file)),
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unwritable(error)),
             _ => output::try_file(&self.file).map_err(unwritable),
@@ -92,6 +104,9 @@ impl CheckpointStore {
     ) -> Result<Self, Failure> {
         let scratch = scratch.clone();
         let mut store = Self { hash, scratch, to: Some(to.clone()), ..Self::disabled() };
+        if to.saves == SaveRule::WhenCancelled {
+            return Ok(store);
+        }
         if to.file.try_exists().map_err(|source| unreadable(&to.file, source))? {
             let (share, sections) = format::read_of_scene(&to.file, hash, &store.scratch)?;
             if share != to.share {
@@ -238,9 +253,14 @@ impl CheckpointStore {
         &self.scratch
     }
 
-    /// Returns whether the run saves its state.
-    pub(super) const fn is_enabled(&self) -> bool {
-        self.to.is_some()
+    /// Rule for when the run saves its state; `None` if it never does.
+    pub(super) fn saves(&self) -> Option<SaveRule> {
+        self.to.as_ref().map(|to| to.saves)
+    }
+
+    /// Returns whether the run saves its state while it goes on.
+    pub(super) fn is_enabled(&self) -> bool {
+        matches!(self.saves(), Some(SaveRule::Every(_)))
     }
 
     /// Sections of a sensor that were read, by part of the run.
@@ -253,7 +273,8 @@ impl CheckpointStore {
 
     /// Returns whether it is time to save.
     pub(super) fn is_due(&self) -> bool {
-        self.to.as_ref().is_some_and(|to| self.written.elapsed().as_secs_f64() >= to.every)
+        let Some(SaveRule::Every(seconds)) = self.saves() else { return false };
+        self.written.elapsed().as_secs_f64() >= seconds
     }
 
     /// Sets the section of a sensor.
@@ -278,11 +299,33 @@ impl CheckpointStore {
         self.failed.clone()
     }
 
+    /// Saves the state of a run that is cancelled; returns the file, `None` if there is nothing to save.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub(super) fn save_cancelled(&mut self) -> Result<Option<PathBuf>, Failure> {
+        let Some(to) = self.to.as_ref().filter(|_| !self.sections.is_empty()) else {
+            return Ok(None);
+        };
+        let folder = to.file.parent().unwrap_or(Path::new(""));
+        let made = fs::create_dir_all(folder);
+        match made.and_then(|()| format::write(to, self.hash, &self.sections)) {
+            Ok(()) => Ok(Some(to.file.clone())),
+            Err(source) => {
+                let what = format!("cannot be written: {source}; what was traced is lost");
+                Err(wrong(&to.file, &what, "name another file with `--checkpoint`"))
+            }
+        }
+    }
+
     /// Saves the state at the end of a run; returns a warning if that fails.
     ///
     /// # Errors
     /// If the file cannot be written and is the only result of this run.
     pub(super) fn finish(&mut self) -> Result<Option<String>, Failure> {
+        if !self.is_enabled() {
+            return Ok(None);
+        }
         let Some(warning) = self.save() else { return Ok(None) };
         match &self.to {
             Some(to) if to.share != Partition::ALL => Err(Failure::Checkpoint {
@@ -294,9 +337,15 @@ impl CheckpointStore {
         }
     }
 
-    /// Longest time of a round, s.
-    pub(super) fn longest_round(&self) -> f64 {
-        self.to.as_ref().map_or(f64::INFINITY, |to| 0.5 * to.every)
+    /// Longest time of the next round of a measurement that has taken `seconds`, s.
+    pub(super) fn longest_round(&self, seconds: f64) -> f64 {
+        // A run that is cancelled ends soon, and rounds stay few.
+        let until_cancelled = (0.1 * seconds).clamp(2.0, 10.0);
+        match self.saves() {
+            None => f64::INFINITY,
+            Some(SaveRule::Every(interval)) => until_cancelled.min(0.5 * interval),
+            Some(SaveRule::WhenCancelled) => until_cancelled,
+        }
     }
 }
 
