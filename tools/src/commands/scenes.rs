@@ -40,15 +40,13 @@ pub(super) fn listing(folder: &Path) -> String {
     let shown = &found[..found.len().min(MOST_SCENES)];
     let names: Vec<String> = shown.iter().map(|file| file.display().to_string()).collect();
     let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-    let mut text = "\nScenes here:\n".to_owned();
-    for (name, file) in names.iter().zip(shown) {
-        text += format!("  {name:width$}  {}", title(file)).trim_end();
-        text += "\n";
-    }
+    let line = |(name, file): (&String, &PathBuf)| format!("  {name:width$}  {}", title(file));
+    let mut lines = vec!["\nScenes here:".to_owned()];
+    lines.extend(names.iter().zip(shown).map(line));
     if found.len() > shown.len() {
-        text += &format!("  and {} more\n", found.len() - shown.len());
+        lines.push(format!("  and {} more", found.len() - shown.len()));
     }
-    text
+    lines.iter().flat_map(|line| [line.trim_end(), "\n"]).collect()
 }
 
 /// Adds the scenes in a folder in the order of their names; those of folders within it follow.
@@ -70,7 +68,9 @@ fn search(folder: &Path, depth: usize, seen: &mut usize, found: &mut Vec<PathBuf
         }
     }
     if depth > 0 {
-        folders.iter().for_each(|folder| search(folder, depth - 1, seen, found));
+        for folder in &folders {
+            search(folder, depth - 1, seen, found);
+        }
     }
 }
 

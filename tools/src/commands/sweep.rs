@@ -78,7 +78,9 @@ impl Done {
         if !finished.contains(&false) {
             return Ok(());
         }
-        points.iter().for_each(|point| warn_night(point, self.console));
+        for point in points {
+            warn_night(point, self.console);
+        }
         let observer = self.console.observer();
         observer.heading(heading);
         let report = sweep.report();
@@ -154,7 +156,7 @@ fn heading(first: usize, group: &[SweepPoint], all: usize) -> String {
 fn warn_night(point: &SweepPoint, console: Console) {
     match &point.night {
         Some(Night::Dark(why)) => {
-            console.warn(&[format!("at {}: nothing is traced: {why}", point.name())])
+            console.warn(&[format!("at {}: nothing is traced: {why}", point.name())]);
         }
         Some(Night::WithoutSun(what)) => console.warn(&[format!("at {}: {what}", point.name())]),
         None => {}
