@@ -42,6 +42,7 @@ pub mod geometry;
 mod memory;
 pub mod output;
 pub mod placement;
+pub mod preview;
 pub mod products;
 pub mod run;
 pub mod sampling;

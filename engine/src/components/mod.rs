@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | mesh prototype | [`SceneId`], [`Name`], `document::Prototype` | [`Mesh`], [`PartMaterials`], [`MeshBounds`], [`LeafArea`], [`InstanceCount`] |
 //! | material | [`SceneId`], [`Name`], `document::Material` | [`SurfaceOptics`], [`BlackBody`] where it emits |
-//! | planting (an entry of `instances`) | [`SceneId`], `document::Instances` | [`ShownMeshes`], [`InstanceRange`] |
+//! | planting (an entry of `instances`) | [`SceneId`], `document::Instances` | [`ShownMeshes`], [`InstanceRange`], [`PlantingAreas`] if it has polygons |
 //! | instance | | [`SceneId`], [`PlantingId`], [`PrototypeId`], [`Position`], [`Yaw`], [`Scale`], [`Lean`] if it is not upright |
 //! | terrain | `document::Terrain` | [`TerrainPatch`], `Ground`, `MapFrame` |
 //! | sun | `document::Sun` | [`SunLight`] |
@@ -39,7 +39,7 @@ pub use optics::{
     SoilspectParameters, SurfaceOptics,
 };
 pub use placement::{Instance, InstanceQuery, Lean, Placement, Position, Scale, Yaw};
-pub use planting::{InstanceRange, ShownMeshes};
+pub use planting::{InstanceRange, PlantingAreas, ShownMeshes};
 pub use sensor::{
     Cone, CountingPlane, DirectionSensor, ImageMeasure, ImageSamples, ImageSensor, Layers, Per,
     PhotonMeasure, PhotonProduct, PhotonSensor, ResolvedSensor, StopCriterion, System, View,

@@ -4,26 +4,26 @@ use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_wid
 
 /// An opaque picture that text and rectangles are drawn on, red, green and blue, shape `[rows, columns, 3]`.
 #[derive(Clone, Debug)]
-pub(super) struct Canvas {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) rgb: Vec<u8>,
+pub(crate) struct Canvas {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) rgb: Vec<u8>,
 }
 
 /// Letters of one height; all are equally wide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Letters {
+pub(crate) struct Letters {
     /// Pixels for each of the font.
     scale: usize,
     is_large: bool,
 }
 
 /// Colour of text and lines.
-pub(super) const INK: [u8; 3] = [40, 40, 40];
+pub(crate) const INK: [u8; 3] = [40, 40, 40];
 
 impl Letters {
     /// Letters that are legible in a picture of this width: about 60 fit into a line or more.
-    pub(super) const fn for_width(width: usize) -> Self {
+    pub(crate) const fn for_width(width: usize) -> Self {
         if width < 1000 {
             Self { scale: 1, is_large: false }
         } else {
@@ -37,22 +37,22 @@ impl Letters {
     }
 
     /// Height of a line, pixels.
-    pub(super) const fn height(self) -> usize {
+    pub(crate) const fn height(self) -> usize {
         self.scale * self.raster().val()
     }
 
     /// Width of a letter, pixels.
-    pub(super) const fn width(self) -> usize {
+    pub(crate) const fn width(self) -> usize {
         self.scale * get_raster_width(FontWeight::Regular, self.raster())
     }
 
     /// Width of a text, pixels.
-    pub(super) fn width_of(self, text: &str) -> usize {
+    pub(crate) fn width_of(self, text: &str) -> usize {
         self.width() * text.chars().count()
     }
 
     /// Cuts a text to a width, with a mark where it was cut.
-    pub(super) fn fitted(self, text: &str, width: usize) -> String {
+    pub(crate) fn fitted(self, text: &str, width: usize) -> String {
         let letters = width / self.width();
         if text.chars().count() <= letters {
             return text.to_owned();
@@ -64,12 +64,12 @@ impl Letters {
 
 impl Canvas {
     /// A white one.
-    pub(super) fn new(width: usize, height: usize) -> Self {
+    pub(crate) fn new(width: usize, height: usize) -> Self {
         Self { width, height, rgb: vec![255; 3 * width * height] }
     }
 
     /// Mixes a colour into a pixel; nothing beside the canvas.
-    pub(super) fn mix(&mut self, (x, y): (usize, usize), colour: [u8; 3], opacity: u8) {
+    pub(crate) fn mix(&mut self, (x, y): (usize, usize), colour: [u8; 3], opacity: u8) {
         if x >= self.width || y >= self.height {
             return;
         }
@@ -81,7 +81,7 @@ impl Canvas {
     }
 
     /// Fills a rectangle.
-    pub(super) fn fill(&mut self, area: Area, colour: [u8; 3]) {
+    pub(crate) fn fill(&mut self, area: Area, colour: [u8; 3]) {
         for y in area.top..area.top + area.height {
             for x in area.left..area.left + area.width {
                 self.mix((x, y), colour, 255);
@@ -90,7 +90,7 @@ impl Canvas {
     }
 
     /// Draws the outline of a rectangle, outside of it.
-    pub(super) fn frame(&mut self, area: Area, thickness: usize, colour: [u8; 3]) {
+    pub(crate) fn frame(&mut self, area: Area, thickness: usize, colour: [u8; 3]) {
         let left = area.left.saturating_sub(thickness);
         let top = area.top.saturating_sub(thickness);
         let (width, height) = (area.width + 2 * thickness, area.height + 2 * thickness);
@@ -101,7 +101,7 @@ impl Canvas {
     }
 
     /// Writes a line of text with its upper left corner at a place; letters that the font lacks are `?`.
-    pub(super) fn write(&mut self, text: &str, (left, top): (usize, usize), letters: Letters) {
+    pub(crate) fn write(&mut self, text: &str, (left, top): (usize, usize), letters: Letters) {
         for (index, letter) in text.chars().enumerate() {
             let raster = |letter| get_raster(letter, FontWeight::Regular, letters.raster());
             let Some(raster) = raster(letter).or_else(|| raster('?')) else { continue };
@@ -134,11 +134,11 @@ impl Canvas {
 
 /// A rectangle of a canvas, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Area {
-    pub(super) left: usize,
-    pub(super) top: usize,
-    pub(super) width: usize,
-    pub(super) height: usize,
+pub(crate) struct Area {
+    pub(crate) left: usize,
+    pub(crate) top: usize,
+    pub(crate) width: usize,
+    pub(crate) height: usize,
 }
 
 #[cfg(test)]

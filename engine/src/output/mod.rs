@@ -48,9 +48,12 @@ use crate::products::{Image, Product, Report};
 pub use axes::{AxisCells, AxisColumns, ProductCells};
 pub use daily::{DailySums, daily_sums};
 pub use derivatives::{DERIVATIVES, DerivativeTable};
+pub(crate) use geotiff::escaped;
+pub(crate) use lettering::{Canvas, INK, Letters};
 pub use names::folder_name;
 pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
+pub(crate) use picture::png_bytes;
 pub use point_tables::PointTables;
 pub use results::{COEFFICIENTS, Results, ResultsOrigin, Written};
 pub use rows::{harmless, number};
@@ -157,12 +160,12 @@ fn put_chart(
     staging.file(name, |file| file.write_all(chart::draw(&lines, &heading)?.as_bytes()))
 }
 
-/// Replaces the text of a file in one step: it holds the old one or the new one, never a part.
+/// Replaces the contents of a file in one step: it holds the old ones or the new ones, never a part.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn replace(file: &Path, text: &str) -> Result<(), OutputError> {
-    put_file(file, |file| io::Write::write_all(file, text.as_bytes()))
+pub fn replace(file: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
+    put_file(file, |file| io::Write::write_all(file, contents.as_ref()))
 }
 
 /// Writes a file that appears when it is complete; makes its folder if it does not exist.

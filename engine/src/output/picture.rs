@@ -226,6 +226,16 @@ pub(super) fn encode_png(
     writer.finish().map_err(plain)
 }
 
+/// PNG in memory of pixels of three or four channels of eight bits, shape `[rows, columns, channels]`.
+pub(crate) fn png_bytes(width: usize, height: usize, pixels: &[u8]) -> Vec<u8> {
+    let channels = pixels.len() / (width * height).max(1);
+    let colour = if channels == 4 { png::ColorType::Rgba } else { png::ColorType::Rgb };
+    let mut bytes = Vec::new();
+    encode_png((width, height), colour, &[], &mut bytes, |stream| stream.write_all(pixels))
+        .expect("memory takes what is written, and sizes of pictures fit into 32 bits");
+    bytes
+}
+
 /// Size of a chunk of data in a PNG, bytes.
 const CHUNK: usize = 1 << 20;
 

@@ -2,6 +2,7 @@
 
 mod band;
 mod library;
+pub mod observer;
 mod planck;
 pub mod prospect;
 mod response;

@@ -46,6 +46,7 @@ mod resolve_temperatures;
 mod resolve_weights;
 mod spectra;
 mod triangulate_terrain;
+mod visible_optics;
 mod warn_dark_bands;
 mod warn_flat_raster;
 mod warn_floating_instances;
@@ -63,6 +64,7 @@ pub use messages::Messages;
 pub use resolve_bands::BandResponses;
 pub use resources::Resources;
 pub use schedule::{ScheduleRun, run_schedule};
+pub use visible_optics::{VISIBLE_NM, visible_optics};
 
 /// Sets or removes a component of an entity.
 fn set_component<T: hecs::Component>(

@@ -36,7 +36,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
 }
 
 /// Optics of a material; `None` after an error.
-fn optics(
+pub(super) fn optics(
     material: &Material,
     path: &ScenePath,
     resources: &mut Resources,

@@ -33,7 +33,8 @@ mod state;
 mod term_runs;
 
 pub use camera::{
-    Camera, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, wanted_footprint,
+    Camera, CameraPose, FisheyeCamera, OrthographicCamera, PerspectiveCamera, footprint, view_axes,
+    wanted_footprint,
 };
 pub use films::{
     Film, ImageOutcome, ImageTiles, Partition, PixelRows, Pixels, Randomisations, ReplicateSums,

@@ -12,7 +12,7 @@ use sunfleck::run::Partition;
 
 use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
-use crate::commands::{Completions, Man, New};
+use crate::commands::{Completions, Man, New, Preview};
 use crate::console::Console;
 use crate::verify::CHECKS;
 
@@ -44,6 +44,8 @@ pub(crate) enum Command {
     Merge(Merge),
     /// Report what a scene consists of, its errors and its warnings, without running it
     Check(Check),
+    /// Draw a map of a scene, as PNG and SVG
+    Preview(Preview),
     /// Measure run time and error of each product with each transport system, for several numbers of
     /// samples
     Bench(Bench),

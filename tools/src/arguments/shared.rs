@@ -39,7 +39,7 @@ impl Scene {
     }
 
     /// Name of the scene and of what is changed in it: `birch_winter_sza=60`.
-    fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         changed_name(stem, self.variant.as_deref(), &self.settings)
     }

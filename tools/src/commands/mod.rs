@@ -1,6 +1,7 @@
 //! Execution of the commands: one file a command, or a few that share most of their code.
 
 mod new;
+mod preview;
 mod run;
 mod scenes;
 mod shell;
@@ -19,6 +20,7 @@ use crate::arguments::{Bench, Command, Keys, OtherBench, Verify};
 use crate::{bench, compare, import_less, verify};
 
 pub(crate) use new::New;
+pub(crate) use preview::Preview;
 pub(crate) use shell::{Completions, Man};
 
 /// Heading of what a scene defines and does not use.
@@ -36,6 +38,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Compare(arguments) => print(&compare::compare(arguments)?),
         Command::Check(arguments) => text::check(arguments),
+        Command::Preview(arguments) => preview::preview(arguments),
         Command::Expand(scene) => text::expand(scene),
         Command::Fmt(arguments) => text::fmt(arguments),
         Command::Schema => print(&document::json_schema()),

@@ -34,7 +34,7 @@ pub(super) fn new(New { name }: &New) -> anyhow::Result<()> {
         bail!("{} exists: choose another name", file.display());
     }
     let title = stem.replace(['\\', '"'], " ");
-    output::replace(&file, &SCENE.replace("TITLE", &title))?;
+    output::replace(&file, SCENE.replace("TITLE", &title))?;
     let shown = file.display();
     let argument = quoted(&shown.to_string());
     print(&format!(

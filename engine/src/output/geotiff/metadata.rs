@@ -63,7 +63,7 @@ pub(super) fn gdal(
 }
 
 /// `text` as XML holds it.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -17,6 +17,7 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 
 use self::directory::{OffsetWidth, TagDirectory, TagValue, encode, tag};
+pub(crate) use self::metadata::escaped;
 use self::pyramid::{Level, Pyramid};
 pub(super) use self::tiles::TILE;
 use self::tiles::{TileIndex, write_tiles};

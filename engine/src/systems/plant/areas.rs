@@ -2,6 +2,7 @@ use glam::DVec2;
 
 use super::Site;
 use crate::assets;
+use crate::components::PlantingAreas;
 use crate::document::{Area, Diagnostic, ScenePath};
 use crate::geometry::{Polygon, Rectangle, place_text};
 use crate::placement::{PlacementError, Region};
@@ -9,7 +10,7 @@ use crate::systems::Resources;
 use crate::systems::coordinate_advice::area_advice;
 use crate::systems::georeference::{check_crs, name_target};
 
-/// Part of the terrain that instances may stand on.
+/// Part of the terrain that instances may stand on; leaves the polygons at the site.
 pub(super) fn region(
     terrain: Rectangle,
     inside: &[Area],
@@ -29,7 +30,10 @@ pub(super) fn region(
         Some(polygons)
     };
     let (inside, outside) = (read("inside", inside, site), read("outside", outside, site));
-    match Region::new(terrain, &inside?, &outside?) {
+    let (inside, outside) = (inside?, outside?);
+    let region = Region::new(terrain, &inside, &outside);
+    site.areas = PlantingAreas { inside, outside };
+    match region {
         Ok(region) => Some(region),
         Err(error) => {
             let (path, help) = match &error {

@@ -17,13 +17,13 @@ use std::ops::Range;
 use glam::DVec3;
 use hecs::{Entity, World};
 
-use super::Resources;
 use super::coordinate_advice::{AdvicePlace, other_coordinates};
 use super::georeference::{MapFrame, MapTransform};
+use super::{Resources, set_component};
 use crate::assets::Row;
 use crate::components::{
-    Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingId, PrototypeId, Scale,
-    SceneId, ShownMeshes,
+    Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingAreas, PlantingId,
+    PrototypeId, Scale, SceneId, ShownMeshes,
 };
 use crate::document::{Diagnostic, Instances, ScenePath, Terrain};
 use crate::geometry::{Rectangle, place_text};
@@ -57,6 +57,8 @@ struct Site<'a> {
     ground: Option<&'a Ground>,
     /// Loaded meshes; a hidden mesh is not loaded.
     shapes: &'a BTreeMap<u32, Shape>,
+    /// Polygons that it names, once they are read.
+    areas: PlantingAreas,
     map: MapFrame,
     resources: &'a mut Resources,
 }
@@ -79,7 +81,7 @@ impl Site<'_> {
 }
 
 /// Places the instances of all plantings on the ground. Reads `document::Instances`, [`ShownMeshes`], [`Mesh`],
-/// [`MeshBounds`], [`Ground`] and [`MapFrame`]; writes all components of instances, and [`InstanceRange`] of plantings.
+/// [`MeshBounds`], [`Ground`] and [`MapFrame`]; writes all components of instances, and [`InstanceRange`] and [`PlantingAreas`] of plantings.
 pub(super) fn plant(world: &mut World, resources: &mut Resources) {
     despawn_instances(world, resources);
     let shapes = shapes(world);
@@ -90,6 +92,7 @@ pub(super) fn plant(world: &mut World, resources: &mut Resources) {
         (*map.expect("`triangulate_terrain` writes it")).clone()
     };
     for (index, planting) in resources.plantings.clone().into_iter().enumerate() {
+        let areas;
         let mut placed = {
             let mut source = world.query_one::<(&Instances, &ShownMeshes)>(planting);
             let (instances, shown) = source.get().expect("`hide_and_select` has run");
@@ -101,16 +104,19 @@ pub(super) fn plant(world: &mut World, resources: &mut Resources) {
                 terrain: &terrain.expect("`spawn` gives the terrain its source"),
                 ground: ground.as_deref(),
                 shapes: &shapes,
+                areas: PlantingAreas::default(),
                 map,
                 resources,
             };
             let mut placed = placements_of(instances, &mut site);
-            map = site.map;
+            (map, areas) = (site.map, site.areas);
             // Crowns without leaves and wood show nothing.
             let is_empty = |id: PrototypeId| shapes.get(&id.0).is_some_and(|shape| shape.is_empty);
             placed.retain(|one| shown.0.contains(&one.prototype) && !is_empty(one.prototype));
             placed
         };
+        let has_areas = areas != PlantingAreas::default();
+        set_component(world, planting, has_areas.then_some(areas));
         let start = placements.len();
         if start + placed.len() > MOST_INSTANCES {
             let message = format!("more than {MOST_INSTANCES} instances");

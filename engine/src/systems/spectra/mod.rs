@@ -116,6 +116,11 @@ pub(super) fn reads_file(spectrum: &Spectrum, resources: &Resources) -> bool {
     matches!(named(spectrum, resources), Spectrum::Table(_))
 }
 
+/// Returns whether a spectrum is a function of wavelength, and no list of values of the scene's bands.
+pub(super) fn has_wavelengths(spectrum: &Spectrum, resources: &Resources) -> bool {
+    !matches!(named(spectrum, resources), Spectrum::Bands(_) | Spectrum::Named(_))
+}
+
 /// The spectrum that names lead to; a name that leads nowhere stays.
 fn named<'a>(mut spectrum: &'a Spectrum, resources: &'a Resources) -> &'a Spectrum {
     // Names that go in a circle end after as many steps as there are names.

@@ -28,7 +28,7 @@ impl FisheyeCamera {
         Self {
             size,
             sees_sky: camera.sees_sky,
-            pose: CameraPose::new(&camera.placement, stage),
+            pose: CameraPose::new(&camera.placement, |at| stage.ground_at(at)),
             projection: camera.projection,
             edge: 0.5 * camera.field,
             scale: 2.0 * pixels / pixels.min_element(),

@@ -12,8 +12,9 @@ use crate::components::{ImageSamples, ImageSensor, Optics};
 use crate::extract::Stage;
 
 pub use fisheye::FisheyeCamera;
-pub use orthographic::{OrthographicCamera, footprint, wanted_footprint};
+pub use orthographic::{OrthographicCamera, footprint, view_axes, wanted_footprint};
 pub use perspective::PerspectiveCamera;
+pub use pose::CameraPose;
 
 /// Map from points of an image to rays.
 #[derive(Clone, Debug, PartialEq)]

@@ -32,7 +32,7 @@ impl OrthographicCamera {
     #[must_use]
     pub fn from_sensor(sensor: &OrthographicOptics, size: UVec2, stage: &Stage) -> Self {
         let towards = sensor.view.direction();
-        let (right, down) = axes(sensor.view);
+        let (right, down) = view_axes(sensor.view);
         let (middle, extent) = footprint(sensor, stage);
         let right = right * extent.x;
         let down = down * extent.y;
@@ -170,7 +170,8 @@ impl OrthographicCamera {
 
 /// Right and down in the image, unit vectors: right is horizontal, to the right of somebody who
 /// looks from the sensor's side.
-fn axes(view: View) -> (DVec3, DVec3) {
+#[must_use]
+pub fn view_axes(view: View) -> (DVec3, DVec3) {
     let (sin, cos) = view.azimuth.sin_cos();
     let right = DVec3::new(-cos, sin, 0.0);
     (right, right.cross(view.direction()))
@@ -196,7 +197,7 @@ pub fn wanted_footprint(sensor: &OrthographicOptics, stage: &Stage) -> (DVec3, D
             let clean = |axis: DVec3| {
                 DVec3::select(axis.abs().cmplt(DVec3::splat(1e-12)), DVec3::ZERO, axis)
             };
-            let (right, down) = axes(sensor.view);
+            let (right, down) = view_axes(sensor.view);
             let (right, down) = (clean(right), clean(down));
             let extent = DVec2::new(right.abs().dot(size), down.abs().dot(size));
             (stage.corner.extend(bottom) + 0.5 * size, extent)

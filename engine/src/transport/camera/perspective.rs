@@ -25,7 +25,7 @@ impl PerspectiveCamera {
         Self {
             size,
             sees_sky: camera.sees_sky,
-            pose: CameraPose::new(&camera.placement, stage),
+            pose: CameraPose::new(&camera.placement, |at| stage.ground_at(at)),
             reach: DVec2::new(half.x.tan(), half.y.tan()),
         }
     }

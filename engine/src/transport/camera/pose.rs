@@ -1,24 +1,28 @@
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::components::{CameraPlacement, LookAt};
-use crate::extract::Stage;
 
 /// A camera's position and axes: right and down in the image, and ahead; unit vectors,
 /// perpendicular to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CameraPose {
-    pub(super) eye: DVec3,
-    pub(super) right: DVec3,
-    pub(super) down: DVec3,
-    pub(super) ahead: DVec3,
+pub struct CameraPose {
+    /// Position, m.
+    pub eye: DVec3,
+    /// To the right in the image.
+    pub right: DVec3,
+    /// Downwards in the image.
+    pub down: DVec3,
+    /// Through the middle of the image.
+    pub ahead: DVec3,
 }
 
 impl CameraPose {
-    /// The pose in a scene: heights of camera and target may be above the ground below them.
-    pub(super) fn new(placement: &CameraPlacement, stage: &Stage) -> Self {
+    /// The pose in a scene whose ground has the height `ground_at` of a horizontal position: heights of camera and target
+    /// may be above the ground below them.
+    #[must_use]
+    pub fn new(placement: &CameraPlacement, ground_at: impl Fn(DVec2) -> f64) -> Self {
         let place = |point: DVec3| {
-            let ground =
-                if placement.above_ground { stage.ground_at(point.truncate()) } else { 0.0 };
+            let ground = if placement.above_ground { ground_at(point.truncate()) } else { 0.0 };
             point + DVec3::Z * ground
         };
         let eye = place(placement.position);
