@@ -44,6 +44,7 @@ pub mod output;
 pub mod placement;
 pub mod preview;
 pub mod products;
+pub mod queries;
 pub mod run;
 pub mod sampling;
 pub mod scattering;

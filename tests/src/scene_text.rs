@@ -7,9 +7,12 @@ use std::path::Path;
 
 use sunfleck::document::{self, ReadOptions, Reading};
 use sunfleck::products::Report;
-use sunfleck::run::{Failure, Options, SweepRun, Unwatched};
+use sunfleck::run::{Failure, Options, SceneWorld, SweepRun, Unwatched};
 
 use crate::SheetOptics;
+
+/// A sensor, for scenes of which nothing is measured.
+const VIEW: &str = r#""view": Directions(views: List([(0.0, 0.0)]))"#;
 
 /// Keys of a scene in the order of the language, each with the brackets around its entries.
 const KEYS: [(&str, [&str; 2]); 14] = [
@@ -205,11 +208,33 @@ impl SceneText {
         if self.files.is_empty() {
             return crate::measure(&self.to_string(), Path::new("."), options);
         }
+        crate::measure(&self.to_string(), self.written_files().path(), options)
+    }
+
+    /// Makes the world of the scene; it has a sun and a sensor if the text has none.
+    ///
+    /// # Panics
+    /// If the scene is wrong: the message is what its author would read.
+    #[must_use]
+    pub fn world(&self) -> SceneWorld {
+        let mut text = self.clone();
+        for (key, value) in [("sun", "zenith_deg: 30.0"), ("sensors", VIEW)] {
+            text.values.entry(index(key)).or_insert_with(|| value.to_owned());
+        }
+        let reading = text.read();
+        assert!(reading.is_sound(), "{}", reading.render());
+        let folder = self.written_files();
+        SceneWorld::from_scene(&reading.scene, folder.path())
+            .unwrap_or_else(|problems| panic!("{}", reading.source.render(&problems)))
+    }
+
+    /// A folder that holds the files beside the scene.
+    fn written_files(&self) -> tempfile::TempDir {
         let folder = tempfile::tempdir().expect("a temporary folder");
         for (name, text) in &self.files {
             fs::write(folder.path().join(name), text).expect("a file");
         }
-        crate::measure(&self.to_string(), folder.path(), options)
+        folder
     }
 }
 

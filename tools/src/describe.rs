@@ -26,6 +26,87 @@ pub(crate) fn text(facts: &SceneFacts) -> String {
     text
 }
 
+/// Plants, their sizes and numbers, for a person.
+pub(crate) fn statistics(facts: &SceneFacts) -> String {
+    let mut text = String::new();
+    if !facts.title.is_empty() {
+        text.push_str(&facts.title);
+        text.push('\n');
+    }
+    let mut rows = summary(facts);
+    // The sun is no matter of plants.
+    rows.truncate(rows.len().saturating_sub(1));
+    if facts.instances > 0 {
+        let area = facts.ground.size_m[0] * facts.ground.size_m[1];
+        let leaves = format!(
+            "{} m² of leaves on {} m², {} stems per ha",
+            number(facts.leaf_area_index * area),
+            number(area),
+            number(facts.meshes.iter().map(|mesh| mesh.per_hectare).sum())
+        );
+        rows.push(row("stand", leaves));
+    }
+    if let Some(heights) = &facts.heights {
+        let span = [heights.lowest_m, heights.mean_m, heights.highest_m].map(number);
+        let [lowest, mean, highest] = span;
+        rows.push(row("heights", format!("{lowest} to {highest} m, mean {mean} m")));
+    }
+    text.push_str(&aligned(&rows, &[]));
+    for table in [plants(facts), histogram(facts)] {
+        if table.len() > 1 {
+            text.push('\n');
+            text.push_str(&aligned(&table, &[0]));
+        }
+    }
+    text
+}
+
+fn plants(facts: &SceneFacts) -> Vec<Vec<String>> {
+    let mut rows = vec![header(&[
+        "mesh",
+        "instances",
+        "per ha",
+        "lowest (m)",
+        "mean (m)",
+        "highest (m)",
+        "leaf area (m²)",
+        "adds to LAI",
+        "triangles",
+        "discs",
+    ])];
+    rows.extend(facts.meshes.iter().map(|mesh| {
+        vec![
+            mesh.name.clone(),
+            grouped(mesh.instances),
+            number(mesh.per_hectare),
+            number(mesh.lowest_m),
+            number(mesh.height_m),
+            number(mesh.highest_m),
+            number(mesh.leaf_area_m2),
+            number(mesh.leaf_area_index),
+            grouped(mesh.triangles),
+            grouped(mesh.discs),
+        ]
+    }));
+    rows
+}
+
+/// Number of plants by height, with a bar each.
+fn histogram(facts: &SceneFacts) -> Vec<Vec<String>> {
+    /// Letters of the longest bar.
+    const LONGEST: f64 = 40.0;
+    let Some(heights) = &facts.heights else { return Vec::new() };
+    let most = heights.counts.iter().copied().max().unwrap_or(1).max(1);
+    let mut rows = vec![header(&["height (m)", "plants", ""])];
+    for (class, &count) in heights.counts.iter().enumerate() {
+        let low = heights.first_class_m + class as f64 * heights.class_m;
+        let letters = (LONGEST * count as f64 / most as f64).ceil() as usize;
+        let range = format!("{} to {}", number(low), number(low + heights.class_m));
+        rows.push(vec![range, grouped(count), "#".repeat(letters)]);
+    }
+    rows
+}
+
 fn summary(facts: &SceneFacts) -> Vec<Vec<String>> {
     let ground = &facts.ground;
     let [x, y] = ground.corner_m;

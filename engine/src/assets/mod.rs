@@ -9,6 +9,7 @@
 //! | [`read_instances`] | a text table | [`StemTable`] |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
 //! | [`read_raster`] | ESRI ASCII grid, ENVI, GeoTIFF | [`Raster`] |
+//! | [`read_bands`] | ENVI, GeoTIFF, EXR | [`BandRaster`] |
 //! | [`read_spectrum`] | text tables, ENVI, ECOSTRESS and USGS libraries, ASD files | [`SpectrumTable`] |
 
 mod areas;
@@ -42,7 +43,8 @@ pub use instances::{Row, StemTable, read_instances};
 pub use obj::read_obj;
 pub(crate) use raster::companions;
 pub use raster::{
-    Assumed, Projection, Raster, RasterError, RasterExtent, RasterGeoreference, read_raster,
+    Assumed, BandRaster, Projection, Raster, RasterBand, RasterError, RasterExtent,
+    RasterGeoreference, read_bands, read_raster,
 };
 pub use spectrum::{
     SpectrumColumns, SpectrumFormat, SpectrumPoint, SpectrumProblem, SpectrumTable, read_spectrum,

@@ -41,3 +41,4 @@ pub use read::{ReadError, ReadOptions, Reading, read_file, read_text};
 pub use ron_text::Span;
 pub use scene::*;
 pub use source::Source;
+pub use sun::SunDay;

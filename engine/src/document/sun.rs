@@ -1,5 +1,7 @@
 use solar_positioning::time::JulianDate;
-use solar_positioning::{Location, RefractionCorrection, SolarPositions, delta_t};
+use solar_positioning::{
+    Horizon, Location, RefractionCorrection, SolarEvents, SolarPositions, delta_t,
+};
 
 use super::read::Reading;
 use super::scene::{Scene, Sky, Spa, Sun, SunPosition};
@@ -141,62 +143,130 @@ impl Reading {
     }
 }
 
+/// Times of a day at which the sun rises, culminates and sets, hours of the clock of its place and time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunDay {
+    /// Time at which its upper edge rises above the horizon, with a refraction of 34'; `None` if it does not.
+    pub sunrise_h: Option<f64>,
+    /// Time at which it crosses the meridian above the pole.
+    pub noon_h: Option<f64>,
+    /// Time at which its upper edge sets.
+    pub sunset_h: Option<f64>,
+}
+
+impl Spa {
+    /// Topocentric zenith angle, refraction included, and azimuth clockwise from north, degrees.
+    ///
+    /// # Errors
+    /// If a number is out of its range, or the date does not exist.
+    pub fn angles_deg(&self) -> Result<(f64, f64), Box<Diagnostic>> {
+        spa(self)
+    }
+
+    /// Sunrise, noon and sunset of its date.
+    ///
+    /// # Errors
+    /// If a number is out of its range, or the date does not exist.
+    pub fn day(&self) -> Result<SunDay, Box<Diagnostic>> {
+        let Moment { midnight, delta_t, location, .. } = Moment::new(self)?;
+        let wrong = |error: solar_positioning::Error| {
+            Box::new(Diagnostic::error(position_path(), error.to_string()))
+        };
+        let start = midnight - self.utc_offset_h / 24.0;
+        let (end, events) = (start + 1.0, SolarEvents::new());
+        let horizon = Horizon::SunriseSunset;
+        let hour = |date: Option<f64>| date.map(|date| (date - start) * 24.0);
+        let rise = events.next_rise_from_julian(start, end, location, delta_t, horizon);
+        let set = events.next_set_from_julian(start, end, location, delta_t, horizon);
+        let noon = events.next_transit_from_julian(start, end, location.longitude, delta_t);
+        Ok(SunDay {
+            sunrise_h: hour(rise.map_err(wrong)?),
+            noon_h: hour(noon.map_err(wrong)?),
+            sunset_h: hour(set.map_err(wrong)?),
+        })
+    }
+}
+
 /// Topocentric zenith angle, refraction included, and azimuth clockwise from north, degrees.
 ///
 /// Source: Reda and Andreas (2004), Solar Energy 76, 577-589.
 fn spa(position: &Spa) -> Result<(f64, f64), Box<Diagnostic>> {
-    let &Spa {
-        date: (year, month, day),
-        time: (hour, minute, second),
-        utc_offset_h,
-        latitude_deg,
-        longitude_deg,
-        altitude_m,
-        pressure_hpa,
-        temperature_c,
-        delta_t_s,
-    } = position;
-    let at = position_path();
-    let within = |path: ScenePath, value: f64, (low, high): (f64, f64)| {
-        if (low..=high).contains(&value) {
-            return Ok(());
-        }
-        let message = format!("expected a number from {low} to {high}, found {value}");
-        Err(Box::new(Diagnostic::error(path, message)))
+    let Moment { midnight, hours, delta_t, location, refraction } = Moment::new(position)?;
+    let wrong = |error: solar_positioning::Error| {
+        Box::new(Diagnostic::error(position_path(), error.to_string()))
     };
-    within(at.key("date").index(0), f64::from(year), (0.0, 6000.0))?;
-    within(at.key("date").index(1), f64::from(month), (1.0, 12.0))?;
-    within(at.key("date").index(2), f64::from(day), (1.0, 31.0))?;
-    within(at.key("time").index(0), hour, (0.0, 24.0))?;
-    within(at.key("time").index(1), minute, (0.0, 60.0))?;
-    within(at.key("time").index(2), second, (0.0, 60.0))?;
-    within(at.key("utc_offset_h"), utc_offset_h, (-18.0, 18.0))?;
-    within(at.key("latitude_deg"), latitude_deg, (-90.0, 90.0))?;
-    within(at.key("longitude_deg"), longitude_deg, (-180.0, 180.0))?;
-    within(at.key("altitude_m"), altitude_m, (-500.0, 100_000.0))?;
-    within(at.key("pressure_hpa"), pressure_hpa, (0.0, 1200.0))?;
-    within(at.key("temperature_c"), temperature_c, (-150.0, 100.0))?;
-    within(at.key("delta_t_s"), delta_t_s.unwrap_or(0.0), (-8000.0, 8000.0))?;
-    let no = |path: ScenePath| {
-        move |error: solar_positioning::Error| Box::new(Diagnostic::error(path, error.to_string()))
-    };
-    let delta_t = delta_t_s
-        .map_or_else(|| delta_t::estimate_from_date(year as i32, month), Ok)
-        .map_err(no(at.key("date")))?;
-    let midnight = JulianDate::from_utc(year as i32, month, day, 0, 0, 0.0, delta_t)
-        .map_err(no(at.key("date")))?
-        .julian_date();
-    let hours = hour + minute / 60.0 + second / 3600.0 - utc_offset_h;
-    let time = JulianDate::new(midnight + hours / 24.0, delta_t).map_err(no(at.clone()))?;
-    let refraction = (pressure_hpa > 0.0)
-        .then(|| RefractionCorrection::new(pressure_hpa, temperature_c))
-        .transpose()
-        .map_err(no(at.key("pressure_hpa")))?;
-    let location = Location { latitude: latitude_deg, longitude: longitude_deg };
+    let time = JulianDate::new(midnight + hours / 24.0, delta_t).map_err(wrong)?;
     let sun = SolarPositions::new()
-        .at_from_julian(time, location, altitude_m, refraction)
-        .map_err(no(at.clone()))?;
+        .at_from_julian(time, location, position.altitude_m, refraction)
+        .map_err(wrong)?;
     Ok((sun.zenith_angle(), sun.azimuth()))
+}
+
+/// A place and a time as the algorithm takes them.
+struct Moment {
+    /// Julian date of the midnight at which the date begins in Greenwich.
+    midnight: f64,
+    /// Hours of universal time since that.
+    hours: f64,
+    /// Terrestrial time less universal time, s.
+    delta_t: f64,
+    location: Location,
+    refraction: Option<RefractionCorrection>,
+}
+
+impl Moment {
+    fn new(position: &Spa) -> Result<Self, Box<Diagnostic>> {
+        let &Spa {
+            date: (year, month, day),
+            time: (hour, minute, second),
+            utc_offset_h,
+            latitude_deg,
+            longitude_deg,
+            altitude_m,
+            pressure_hpa,
+            temperature_c,
+            delta_t_s,
+        } = position;
+        let at = position_path();
+        let within = |path: ScenePath, value: f64, (low, high): (f64, f64)| {
+            if (low..=high).contains(&value) {
+                return Ok(());
+            }
+            let message = format!("expected a number from {low} to {high}, found {value}");
+            Err(Box::new(Diagnostic::error(path, message)))
+        };
+        within(at.key("date").index(0), f64::from(year), (0.0, 6000.0))?;
+        within(at.key("date").index(1), f64::from(month), (1.0, 12.0))?;
+        within(at.key("date").index(2), f64::from(day), (1.0, 31.0))?;
+        within(at.key("time").index(0), hour, (0.0, 24.0))?;
+        within(at.key("time").index(1), minute, (0.0, 60.0))?;
+        within(at.key("time").index(2), second, (0.0, 60.0))?;
+        within(at.key("utc_offset_h"), utc_offset_h, (-18.0, 18.0))?;
+        within(at.key("latitude_deg"), latitude_deg, (-90.0, 90.0))?;
+        within(at.key("longitude_deg"), longitude_deg, (-180.0, 180.0))?;
+        within(at.key("altitude_m"), altitude_m, (-500.0, 100_000.0))?;
+        within(at.key("pressure_hpa"), pressure_hpa, (0.0, 1200.0))?;
+        within(at.key("temperature_c"), temperature_c, (-150.0, 100.0))?;
+        within(at.key("delta_t_s"), delta_t_s.unwrap_or(0.0), (-8000.0, 8000.0))?;
+        let no = |path: ScenePath| {
+            move |error: solar_positioning::Error| {
+                Box::new(Diagnostic::error(path, error.to_string()))
+            }
+        };
+        let delta_t = delta_t_s
+            .map_or_else(|| delta_t::estimate_from_date(year as i32, month), Ok)
+            .map_err(no(at.key("date")))?;
+        let midnight = JulianDate::from_utc(year as i32, month, day, 0, 0, 0.0, delta_t)
+            .map_err(no(at.key("date")))?
+            .julian_date();
+        let hours = hour + minute / 60.0 + second / 3600.0 - utc_offset_h;
+        let refraction = (pressure_hpa > 0.0)
+            .then(|| RefractionCorrection::new(pressure_hpa, temperature_c))
+            .transpose()
+            .map_err(no(at.key("pressure_hpa")))?;
+        let location = Location { latitude: latitude_deg, longitude: longitude_deg };
+        Ok(Self { midnight, hours, delta_t, location, refraction })
+    }
 }
 
 #[cfg(test)]
@@ -248,6 +318,28 @@ mod tests {
         estimated.delta_t_s = None;
         let (given, estimated) = (spa(&denver()).unwrap(), spa(&estimated).unwrap());
         assert!((given.0 - estimated.0).abs() < 3e-4 && (given.1 - estimated.1).abs() < 3e-4);
+    }
+
+    /// The same example: sunrise 6.212067 h, transit 11.768045 h, sunset 17.338667 h of its clock (MIDC calculator of the
+    /// NREL; the report prints 6:12:43, 11:46:05 and 17:20:19).
+    #[test]
+    fn the_sun_rises_and_sets_when_the_worked_example_of_the_report_says() {
+        let day = denver().day().unwrap();
+        let seconds =
+            |hours: f64, minutes: f64, seconds: f64| 3600.0 * hours + 60.0 * minutes + seconds;
+        for (found, expected) in [
+            (day.sunrise_h, seconds(6.0, 12.0, 43.0)),
+            (day.noon_h, seconds(11.0, 46.0, 5.0)),
+            (day.sunset_h, seconds(17.0, 20.0, 19.0)),
+        ] {
+            let found = 3600.0 * found.unwrap();
+            assert!((found - expected).abs() < 2.0, "{found} s for {expected} s");
+        }
+        let polar = |month: u32| Spa { latitude_deg: 80.0, date: (2003, month, 21), ..denver() };
+        for month in [6, 12] {
+            let day = polar(month).day().unwrap();
+            assert!(day.sunrise_h.is_none() && day.sunset_h.is_none() && day.noon_h.is_some());
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ use super::names::{ProductNames, SensorNames};
 use super::rows::columns;
 use crate::document::Param;
 use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport, SweepPoint};
+use crate::spectral::ResponseRecord;
 
 /// Names and sizes of a report's files.
 pub(super) struct Sizes<'a> {
@@ -104,6 +105,8 @@ pub(super) fn write(
         rays: report.rays,
         bands: &report.bands,
         wavelengths_nm: &report.wavelengths,
+        irradiance: &report.irradiance,
+        responses: report.responses.iter().map(ResponseRecord::from).collect(),
         stages: Ordered(report.stages.iter().map(|(name, s)| (name.as_str(), *s)).collect()),
         skipped: &report.skipped,
         notes: &report.notes,
@@ -167,6 +170,9 @@ struct Summary<'a> {
     rays: u64,
     bands: &'a [String],
     wavelengths_nm: &'a [f64],
+    /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹.
+    irradiance: &'a [f64],
+    responses: Vec<ResponseRecord>,
     stages: Ordered<'a, f64>,
     skipped: &'a [String],
     notes: &'a [String],

@@ -2,11 +2,13 @@
 //! functions.
 
 mod absorbed;
+mod canopy;
 mod components;
 mod context;
 mod denoising;
 mod directions;
 mod estimates;
+mod from_radiance;
 mod image;
 mod images;
 mod leaf_area;
@@ -22,9 +24,11 @@ mod thermal;
 pub use crate::components::Channels;
 pub use crate::transport::{PixelRows, Pixels};
 pub use absorbed::{Faces, absorbed};
+pub use canopy::{height_products, leaf_area_products};
 pub use components::{direction_components, image_components};
 pub use context::{BandSources, Context};
 pub use directions::direction_products;
+pub use from_radiance::{RadianceImage, brf_of_radiance, temperature_of_radiance};
 pub use image::{Class, Georeference, Image, Rendering};
 pub use images::image_products;
 pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};

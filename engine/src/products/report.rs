@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{Faces, Image};
 use crate::components::Projection;
 use crate::document::{FileFormat, Param};
+use crate::spectral::BandResponse;
 
 /// One axis of a product's values.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,6 +159,8 @@ pub struct Report {
     pub wavelengths: Vec<f64>,
     /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`; empty without results.
     pub irradiance: Vec<f64>,
+    /// Responses of the bands, shape `[bands]`; empty without results.
+    pub responses: Vec<BandResponse>,
     /// Wall time of each stage, s.
     pub stages: Vec<(String, f64)>,
     /// Steps that the scene did not need and that were skipped.

@@ -1,7 +1,5 @@
 //! Contents of a scene, for its author to check.
 
-use std::collections::BTreeMap;
-
 use glam::{DVec2, DVec3};
 use hecs::World;
 use serde::Serialize;
@@ -12,12 +10,12 @@ use super::cost::CostEstimate;
 use super::sensors::{Begun, MeasureContext, SensorEntity, begin, in_order};
 use crate::accel::Ray;
 use crate::components::{
-    Instance, InstanceCount, LeafArea, MaterialId, Mesh, Name, ResolvedSensor, SceneId,
-    StopCriterion, SunLight, SurfaceOptics, TerrainPatch,
+    MaterialId, Name, ResolvedSensor, SceneId, StopCriterion, SunLight, SurfaceOptics, TerrainPatch,
 };
 use crate::document::{self, Diagnostic, PhotonMeasure, Scene, ScenePath};
 use crate::extract::Stage;
 use crate::products::{BandSources, Context};
+use crate::queries::{HeightHistogram, MeshStatistics, plant_statistics};
 use crate::sampling::Key;
 
 /// Vertical rays along each side of the grid that canopy cover is found with.
@@ -40,6 +38,8 @@ pub struct SceneFacts {
     pub faces: u64,
     /// Triangles and discs that are kept in memory.
     pub unique_faces: u64,
+    /// Heights of all instances; none without any.
+    pub heights: Option<HeightFacts>,
     /// Height of the highest point, m, local frame.
     pub highest_m: f64,
     /// One-sided area of surfaces of `Leaf` materials per area of the ground's rectangle.
@@ -90,12 +90,37 @@ pub struct MeshFacts {
     pub per_hectare: f64,
     /// Triangles and discs of one.
     pub faces: u64,
+    /// Triangles of one.
+    pub triangles: u64,
+    /// Discs of one.
+    pub discs: u64,
     /// Mean height of the instances, m.
     pub height_m: f64,
+    /// Height of the lowest instance, m.
+    pub lowest_m: f64,
+    /// Height of the highest instance, m.
+    pub highest_m: f64,
     /// Mean one-sided area of an instance's surfaces of `Leaf` materials, m².
     pub leaf_area_m2: f64,
     /// Contribution of the instances to the leaf area index of the scene.
     pub leaf_area_index: f64,
+}
+
+/// Heights of all instances, each the vertical extent of its mesh times its vertical scale.
+#[derive(Clone, Debug, Serialize)]
+pub struct HeightFacts {
+    /// Height of the lowest instance, m.
+    pub lowest_m: f64,
+    /// Mean height, m.
+    pub mean_m: f64,
+    /// Height of the highest instance, m.
+    pub highest_m: f64,
+    /// Lower end of the first class of the histogram, m.
+    pub first_class_m: f64,
+    /// Width of a class, m.
+    pub class_m: f64,
+    /// Number of instances in each class.
+    pub counts: Vec<u64>,
 }
 
 /// Position of the sun.
@@ -156,7 +181,9 @@ impl SceneFacts {
         let stage = measured.stage;
         let ground = ground(scene, world);
         let area = ground.size_m[0] * ground.size_m[1];
-        let meshes = meshes(world, area);
+        let plants = plant_statistics(world);
+        let meshes: Vec<MeshFacts> =
+            plants.meshes.iter().map(|mesh| mesh_facts(mesh, area)).collect();
         let memory = stage.geometry.memory();
         let (canopy_cover, canopy_cover_error) = canopy_cover(stage);
         Self {
@@ -165,6 +192,7 @@ impl SceneFacts {
             faces: ground.triangles
                 + meshes.iter().map(|mesh| mesh.instances * mesh.faces).sum::<u64>(),
             unique_faces: memory.primitives as u64,
+            heights: plants.heights.as_ref().map(height_facts),
             highest_m: stage.top(),
             leaf_area_index: meshes.iter().map(|mesh| mesh.leaf_area_index).sum(),
             canopy_cover,
@@ -224,57 +252,34 @@ fn ground(scene: &Scene, world: &World) -> GroundFacts {
     }
 }
 
-/// Properties that all instances of a mesh share.
-struct MeshSize {
-    name: String,
-    faces: u64,
-    height: f64,
-    leaf_area: f64,
+fn mesh_facts(mesh: &MeshStatistics, area: f64) -> MeshFacts {
+    let MeshStatistics { name, instances, triangles, discs, height, leaf_area } = mesh;
+    let count = (*instances as f64).max(1.0);
+    MeshFacts {
+        name: name.clone(),
+        instances: *instances,
+        per_hectare: *instances as f64 / area * HECTARE,
+        faces: triangles + discs,
+        triangles: *triangles,
+        discs: *discs,
+        height_m: height.mean,
+        lowest_m: height.least,
+        highest_m: height.most,
+        leaf_area_m2: leaf_area / count,
+        leaf_area_index: leaf_area / area,
+    }
 }
 
-/// Sums over the instances of a mesh.
-#[derive(Clone, Copy, Default)]
-struct InstanceSums {
-    count: u64,
-    height: f64,
-    leaf_area: f64,
-}
-
-fn meshes(world: &World, area: f64) -> Vec<MeshFacts> {
-    let mut sizes: BTreeMap<u32, MeshSize> = BTreeMap::new();
-    for (id, name, mesh, leaf_area, count) in
-        &mut world.query::<(&SceneId, &Name, &Mesh, &LeafArea, &InstanceCount)>()
-    {
-        if count.0 > 0 {
-            let height = mesh.bounds().map_or(0.0, |(low, high)| f64::from(high.z - low.z));
-            let faces = (mesh.triangles.len() + mesh.discs.len()) as u64;
-            let leaf_area = leaf_area.0;
-            sizes.insert(id.0, MeshSize { name: name.0.clone(), faces, height, leaf_area });
-        }
+fn height_facts(histogram: &HeightHistogram) -> HeightFacts {
+    let HeightHistogram { span, start, step, counts } = histogram;
+    HeightFacts {
+        lowest_m: span.least,
+        mean_m: span.mean,
+        highest_m: span.most,
+        first_class_m: *start,
+        class_m: *step,
+        counts: counts.clone(),
     }
-    let mut sums: BTreeMap<u32, InstanceSums> = BTreeMap::new();
-    for Instance { placement, .. } in Instance::in_order(world) {
-        let Some(size) = sizes.get(&placement.prototype.0) else { continue };
-        let up = f64::from(placement.scale.vertical);
-        let sum = sums.entry(placement.prototype.0).or_default();
-        sum.count += 1;
-        sum.height += size.height * up.abs();
-        sum.leaf_area += size.leaf_area * placement.area_factor();
-    }
-    let facts = |(id, size): (u32, MeshSize)| {
-        let sum = sums.get(&id).copied().unwrap_or_default();
-        let count = (sum.count as f64).max(1.0);
-        MeshFacts {
-            name: size.name,
-            instances: sum.count,
-            per_hectare: sum.count as f64 / area * HECTARE,
-            faces: size.faces,
-            height_m: sum.height / count,
-            leaf_area_m2: sum.leaf_area / count,
-            leaf_area_index: sum.leaf_area / area,
-        }
-    };
-    sizes.into_iter().map(facts).collect()
 }
 
 /// Fraction of vertical rays that meet something above the ground, and its standard error.

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use crate::document::{Diagnostic, Source, legible};
+use crate::queries::{LeafAreaError, TooManyCells};
 
 /// Reason for which a scene was not run.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +35,10 @@ pub enum Failure {
     },
     #[error("could not start {threads} threads: {reason}")]
     Threads { threads: usize, reason: String },
+    #[error(transparent)]
+    LeafArea(#[from] LeafAreaError),
+    #[error(transparent)]
+    HeightModel(#[from] TooManyCells),
 }
 
 impl Failure {

@@ -23,6 +23,8 @@ mod point_reader;
 mod points;
 mod pool;
 mod provenance;
+mod queries;
+mod radiance;
 mod reading;
 mod reports;
 mod respectrum;
@@ -55,10 +57,14 @@ pub use crate::products::Forecast;
 pub use crate::transport::Partition;
 pub use check_file::{Checked, Ready, check_file, check_file_with, describe_file, stage_file};
 pub use checkpoint::{Checkpoint, SaveRule};
-pub use facts::{BandFacts, GroundFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts};
+pub use facts::{
+    BandFacts, GroundFacts, HeightFacts, MeshFacts, SceneFacts, SensorFacts, SunFacts,
+};
 pub use failure::Failure;
 pub use loaded::LoadedScene;
 pub use options::{Options, Progress, SensorProgress, Unwatched};
+pub use queries::{LeafAreaSettings, height_model_file, leaf_area_file};
+pub use radiance::{RadianceError, RadianceQuantity, convert_radiance};
 pub use respectrum::respectrum;
 pub use scene_world::SceneWorld;
 pub use session::Session;

@@ -67,6 +67,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             bands: context.bands.clone(),
             wavelengths: context.sources.iter().map(|source| source.center_nm).collect(),
             irradiance: context.irradiance.clone(),
+            responses: context.sources.iter().map(|source| source.response.clone()).collect(),
             stages: common.stages.iter().map(|(name, s)| (name.clone(), s * share)).collect(),
             skipped: settled.skipped.clone(),
             notes: [&*settled.notes, &*common.notes].concat(),

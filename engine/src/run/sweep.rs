@@ -187,6 +187,7 @@ impl SweepRun {
             bands: Vec::new(),
             wavelengths: Vec::new(),
             irradiance: Vec::new(),
+            responses: Vec::new(),
             stages: Vec::new(),
             skipped: Vec::new(),
             notes: Vec::new(),

@@ -12,6 +12,6 @@ mod solar;
 pub use band::{BandWindow, OutsideSpectrum, band_mean};
 pub use library::{library_names, library_spectrum, soil_reflectance};
 pub use planck::{brightness_temperature, planck, planck_mean, planck_mean_slope};
-pub use response::{BandResponse, InvalidResponse, ResponseCurve};
+pub use response::{BandResponse, InvalidResponse, ResponseCurve, ResponseRecord};
 pub use sensors::{SensorBand, sensor_bands, sensor_names};
 pub use solar::{ASTM_E490, ASTM_G173, SolarSpectrum};

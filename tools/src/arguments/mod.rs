@@ -12,11 +12,12 @@ use sunfleck::run::Partition;
 
 use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
-use crate::commands::{Completions, Man, New, Preview};
+use crate::commands::{Brf, Bt, Chm, Completions, Lai, Man, New, Preview, Stats, Sunpos};
 use crate::console::Console;
 use crate::verify::CHECKS;
 
 pub(crate) use self::shared::{Formats, Measured, Out, Run, Scene};
+pub(crate) use self::values::length;
 
 /// Simulates light in forest scenes that are written as text: images, BRF, albedo, absorbed light.
 #[derive(Debug, Parser)]
@@ -46,6 +47,18 @@ pub(crate) enum Command {
     Check(Check),
     /// Draw a map of a scene, as PNG and SVG
     Preview(Preview),
+    /// Count leaf area by cells and layers: maps, profiles and totals, exact for every triangle and disc
+    Lai(Lai),
+    /// Map the height of the canopy above the ground, and the height of the surface
+    Chm(Chm),
+    /// Count plants, triangles and leaf area of a scene by mesh, with a histogram of heights
+    Stats(Stats),
+    /// Convert radiance images to bidirectional reflectance factors
+    Brf(Brf),
+    /// Convert thermal radiance images to brightness temperatures
+    Bt(Bt),
+    /// Compute where the sun is: at a time, over a day, or sunrise and sunset over a year
+    Sunpos(Sunpos),
     /// Measure run time and error of each product with each transport system, for several numbers of
     /// samples
     Bench(Bench),

@@ -75,7 +75,8 @@ pub(crate) struct Out {
 }
 
 impl Out {
-    pub(super) fn folder(&self, scene: &Scene, ending: &str) -> PathBuf {
+    /// Folder for the results of a command whose default folders end in `ending`.
+    pub(crate) fn folder(&self, scene: &Scene, ending: &str) -> PathBuf {
         let named = || Path::new("out").join(scene.name() + ending);
         self.folder.clone().unwrap_or_else(named)
     }
@@ -90,9 +91,14 @@ pub(crate) struct Formats {
 }
 
 impl Formats {
+    /// The formats that were named, if any.
+    pub(crate) fn chosen(&self) -> Option<Vec<FileFormat>> {
+        (!self.formats.is_empty()).then(|| self.formats.clone())
+    }
+
     /// Options for reading a scene whose images are written in these formats.
     pub(crate) fn options(&self, scene: &Scene) -> document::ReadOptions {
-        let output = (!self.formats.is_empty()).then(|| self.formats.clone());
+        let output = self.chosen();
         document::ReadOptions { output, ..scene.options() }
     }
 }

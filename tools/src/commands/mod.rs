@@ -1,10 +1,16 @@
 //! Execution of the commands: one file a command, or a few that share most of their code.
 
+mod answer;
+mod chm;
+mod lai;
 mod new;
 mod preview;
+mod radiance;
 mod run;
 mod scenes;
 mod shell;
+mod stats;
+mod sunpos;
 mod sweep;
 mod text;
 
@@ -19,9 +25,14 @@ use sunfleck::output::Written;
 use crate::arguments::{Bench, Command, Keys, OtherBench, Verify};
 use crate::{bench, compare, import_less, verify};
 
+pub(crate) use chm::Chm;
+pub(crate) use lai::Lai;
 pub(crate) use new::New;
 pub(crate) use preview::Preview;
+pub(crate) use radiance::{Brf, Bt};
 pub(crate) use shell::{Completions, Man};
+pub(crate) use stats::Stats;
+pub(crate) use sunpos::Sunpos;
 
 /// Heading of what a scene defines and does not use.
 const SKIPPED: &str = "skipped: ";
@@ -39,6 +50,12 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Compare(arguments) => print(&compare::compare(arguments)?),
         Command::Check(arguments) => text::check(arguments),
         Command::Preview(arguments) => preview::preview(arguments),
+        Command::Chm(arguments) => chm::chm(arguments),
+        Command::Sunpos(arguments) => sunpos::sunpos(arguments),
+        Command::Brf(arguments) => radiance::brf(arguments),
+        Command::Bt(arguments) => radiance::bt(arguments),
+        Command::Stats(arguments) => stats::stats(arguments),
+        Command::Lai(arguments) => lai::lai(arguments),
         Command::Expand(scene) => text::expand(scene),
         Command::Fmt(arguments) => text::fmt(arguments),
         Command::Schema => print(&document::json_schema()),

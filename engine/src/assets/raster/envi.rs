@@ -12,7 +12,8 @@ use super::names::{headers, values};
 use super::raw::{Interleave, SampleLayout, SampleType};
 use super::window::CellWindow;
 use super::{
-    Projection, Raster, RasterError, RasterExtent, RasterGeoreference, parse_no_data, sidecar,
+    BandRaster, Projection, Raster, RasterBand, RasterError, RasterExtent, RasterGeoreference,
+    parse_no_data, sidecar,
 };
 use crate::files;
 
@@ -207,7 +208,7 @@ pub(super) fn read(
     });
     let band = header.band()?.or(auxiliary);
     let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
-    let mut values = layout.read(&file, &window)?;
+    let mut values = layout.read(&file, &window, 0)?;
     let assumed = band.apply(&mut values);
     let class_names = header.get("class names").map_or_else(Vec::new, |names| {
         names.split(',').map(|name| name.trim().to_owned()).collect()
@@ -215,6 +216,43 @@ pub(super) fn read(
     let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
     let (columns, rows) = (window.columns.len(), window.rows.len());
     Ok(Raster { columns, rows, values, place, class_names, heights, assumed })
+}
+
+/// Reads all bands.
+pub(super) fn read_bands(named: &Path, header_path: &Path) -> Result<BandRaster, RasterError> {
+    let header = EnviHeader::read(header_path)?;
+    let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
+    let layout = header.layout()?;
+    let place = header.place(layout.rows)?;
+    let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), None)?;
+    let metadata = header.band()?;
+    let list = |key: &str| -> Vec<&str> {
+        header.get(key).map_or_else(Vec::new, |text| text.split(',').map(str::trim).collect())
+    };
+    let (names, wavelengths) = (list("band names"), list("wavelength"));
+    let nm = match header.get("wavelength units").map(str::to_lowercase).as_deref() {
+        Some("micrometers" | "um") => 1000.0,
+        // Programs that write no unit write nanometres.
+        None | Some("nanometers" | "nm" | "unknown") => 1.0,
+        Some(_) => f64::NAN,
+    };
+    let mut bands = Vec::new();
+    for band in 0..layout.bands {
+        let mut values = layout.read(&file, &window, band)?;
+        metadata.apply(&mut values);
+        let index = band as usize;
+        let wavelength = wavelengths.get(index).and_then(|text| text.parse::<f64>().ok());
+        bands.push(RasterBand {
+            name: names
+                .get(index)
+                .map_or_else(|| format!("band {}", band + 1), |&name| name.to_owned()),
+            wavelength_nm: wavelength.map(|wavelength| wavelength * nm).filter(|nm| nm.is_finite()),
+            values: values.into_iter().map(|value| value as f32).collect(),
+        });
+    }
+    let description = header.get("description").unwrap_or_default().to_owned();
+    let (columns, rows) = (window.columns.len(), window.rows.len());
+    Ok(BandRaster { columns, rows, bands, description, place })
 }
 
 impl EnviHeader {

@@ -65,6 +65,6 @@ impl EnviLibrary {
     /// Values of a spectrum, shape `[channels]`.
     pub(in crate::assets) fn spectrum(&self, row: usize) -> Result<Vec<f64>, RasterError> {
         let window = CellWindow { columns: 0..self.channels(), rows: row..row + 1 };
-        self.layout.read(&self.file, &window)
+        self.layout.read(&self.file, &window, 0)
     }
 }

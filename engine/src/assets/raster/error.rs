@@ -65,6 +65,8 @@ pub enum RasterError {
          header (`dem.hdr` for `dem.img`) or convert it: gdal_translate -of GTiff in out.tif"
     )]
     Binary,
+    #[error("is no image of ENVI (values beside a header), GeoTIFF or EXR")]
+    NoImage,
     #[error("is UTF-16 text; save it as UTF-8 (ASCII) text")]
     Utf16,
     #[error("cannot be read: {0}")]

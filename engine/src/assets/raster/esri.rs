@@ -183,7 +183,7 @@ pub(super) fn read(
         BandMetadata { no_data: no_data.transpose()?, ..BandMetadata::default() }.or(auxiliary);
     let place = header.place(layout.rows, crs)?;
     let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
-    let mut values = layout.read(&file, &window)?;
+    let mut values = layout.read(&file, &window, 0)?;
     let assumed = band.apply(&mut values);
     let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
     let (columns, rows) = (window.columns.len(), window.rows.len());

@@ -11,11 +11,11 @@ use tiff::tags::{PlanarConfiguration, Tag};
 
 use super::directory::{self, PhotometricPatch};
 use super::geokeys::GeoKeys;
-use super::metadata::BandMetadata;
+use super::metadata::{BandItems, BandMetadata};
 use super::window::CellWindow;
 use super::{
-    MOST_CELLS, Raster, RasterError, RasterExtent, RasterGeoreference, length, parse_no_data,
-    sidecar,
+    BandRaster, MOST_CELLS, Raster, RasterBand, RasterError, RasterExtent, RasterGeoreference,
+    length, parse_no_data, sidecar,
 };
 use crate::files;
 
@@ -97,6 +97,43 @@ pub(super) fn read(
     Ok(Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed })
 }
 
+/// Reads all bands.
+pub(super) fn read_bands(file: File) -> Result<BandRaster, RasterError> {
+    let Opened { mut tiff, length, .. } = open(file)?;
+    let (columns, rows) = tiff.dimensions().map_err(wrong)?;
+    let (columns, rows) = (u64::from(columns), u64::from(rows));
+    let picture = TiffPicture::new(&mut tiff)?;
+    if picture.bits < 8 {
+        return Err(RasterError::Bits(picture.bits));
+    }
+    claimed_bytes(&mut tiff, columns, rows, length)?;
+    let place = place(&mut tiff, columns as f64, rows as f64)?;
+    let metadata = band(&mut tiff)?;
+    let items = BandItems::from_tag(&text_of(&mut tiff, METADATA)?.unwrap_or_default());
+    let description = text_of(&mut tiff, Tag::ImageDescription)?.unwrap_or_default();
+    let (window, place) = CellWindow::new(columns, rows, place.as_ref(), None)?;
+    let mut bands = Vec::new();
+    for sample in 0..usize::from(picture.samples) {
+        let mut values = picture.read(&mut tiff, &window, sample)?;
+        metadata.apply(&mut values);
+        bands.push(RasterBand {
+            name: items.name(sample).unwrap_or_else(|| format!("band {}", sample + 1)),
+            wavelength_nm: items.wavelength_nm(sample),
+            values: values.into_iter().map(|value| value as f32).collect(),
+        });
+    }
+    let (columns, rows) = (window.columns.len(), window.rows.len());
+    Ok(BandRaster { columns, rows, bands, description, place })
+}
+
+/// Tag of GDAL's own description of bands.
+const METADATA: Tag = Tag::Unknown(42112);
+
+fn text_of(tiff: &mut Tiff, tag: Tag) -> Result<Option<String>, RasterError> {
+    let value = tiff.find_tag(tag).map_err(wrong)?;
+    Ok(value.and_then(|value| value.into_string().ok()))
+}
+
 /// Leaves out the cells whose mask is 0.
 fn hide(values: &mut [f64], mask: &[f64]) {
     for (value, mask) in values.iter_mut().zip(mask) {
@@ -108,14 +145,9 @@ fn hide(values: &mut [f64], mask: &[f64]) {
 
 /// Reads the metadata of the first band.
 fn band(tiff: &mut Tiff) -> Result<BandMetadata, RasterError> {
-    // GDAL's own description of bands.
-    const METADATA: Tag = Tag::Unknown(42112);
-    let mut text = |tag: Tag| {
-        let value = tiff.find_tag(tag).map_err(wrong)?;
-        Ok::<_, RasterError>(value.and_then(|value| value.into_string().ok()))
-    };
-    let band = BandMetadata::from_tag(&text(METADATA)?.unwrap_or_default())?;
-    let no_data = text(Tag::GdalNodata)?.filter(|text| !text.trim_matches(['\0', ' ']).is_empty());
+    let band = BandMetadata::from_tag(&text_of(tiff, METADATA)?.unwrap_or_default())?;
+    let no_data =
+        text_of(tiff, Tag::GdalNodata)?.filter(|text| !text.trim_matches(['\0', ' ']).is_empty());
     let no_data = no_data.map(|text| {
         parse_no_data(&text).ok_or(RasterError::BadMetadata { what: "NODATA", found: text })
     });

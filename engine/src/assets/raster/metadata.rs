@@ -110,6 +110,46 @@ impl BandMetadata {
     }
 }
 
+/// Names and wavelengths of all bands in tag 42112.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct BandItems {
+    /// Number of the band, name of the item and value.
+    items: Vec<(usize, String, String)>,
+}
+
+impl BandItems {
+    pub(super) fn from_tag(text: &str) -> Self {
+        let item = |item: &str| {
+            let (attributes, rest) = item.split_once('>')?;
+            // GDAL escapes twice.
+            let value = unescaped(&unescaped(rest.split('<').next()?));
+            let sample = attribute(attributes, "sample")?.parse().ok()?;
+            Some((sample, attribute(attributes, "name")?.to_lowercase(), value))
+        };
+        Self { items: text.split("<Item ").skip(1).filter_map(item).collect() }
+    }
+
+    fn get(&self, band: usize, name: &str) -> Option<&str> {
+        let is_it = |item: &&(usize, String, String)| item.0 == band && item.1 == name;
+        self.items.iter().find(is_it).map(|item| item.2.as_str())
+    }
+
+    pub(super) fn name(&self, band: usize) -> Option<String> {
+        self.get(band, "description").map(str::to_owned)
+    }
+
+    /// Centre wavelength, nm: by GDAL's own item, in micrometres, or by that of ENVI files with its unit.
+    pub(super) fn wavelength_nm(&self, band: usize) -> Option<f64> {
+        let number = |name: &str| self.get(band, name)?.parse::<f64>().ok();
+        let units = self.get(band, "wavelength_units").map(str::to_lowercase);
+        match units.as_deref() {
+            Some("nanometers") => number("wavelength"),
+            Some("micrometers") => number("wavelength").map(|um| 1000.0 * um),
+            _ => number("central_wavelength_um").map(|um| 1000.0 * um),
+        }
+    }
+}
+
 fn number(what: &'static str, text: &str) -> Result<f64, RasterError> {
     let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| RasterError::BadMetadata { what, found: text.to_owned() })

@@ -1,6 +1,7 @@
 //! Rasters: ESRI ASCII grids, ENVI files, Esri's `.bil` and `.flt`, and `GeoTIFF`.
 
 mod ascii;
+mod bands;
 mod directory;
 mod envi;
 mod envi_library;
@@ -26,6 +27,7 @@ use super::crs::{Axes, Crs, Heights};
 use super::format::{self, FileReader};
 use super::text::open;
 
+pub use bands::{BandRaster, RasterBand, read_bands};
 pub(super) use envi_library::{EnviLibrary, is_spectral_library};
 pub use error::RasterError;
 pub(crate) use sidecar::companions;

@@ -39,17 +39,22 @@ pub(super) struct SampleLayout {
 }
 
 impl SampleLayout {
-    /// Values of the cells of a window in the first band.
-    pub(super) fn read(&self, path: &Path, window: &CellWindow) -> Result<Vec<f64>, RasterError> {
-        let Self { columns, bands, offset, size, .. } = *self;
+    /// Values of the cells of a window in a band, which is counted from 0.
+    pub(super) fn read(
+        &self,
+        path: &Path,
+        window: &CellWindow,
+        band: u64,
+    ) -> Result<Vec<f64>, RasterError> {
+        let Self { columns, rows, bands, offset, size, .. } = *self;
         let mut file = self.open(path)?;
-        // Values from one of the first band to the next in a row, and from row to row.
-        let (step, stride) = match self.interleave {
-            Interleave::Bands => (1, columns),
-            Interleave::Lines => (1, columns * bands),
-            Interleave::Pixels => (bands, columns * bands),
+        // Values from one of the band to the next in a row, from row to row, and before the first of the band.
+        let (step, stride, before) = match self.interleave {
+            Interleave::Bands => (1, columns, band * columns * rows),
+            Interleave::Lines => (1, columns * bands, band * columns),
+            Interleave::Pixels => (bands, columns * bands, band),
         };
-        let first = window.columns.start as u64 * step;
+        let first = before + window.columns.start as u64 * step;
         let count = (window.columns.len() as u64 - 1) * step + 1;
         let mut bytes = vec![0; (count * size) as usize];
         let mut values = Vec::with_capacity(window.len());

@@ -102,6 +102,7 @@ pub(in crate::output) fn report(sensors: Vec<SensorReport>) -> Report {
         sensors,
         params: vec![("sza".to_owned(), 30.0.into())],
         irradiance: vec![1.0; 2],
+        responses: Vec::new(),
         sun_azimuth_deg: Some(250.0),
         source: None,
         coefficients: None,

@@ -4,6 +4,8 @@ mod smooth_rule;
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::band::value_at;
 use super::{BandWindow, OutsideSpectrum, band_mean};
 use smooth_rule::smooth_rule;
@@ -48,6 +50,57 @@ enum CurveShape {
     Gaussian { center: f64, fwhm: f64 },
     /// Straight lines between points, 0 beyond.
     Lines(Vec<Point>),
+}
+
+/// Response as files of results hold it.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum ResponseRecord {
+    /// Alike within a window.
+    Window {
+        /// Centre, nm.
+        center_nm: f64,
+        /// Width, nm.
+        width_nm: f64,
+    },
+    /// Normal curve.
+    Gaussian {
+        /// Centre, nm.
+        center_nm: f64,
+        /// Full width at half maximum, nm.
+        fwhm_nm: f64,
+    },
+    /// Straight lines between points (wavelength nm, relative response).
+    Points(Vec<Point>),
+}
+
+impl From<&BandResponse> for ResponseRecord {
+    fn from(response: &BandResponse) -> Self {
+        match response {
+            BandResponse::Window(BandWindow { center, width }) => {
+                Self::Window { center_nm: *center, width_nm: *width }
+            }
+            BandResponse::Curve(curve) => match &curve.shape {
+                CurveShape::Gaussian { center, fwhm } => {
+                    Self::Gaussian { center_nm: *center, fwhm_nm: *fwhm }
+                }
+                CurveShape::Lines(points) => Self::Points(points.clone()),
+            },
+        }
+    }
+}
+
+impl TryFrom<ResponseRecord> for BandResponse {
+    type Error = InvalidResponse;
+
+    fn try_from(record: ResponseRecord) -> Result<Self, InvalidResponse> {
+        Ok(match record {
+            ResponseRecord::Window { center_nm, width_nm } => {
+                Self::Window(BandWindow { center: center_nm, width: width_nm })
+            }
+            ResponseRecord::Gaussian { center_nm, fwhm_nm } => Self::gaussian(center_nm, fwhm_nm),
+            ResponseRecord::Points(points) => return Self::from_points(points),
+        })
+    }
 }
 
 /// Points that are no response.
