@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use super::crown::CrownError;
 use super::crs::TargetSystem;
 use super::gltf::GltfError;
+use super::ply::PlyError;
 use super::raster::RasterError;
 use super::spectrum::SpectrumProblem;
 
@@ -182,6 +183,8 @@ pub enum AssetError {
     )]
     NotInMetres { file: PathBuf, what: String, system: String, target: TargetSystem },
 
+    #[error("{}: {problem}", .file.display())]
+    Ply { file: PathBuf, problem: PlyError },
     #[error("{}: {problem}", .file.display())]
     Gltf { file: PathBuf, problem: GltfError },
     #[error("{}: {problem}", .file.display())]

@@ -14,6 +14,7 @@ const HEAD: u64 = 4096;
 pub(super) enum FileReader {
     Obj,
     Gltf,
+    Ply,
     Discs,
     Table,
     GeoJson,
@@ -25,6 +26,9 @@ pub(super) enum FileReader {
 pub(super) enum FileContent {
     Obj,
     Gltf,
+    Ply,
+    /// Triangles without a unit and without parts.
+    Stl,
     DiscTable,
     /// Materials of an OBJ file.
     MaterialLibrary,
@@ -52,7 +56,13 @@ impl FileContent {
     fn is_of_mesh(self) -> bool {
         matches!(
             self,
-            Self::Obj | Self::Gltf | Self::DiscTable | Self::MaterialLibrary | Self::Mesh
+            Self::Obj
+                | Self::Gltf
+                | Self::Ply
+                | Self::Stl
+                | Self::DiscTable
+                | Self::MaterialLibrary
+                | Self::Mesh
         )
     }
 }
@@ -70,6 +80,7 @@ impl FileReader {
         match self {
             Self::Obj => "Obj",
             Self::Gltf => "Gltf",
+            Self::Ply => "Ply",
             Self::Discs => "Discs",
             Self::Table => "Table",
             Self::GeoJson => "GeoJson",
@@ -81,6 +92,7 @@ impl FileReader {
         match self {
             Self::Obj => "Wavefront OBJ",
             Self::Gltf => "glTF 2.0 and GLB",
+            Self::Ply => "PLY",
             Self::Discs => "a table of discs (`radius,x,y,z,nx,ny,nz`)",
             Self::Table => "text tables (CSV)",
             Self::GeoJson => "GeoJSON",
@@ -89,7 +101,7 @@ impl FileReader {
     }
 
     pub(super) fn reads_mesh(self) -> bool {
-        matches!(self, Self::Obj | Self::Gltf | Self::Discs)
+        matches!(self, Self::Obj | Self::Gltf | Self::Ply | Self::Discs)
     }
 
     fn reads(self, content: FileContent) -> bool {
@@ -97,6 +109,7 @@ impl FileReader {
             (self, content),
             (Self::Obj, FileContent::Obj)
                 | (Self::Gltf, FileContent::Gltf)
+                | (Self::Ply, FileContent::Ply)
                 | (Self::Discs, FileContent::DiscTable)
                 | (Self::Raster, FileContent::Cells)
         )
@@ -107,21 +120,27 @@ impl FileReader {
         let text = match (content, self) {
             (FileContent::Obj, _) => "write `Obj` in place of what reads it now",
             (FileContent::Gltf, _) => "write `Gltf` in place of what reads it now",
+            (FileContent::Ply, _) => "write `Ply` in place of what reads it now",
+            (FileContent::Stl, _) => {
+                "it says neither its unit nor its parts: convert it to PLY, with Blender or MeshLab, for example, and \
+                 write `Ply` with the `unit_m` that you know and the `material` of all of it; leaves and wood need a \
+                 file each, or an OBJ with groups"
+            }
             (FileContent::DiscTable, _) => "write `Discs` in place of what reads it now",
             (FileContent::MaterialLibrary, _) => "name the OBJ file that it belongs to",
-            (FileContent::PointCloud, Self::Obj | Self::Gltf | Self::Discs) => {
+            (FileContent::PointCloud, Self::Obj | Self::Gltf | Self::Ply | Self::Discs) => {
                 "convert the points to a mesh (OBJ or glTF), or to a table of discs for `Discs`"
             }
-            (FileContent::Archive, Self::Obj | Self::Gltf | Self::Discs) => {
+            (FileContent::Archive, Self::Obj | Self::Gltf | Self::Ply | Self::Discs) => {
                 "unpack it and name the mesh file in it"
             }
             (FileContent::Document, _) => "get the file itself",
             (FileContent::Mesh, _)
             | (
                 FileContent::Drawing | FileContent::Features | FileContent::Numbers,
-                Self::Obj | Self::Gltf | Self::Discs,
-            ) => "convert it to OBJ or glTF, with Blender or MeshLab, for example",
-            (_, Self::Obj | Self::Gltf | Self::Discs) => "name the file of the mesh",
+                Self::Obj | Self::Gltf | Self::Ply | Self::Discs,
+            ) => "convert it to OBJ, glTF or PLY, with Blender or MeshLab, for example",
+            (_, Self::Obj | Self::Gltf | Self::Ply | Self::Discs) => "name the file of the mesh",
             (FileContent::Features | FileContent::Drawing, Self::GeoJson) => {
                 return format!("convert it: `ogr2ogr polygons.geojson {file}`");
             }

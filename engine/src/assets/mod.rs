@@ -2,7 +2,7 @@
 //!
 //! | function | from | to |
 //! |---|---|---|
-//! | [`read_obj`], [`read_gltf`] | Wavefront OBJ, glTF 2.0 and GLB | [`Mesh`](crate::components::Mesh) |
+//! | [`read_obj`], [`read_gltf`], [`read_ply`] | Wavefront OBJ, glTF 2.0 and GLB, PLY | [`Mesh`](crate::components::Mesh) |
 //! | [`read_discs`] | CSV or RAMI text | [`Mesh`](crate::components::Mesh) |
 //! | [`mesh_of_faces`] | polygons in the scene | [`Mesh`](crate::components::Mesh) |
 //! | [`grow_crown`] | a [`GeneratedCrown`](crate::document::GeneratedCrown) | [`Mesh`](crate::components::Mesh) |
@@ -17,6 +17,7 @@ mod crown;
 pub(crate) mod crs;
 mod discs;
 mod error;
+mod face_cutter;
 mod faces;
 mod format;
 mod gltf;
@@ -24,6 +25,7 @@ mod import;
 mod instances;
 mod numbers;
 mod obj;
+mod ply;
 mod polygon;
 mod raster;
 mod signatures;
@@ -41,6 +43,7 @@ pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
 pub use instances::{Row, StemTable, read_instances};
 pub use obj::read_obj;
+pub use ply::{PlyError, read_ply};
 pub(crate) use raster::companions;
 pub use raster::{
     Assumed, BandRaster, Projection, Raster, RasterBand, RasterError, RasterExtent,

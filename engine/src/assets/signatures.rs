@@ -48,8 +48,8 @@ const SIGNATURES: [Signature; 32] = [
 
 /// First bytes of meshes, which a text table may have too.
 const MESH_SIGNATURES: [Signature; 18] = [
-    (b"ply\n", "a PLY file", FileContent::Mesh),
-    (b"ply\r", "a PLY file", FileContent::Mesh),
+    (b"ply\n", "a PLY file", FileContent::Ply),
+    (b"ply\r", "a PLY file", FileContent::Ply),
     (b"Kaydara FBX", "an FBX file", FileContent::Mesh),
     (b"; FBX", "an FBX file", FileContent::Mesh),
     (b"glTF", "a GLB file", FileContent::Gltf),
@@ -149,7 +149,7 @@ fn mesh_format(head: &[u8], length: u64) -> Option<FoundFormat> {
             == u32::try_from(length).ok();
     let text = head.trim_ascii_start();
     if is_binary_stl || (text.starts_with(b"solid") && holds(head, b"facet")) {
-        Some(FoundFormat::new("an STL file", FileContent::Mesh))
+        Some(FoundFormat::new("an STL file", FileContent::Stl))
     } else if is_3ds {
         Some(FoundFormat::new("a 3DS file", FileContent::Mesh))
     } else if text.starts_with(b"{") && holds(head, b"\"asset\"") {
@@ -192,8 +192,8 @@ pub(super) fn is_obj(head: &[u8]) -> bool {
 pub(super) fn by_extension(path: &Path) -> Option<FoundFormat> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     let (name, content) = match extension.as_str() {
-        "ply" => ("a PLY file", FileContent::Mesh),
-        "stl" => ("an STL file", FileContent::Mesh),
+        "ply" => ("a PLY file", FileContent::Ply),
+        "stl" => ("an STL file", FileContent::Stl),
         "fbx" => ("an FBX file", FileContent::Mesh),
         "dae" => ("a COLLADA file", FileContent::Mesh),
         "3ds" => ("a 3DS file", FileContent::Mesh),

@@ -19,6 +19,7 @@ pub(super) fn warn_mesh_sizes(world: &mut World, resources: &mut Resources) {
             .expect("`spawn` gives each mesh prototype its source")
         {
             Prototype::Obj(obj) => obj.unit_m,
+            Prototype::Ply(ply) => ply.unit_m,
             Prototype::Gltf(_) | Prototype::Discs { .. } => 1.0,
             Prototype::Faces { .. } | Prototype::Crown(_) => continue,
         };

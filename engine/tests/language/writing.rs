@@ -7,7 +7,7 @@ use sunfleck::document::{
     Distribution, Ends, FileFormat, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure,
     ImageOptions, InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map,
     Material, Obj, Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons,
-    Picture, Prospect, Prototype, ReadOptions, Response, Roulette, Rpv, Rule, Scatter, Scene,
+    Picture, Ply, Prospect, Prototype, ReadOptions, Response, Roulette, Rpv, Rule, Scatter, Scene,
     Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, SpectrumFile, Stems,
     StopCriterion, Sun, SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum,
     Temperature, Terrain, TerrainPlane, ThermalSky, Transport, ValueUnit, Views, VirtualPlane,
@@ -179,11 +179,14 @@ fn from_file() -> BoxedStrategy<Prototype> {
 }
 
 fn mesh() -> BoxedStrategy<Prototype> {
+    let ply = (text(), number(), text()).prop_map(|(file, unit_m, material)| {
+        Prototype::Ply(Ply { file, up: Axis::Y, unit_m, material, origin: Origin::BaseCenter })
+    });
     let discs = (text(), text()).prop_map(|(file, material)| Prototype::Discs { file, material });
     let corner = (number(), number(), number());
     let faces = (list(list(corner)), text())
         .prop_map(|(faces_m, material)| Prototype::Faces { faces_m, material });
-    prop_oneof![from_file(), discs, faces, crown()].boxed()
+    prop_oneof![from_file(), ply, discs, faces, crown()].boxed()
 }
 
 fn distribution() -> BoxedStrategy<Distribution> {

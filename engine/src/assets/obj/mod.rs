@@ -19,16 +19,13 @@ use indexmap::{IndexMap, IndexSet};
 
 use self::line::{comment, is_name, without_comment};
 use super::error::excerpt;
+use super::face_cutter::{CutError, FaceCutter, MOST_CORNERS};
 use super::format::{self, FileReader};
 use super::import::{Collector, Import};
-use super::polygon::{Pieces, Tangled, triangulate};
 use super::text::{TextLines, decode, number};
 use super::{AssetError, Loaded};
 use crate::components::Mesh;
 use crate::document::PartsBy;
-
-/// Most corners of a face: cutting a concave polygon takes the square of them.
-const MOST_CORNERS: usize = 2048;
 
 /// Most unknown keywords in warnings.
 const MOST_UNKNOWN: usize = 5;
@@ -124,17 +121,13 @@ struct ObjImporter<'a> {
     deferred: Vec<Deferred>,
     /// True once all vertices of the file are read; new ones may then be added behind them.
     is_read: bool,
-    /// Number of faces that cross themselves, and the first one's line.
-    crossed: (usize, usize),
+    cutter: FaceCutter,
     /// Names that follow `mtllib`.
     libraries: IndexSet<String>,
     /// First line of each unknown keyword.
     unknown: IndexMap<String, usize>,
-    // Buffers that are reused from face to face.
+    /// Buffer that is reused from face to face.
     corners: Vec<i64>,
-    polygon: Vec<u32>,
-    points: Vec<DVec3>,
-    pieces: Pieces,
 }
 
 impl<'a> ObjImporter<'a> {
@@ -149,13 +142,10 @@ impl<'a> ObjImporter<'a> {
             part: None,
             deferred: Vec::new(),
             is_read: false,
-            crossed: (0, 0),
+            cutter: FaceCutter::default(),
             libraries: IndexSet::new(),
             unknown: IndexMap::new(),
             corners: Vec::new(),
-            polygon: Vec::new(),
-            points: Vec::new(),
-            pieces: Pieces::default(),
         }
     }
 
@@ -258,48 +248,19 @@ impl<'a> ObjImporter<'a> {
     /// Adds the triangles of a face whose corners count from 1. Returns false if that takes new vertices
     /// while some of the file's are still to come.
     fn cut(&mut self, line: usize, part: u32, corners: &[i64]) -> Result<bool, AssetError> {
-        self.polygon.clear();
-        for &corner in corners {
-            let index = (corner - 1) as usize;
-            if index >= self.mesh.vertices.len() {
-                return Err(self.no_such_vertex(line, corner));
+        let count = self.mesh.vertices.len();
+        if let Some(&corner) = corners.iter().find(|&&corner| (corner - 1) as usize >= count) {
+            return Err(self.no_such_vertex(line, corner));
+        }
+        let indices = corners.iter().map(|&corner| (corner - 1) as u32);
+        let cut = self.cutter.cut(&mut self.mesh, indices, line, part, self.is_read);
+        cut.map_err(|error| match error {
+            CutError::Tangled => AssetError::TangledFace { file: self.mesh.file.clone(), line },
+            CutError::TooFar(value) => {
+                AssetError::TooFar { file: self.mesh.file.clone(), line, value }
             }
-            let index = index as u32;
-            if self.polygon.last() != Some(&index) {
-                self.polygon.push(index);
-            }
-        }
-        let vertices = &self.mesh.vertices;
-        self.points.clear();
-        self.points.extend(self.polygon.iter().map(|&index| vertices[index as usize]));
-        let tangled = |Tangled| AssetError::TangledFace { file: self.mesh.file.clone(), line };
-        triangulate(&self.points, &mut self.pieces).map_err(tangled)?;
-        let crossings = self.pieces.crossings.len();
-        if crossings > 0 && !self.is_read {
-            return Ok(false);
-        }
-        if self.pieces.is_crossed {
-            let (count, first) = self.crossed;
-            // Faces that need new vertices come last.
-            let first = if count == 0 { line } else { first.min(line) };
-            self.crossed = (count + 1, first);
-        }
-        if self.pieces.triangles.is_empty() {
-            // A face without area, such as one of repeated corners: as a triangle it is dropped and counted.
-            let index = self.polygon[0];
-            self.mesh.add_triangle([index; 3], part)?;
-        }
-        let first = self.mesh.reserve(crossings)?;
-        for &crossing in &self.pieces.crossings {
-            let added = self.mesh.add_vertex(crossing);
-            let file = &self.mesh.file;
-            added.map_err(|value| AssetError::TooFar { file: file.clone(), line, value })?;
-        }
-        self.polygon.extend((0..crossings as u32).map(|crossing| first + crossing));
-        for piece in &self.pieces.triangles {
-            self.mesh.add_triangle(piece.map(|place| self.polygon[place]), part)?;
-        }
-        Ok(true)
+            CutError::Mesh(error) => error,
+        })
     }
 
     fn no_such_vertex(&self, line: usize, index: i64) -> AssetError {
@@ -315,13 +276,7 @@ impl<'a> ObjImporter<'a> {
         for (keyword, line) in &self.unknown {
             self.mesh.warn(&format!("lines with {keyword:?} were left out (first: line {line})"));
         }
-        let (crossed, first) = self.crossed;
-        if crossed > 0 {
-            self.mesh.warn(&format!(
-                "the outlines of {crossed} faces cross themselves (first: line {first}); what they \
-                 enclose counts once: check the order of their corners"
-            ));
-        }
+        self.cutter.warn_crossed(&mut self.mesh, "line");
         let transparent = materials::transparent(&self.mesh.file, &self.libraries);
         if !transparent.is_empty() {
             let parts = self.parts.iter().enumerate();

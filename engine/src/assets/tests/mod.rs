@@ -5,6 +5,7 @@ mod glb;
 mod gltf;
 mod hostile;
 mod obj;
+mod ply;
 mod raster;
 mod tables;
 mod trees;

@@ -12,6 +12,7 @@ pub(super) fn check_meshes(scene: &Scene, report: &mut Report<'_>) {
         match mesh {
             Prototype::Obj(obj) => check_file(&path, &obj.mesh_file(), report),
             Prototype::Gltf(gltf) => check_file(&path, &gltf.mesh_file(), report),
+            Prototype::Ply(ply) => report.above_zero(path.key("unit_m"), ply.unit_m),
             Prototype::Discs { .. } => {}
             Prototype::Faces { faces_m, .. } => {
                 check_faces(&path.key("faces_m"), faces_m, report);

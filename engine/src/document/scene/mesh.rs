@@ -10,6 +10,8 @@ choice! {
         Obj(..Obj),
         /// glTF 2.0 or GLB; materials are the parts.
         Gltf(..Gltf),
+        /// PLY, ASCII or binary: one part.
+        Ply(..Ply),
         /// A cloud of discs: CSV with the header `radius,x,y,z,nx,ny,nz`, or a RAMI `.def` text
         /// with rows `r x y z nx ny nz`; m, z up.
         Discs {
@@ -70,6 +72,22 @@ record! {
     }
 }
 
+record! {
+    /// Mesh from a PLY file.
+    pub struct Ply ("a mesh from a PLY file") {
+        /// Path, relative to the scene file.
+        file: FilePath => r#""assets/tree.ply""#,
+        /// Axis that points up.
+        up: Axis => "Z",
+        /// Length of the file's unit, m.
+        unit_m: f64 => "1.0",
+        /// Material of all of it.
+        material: Ref<Material> => r#""leaf""#,
+        /// Point that becomes the origin.
+        origin: Origin = Origin::File,
+    }
+}
+
 /// Keys that OBJ and glTF files have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshFile<'a> {
@@ -123,7 +141,7 @@ impl Prototype {
         match self {
             Self::Obj(obj) => Some(obj.mesh_file()),
             Self::Gltf(gltf) => Some(gltf.mesh_file()),
-            Self::Discs { .. } | Self::Faces { .. } | Self::Crown(_) => None,
+            Self::Ply(_) | Self::Discs { .. } | Self::Faces { .. } | Self::Crown(_) => None,
         }
     }
 }

@@ -30,7 +30,7 @@ pub use instances::{
 };
 pub use light::{Sky, Spa, Sun, SunPosition};
 pub use material::{Coating, Lambertian, Leaf, Material, Rpv, Soilspect, SurfaceQuantity};
-pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Prototype};
+pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Ply, Prototype};
 pub use output::FileFormat;
 pub use param::Param;
 pub use program::{DerivativeSteps, Include, Sweep};

@@ -9,7 +9,7 @@ use super::Resources;
 use super::hide_and_select::needed_meshes;
 use crate::assets::{self, AssetError, Import, Loaded};
 use crate::components::{Mesh, PartMaterials};
-use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj, ScenePath};
+use crate::document::{self, Diagnostic, Gltf, MeshFile, Obj, Ply, ScenePath};
 
 pub(super) use part_materials::part_materials;
 
@@ -59,6 +59,7 @@ pub(super) fn note_file(mesh: &document::Prototype, resources: &mut Resources) {
     match mesh {
         document::Prototype::Obj(Obj { file, .. })
         | document::Prototype::Gltf(Gltf { file, .. })
+        | document::Prototype::Ply(Ply { file, .. })
         | document::Prototype::Discs { file, .. } => {
             resources.file(file);
         }
@@ -79,6 +80,10 @@ pub(super) fn load(mesh: &document::Prototype, folder: &Path) -> Result<Loaded<M
         }
         document::Prototype::Gltf(gltf) => {
             assets::read_gltf(&folder.join(&gltf.file), &import(&gltf.mesh_file()))
+        }
+        document::Prototype::Ply(Ply { file, up, unit_m, origin, .. }) => {
+            let import = Import { up: up.clone(), unit_m: *unit_m, origin: origin.clone() };
+            assets::read_ply(&folder.join(file), &import)
         }
         document::Prototype::Discs { file, .. } => assets::read_discs(&folder.join(file)),
         document::Prototype::Faces { faces_m, .. } => assets::mesh_of_faces(faces_m),

@@ -2,7 +2,8 @@ use std::collections::{HashMap, HashSet};
 
 use crate::components::{MaterialId, Mesh};
 use crate::document::{
-    self, Diagnostic, GeneratedCrown, Map, Material, Obj, PartsBy, Ref, ScenePath, unknown_name,
+    self, Diagnostic, GeneratedCrown, Map, Material, Obj, PartsBy, Ply, Ref, ScenePath,
+    unknown_name,
 };
 use crate::placement::is_like;
 use crate::systems::Resources;
@@ -21,7 +22,8 @@ pub(in crate::systems) fn part_materials(
     let (named, rest) = match mesh {
         document::Prototype::Obj(obj) => (&obj.parts, obj.material.as_ref()),
         document::Prototype::Gltf(gltf) => (&gltf.parts, gltf.material.as_ref()),
-        document::Prototype::Discs { material, .. }
+        document::Prototype::Ply(Ply { material, .. })
+        | document::Prototype::Discs { material, .. }
         | document::Prototype::Faces { material, .. } => (&none, Some(material)),
         document::Prototype::Crown(crown) => {
             return crown_materials(crown, loaded, path, resources);
