@@ -10,7 +10,7 @@ mod commands;
 mod compare;
 mod console;
 mod describe;
-mod import_less;
+mod import;
 mod interrupt;
 mod plot;
 mod progress;

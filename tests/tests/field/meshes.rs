@@ -204,7 +204,10 @@ fn files_of_other_formats_are_named() {
         case("39-other-mesh-formats/tree_ply_Obj.ron", &[Fails(&["PLY", "write `Ply`"])]),
         case("39-other-mesh-formats/tree_bin_ply_Obj.ron", &[Fails(&["PLY", "write `Ply`"])]),
         case("39-other-mesh-formats/tree_ply_Discs.ron", &[Fails(&["PLY", "`Discs`"])]),
-        case("39-other-mesh-formats/tree_stl_Obj.ron", &[Fails(&["STL", "convert it to PLY", "unit_m"])]),
+        case(
+            "39-other-mesh-formats/tree_stl_Obj.ron",
+            &[Fails(&["STL", "convert it to PLY", "unit_m"])],
+        ),
         case("39-other-mesh-formats/tree_fbx_Obj.ron", &[Fails(&["FBX", "convert it to OBJ"])]),
         case("39-other-mesh-formats/tree_obj_gz_Obj.ron", &[Fails(&["gzip", "unpack it"])]),
         case("39-other-mesh-formats/tree_gltf1_Gltf.ron", &[Fails(&["glTF 1.0", "glTF 2.0"])]),

@@ -1,10 +1,11 @@
 //! The command line: commands and their arguments.
 
+mod import;
 mod shared;
 mod values;
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use sunfleck::document::{Param, System};
@@ -18,6 +19,7 @@ use crate::verify::CHECKS;
 
 pub(crate) use self::shared::{Formats, Measured, Out, Run, Scene};
 pub(crate) use self::values::length;
+pub(crate) use import::{Import, ImportLess};
 
 /// Simulates light in forest scenes that are written as text: images, BRF, albedo, absorbed light.
 #[derive(Debug, Parser)]
@@ -74,7 +76,10 @@ pub(crate) enum Command {
     Keys(Keys),
     /// Write a small commented scene to start from
     New(New),
-    /// Convert a project folder of LESS 1.8.8 to a scene and report how each setting was converted
+    /// Convert a scene of LESS, Eradiate, RAMI or Helios and report how each item was converted
+    Import(Import),
+    /// Convert a project folder of LESS 1.8.8: `import --from less`
+    #[command(hide = true)]
     ImportLess(ImportLess),
     /// Print a script that completes commands and options in a shell
     Completions(Completions),
@@ -121,28 +126,6 @@ pub(crate) struct Keys {
     /// Type, variant or key to print alone, such as `Orthographic` or `size_px`
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
-}
-
-#[derive(Args, Debug)]
-pub(crate) struct ImportLess {
-    /// Folder of the project; it contains `Parameters/input.conf`
-    #[arg(value_name = "FOLDER")]
-    pub(crate) folder: PathBuf,
-
-    /// Folder for the scene and its files [default: imported/<name of the project>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-}
-
-impl ImportLess {
-    /// Folder for the scene.
-    pub(crate) fn out(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| {
-            // `.` has no name of its own.
-            let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
-            Path::new("imported").join(folder.file_name().unwrap_or("project".as_ref()))
-        })
-    }
 }
 
 #[derive(Args, Debug)]
@@ -326,6 +309,8 @@ impl Compare {
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory as _;
+
+    use std::path::Path;
 
     use super::*;
 

@@ -23,7 +23,8 @@ use sunfleck::document;
 use sunfleck::output::Written;
 
 use crate::arguments::{Bench, Command, Keys, OtherBench, Verify};
-use crate::{bench, compare, import_less, verify};
+use crate::import::{self, ImportOptions, SourceProgram};
+use crate::{bench, compare, verify};
 
 pub(crate) use chm::Chm;
 pub(crate) use lai::Lai;
@@ -64,8 +65,13 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
             Ok(text) => print(&text),
             Err(error) => bail!(error),
         },
+        Command::Import(arguments) => {
+            let options = ImportOptions { from: arguments.from, size_m: arguments.size_m };
+            print(&import::import(&arguments.path, &arguments.out(), options)?)
+        }
         Command::ImportLess(arguments) => {
-            print(&import_less::import(&arguments.folder, &arguments.out())?)
+            let options = ImportOptions { from: Some(SourceProgram::Less), size_m: None };
+            print(&import::import(&arguments.path, &arguments.out(), options)?)
         }
         Command::New(arguments) => new::new(arguments),
         Command::Completions(arguments) => shell::completions(arguments),

@@ -14,7 +14,7 @@ enum Remark {
 
 impl Remark {
     const ALL: [(Self, &'static str); 4] = [
-        (Self::Differs, "what is not as in LESS:"),
+        (Self::Differs, "what is not as in"),
         (Self::Default, "what the project does not say, and the defaults that were taken:"),
         (Self::LeftOut, "what has no counterpart in sunfleck and was left out:"),
         (Self::Unneeded, "what sunfleck does not need:"),
@@ -29,13 +29,20 @@ struct Row {
 }
 
 /// Remarks about the settings of a project.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Report {
+    /// Name of the program whose scene it is.
+    program: &'static str,
     rows: RefCell<Vec<Row>>,
 }
 
 impl Report {
-    /// The setting is imported, and means something else than in LESS.
+    /// A report without remarks on a scene of a program.
+    pub(super) const fn new(program: &'static str) -> Self {
+        Self { program, rows: RefCell::new(Vec::new()) }
+    }
+
+    /// The setting is imported, and means something else than in the program.
     pub(super) fn differs(&self, setting: &str, value: &str, what: impl Into<String>) {
         self.add(Remark::Differs, setting, value, what);
     }
@@ -74,7 +81,10 @@ impl Report {
         for (remark, heading) in Remark::ALL {
             let mut rows = rows.iter().filter(|row| row.remark == remark).peekable();
             if rows.peek().is_some() {
-                lines.push(heading.to_owned());
+                let is_of_program = remark == Remark::Differs;
+                let program =
+                    if is_of_program { format!(" {}:", self.program) } else { String::new() };
+                lines.push(format!("{heading}{program}"));
             }
             for Row { cells: [setting, value, what], .. } in rows {
                 lines.push(format!("  {setting:first$}  {value:second$}  {what}"));

@@ -13,7 +13,7 @@ use super::swept::Swept;
 use super::text::{list, quoted};
 
 /// Irradiance of the sun outside the atmosphere, from 280 to 4000 nm.
-pub(super) const SOLAR: &str = include_str!("../../../scenes/spectra/sun_astm_g173.csv");
+pub(super) const SOLAR: &str = include_str!("../../../../scenes/spectra/sun_astm_g173.csv");
 /// File that the importer writes it to.
 pub(super) const SOLAR_FILE: &str = "assets/sun_astm_g173.csv";
 /// Range of its wavelengths, nm.

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
-use sunfleck::{document, output, run};
+use anyhow::Result;
+use sunfleck::output;
 
 use super::batch::{self, Batch};
 use super::conf::Node;
@@ -16,9 +16,10 @@ use super::sensor::Kind;
 use super::settings::Rule;
 use super::swept::Swept;
 use super::text;
+use crate::import::scene::write_scene;
 
 /// The scene of `input.conf` itself.
-pub(super) const SCENE: &str = "scene.ron";
+pub(super) use crate::import::scene::SCENE;
 
 /// Objects that a project has, possibly with no keys.
 const SECTIONS: [&[&str]; 7] = [
@@ -67,7 +68,7 @@ impl Project {
         for keys in SECTIONS {
             conf.ensure_object(keys)?;
         }
-        let report = Report::default();
+        let report = Report::new("LESS");
         let kind = Kind::read(conf.need("sensor")?, &report)?;
         conf.ensure_object(&["sensor", kind.key()])?;
         let (scene, sensor) = (conf.need("scene")?, conf.need("sensor")?);
@@ -166,19 +167,9 @@ impl Project {
 
     /// Writes a scene in normal form and makes sure that `sunfleck check` accepts it.
     fn finish(&self, file: &str, text: &str) -> Result<()> {
-        let mut remarks = "// From a project of LESS 1.8.8.\n".to_owned();
-        for line in self.report.lines() {
-            writeln!(remarks, "// {}", line.trim_end())?;
-        }
-        let path = self.out.join(file);
-        let shown = path.display().to_string();
-        let text = document::format(&shown, &(remarks + text))?;
-        output::replace(&path, &text)?;
-        if let Err(failure) = run::check_file(&path, &run::Options::default()) {
-            let conf = self.parameters.join("input.conf");
-            bail!("{}: the scene of this project is not sound:\n{failure}", conf.display());
-        }
-        Ok(())
+        let heading = "From a project of LESS 1.8.8.";
+        let conf = self.parameters.join("input.conf");
+        write_scene(&self.out, file, heading, &self.report, text, &conf)
     }
 
     /// Writes a small file beside the scene.
