@@ -107,7 +107,8 @@ fn histogram(facts: &SceneFacts) -> Vec<Vec<String>> {
     rows
 }
 
-fn summary(facts: &SceneFacts) -> Vec<Vec<String>> {
+/// Name and text of each fact about the scene as a whole.
+pub(crate) fn summary(facts: &SceneFacts) -> Vec<Vec<String>> {
     let ground = &facts.ground;
     let [x, y] = ground.corner_m;
     let [width, depth] = ground.size_m;
@@ -174,7 +175,8 @@ fn sun(sun: &SunFacts) -> String {
     )
 }
 
-fn meshes(facts: &SceneFacts) -> Vec<Vec<String>> {
+/// Header, and a row for each mesh.
+pub(crate) fn meshes(facts: &SceneFacts) -> Vec<Vec<String>> {
     let mut rows = vec![header(&[
         "mesh",
         "instances",
@@ -198,7 +200,8 @@ fn meshes(facts: &SceneFacts) -> Vec<Vec<String>> {
     rows
 }
 
-fn bands(facts: &SceneFacts) -> Vec<Vec<String>> {
+/// Header, and a row for each band, or for some of many.
+pub(crate) fn bands(facts: &SceneFacts) -> Vec<Vec<String>> {
     /// Bands that are listed; of more, the first and the last.
     const SHOWN: usize = 12;
     let mut rows = vec![header(&[
@@ -235,7 +238,8 @@ fn bands(facts: &SceneFacts) -> Vec<Vec<String>> {
     rows
 }
 
-fn sensors(facts: &SceneFacts) -> Vec<Vec<String>> {
+/// Header, and a row for each sensor.
+pub(crate) fn sensors(facts: &SceneFacts) -> Vec<Vec<String>> {
     let titles = ["sensor", "kind", "pixels or views", "paths", "memory", "ends at", "measures"];
     let mut rows = vec![header(&titles)];
     let or_dash = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), grouped);
@@ -306,7 +310,7 @@ fn number(value: f64) -> String {
 }
 
 /// `1 234 567`.
-fn grouped(count: u64) -> String {
+pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
@@ -328,7 +332,8 @@ fn counted(count: u64, noun: &str) -> String {
     format!("{} {noun}", grouped(count))
 }
 
-fn bytes(count: u64) -> String {
+/// `1.5 MiB`.
+pub(crate) fn bytes(count: u64) -> String {
     const UNITS: [(&str, f64); 3] =
         [("GiB", 1_073_741_824.0), ("MiB", 1_048_576.0), ("KiB", 1024.0)];
     let size = count as f64;

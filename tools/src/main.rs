@@ -14,6 +14,7 @@ mod import;
 mod interrupt;
 mod plot;
 mod progress;
+mod report;
 mod verify;
 
 use std::io::{self, Write as _};

@@ -7,6 +7,8 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::web_page::{REPORT, is_report};
+
 /// File that holds the manifest.
 pub(super) const SUMMARY: &str = "summary.json";
 
@@ -41,7 +43,17 @@ impl Manifest {
         let path = folder.join(SUMMARY);
         // Opening a pipe would wait for its writer.
         fs::metadata(&path).ok().filter(fs::Metadata::is_file)?;
-        serde_json::from_reader(BufReader::new(File::open(path).ok()?)).ok()
+        let manifest: Self =
+            serde_json::from_reader(BufReader::new(File::open(path).ok()?)).ok()?;
+        Some(manifest.with_report(folder))
+    }
+
+    /// Adds the report to the results if the folder holds one.
+    pub(super) fn with_report(mut self, folder: &Path) -> Self {
+        if is_report(&folder.join(REPORT)) {
+            self.files.push(REPORT.to_owned());
+        }
+        self
     }
 
     /// Names of the files that are results.

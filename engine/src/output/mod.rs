@@ -39,6 +39,7 @@ mod summary;
 mod swap;
 mod sweep;
 mod table;
+mod web_page;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -63,6 +64,7 @@ pub use scale::{axis_title, range_of, tick};
 pub use size::{file_size, memory_of_files};
 pub use sweep::SweepTable;
 pub use table::table;
+pub use web_page::{REPORT, REPORT_HEAD, is_report};
 
 /// Error of writing a report; no part of it is on disk.
 #[non_exhaustive]

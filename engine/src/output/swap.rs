@@ -135,6 +135,7 @@ fn merge(new: &Path, target: &Path) -> io::Result<()> {
         }
         let text = fs::read_to_string(&old).unwrap_or_default();
         let manifest = serde_json::from_str::<Manifest>(&text).ok();
+        let manifest = manifest.map(|manifest| manifest.with_report(target));
         // Those that are new by now have left the new folder, and are no longer old.
         let new_names: Vec<_> =
             serde_json::from_str::<Manifest>(&fs::read_to_string(new.join(SUMMARY))?)

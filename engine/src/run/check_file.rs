@@ -3,6 +3,7 @@ use std::path::Path;
 use super::checkpoint::CheckpointStore;
 use super::clock::Clock;
 use super::pool::in_pool;
+use super::provenance::{self, FileHashes};
 use super::reading::{folder_of, read};
 use super::sensors::MeasureContext;
 use super::setting::context;
@@ -79,8 +80,12 @@ fn checked(
         if with_facts {
             warnings.extend(facts::warn_bright_ground(&context, &world.world));
         }
-        let facts =
-            with_facts.then(|| SceneFacts::new(&reading.scene, &world.world, measured, options));
+        let facts = with_facts.then(|| {
+            let files = world.resources.messages.files();
+            let hash = provenance::hash(&reading.scene, &files, &FileHashes::default())?;
+            Ok::<_, Failure>(SceneFacts::new(&reading.scene, &world.world, measured, options, hash))
+        });
+        let facts = facts.transpose()?;
         let skipped: Vec<String> = world.resources.messages.skipped().cloned().collect();
         Ok((warnings, skipped, notes, facts))
     };

@@ -28,6 +28,8 @@ const HECTARE: f64 = 1e4;
 pub struct SceneFacts {
     /// Title of the scene.
     pub title: String,
+    /// Hash of the resolved scene and of all files that it reads, as in results of a run, hexadecimal.
+    pub hash: String,
     /// The ground.
     pub ground: GroundFacts,
     /// Meshes that stand on it, in the order of the scene.
@@ -177,6 +179,7 @@ impl SceneFacts {
         world: &World,
         measured: MeasureContext<'_>,
         options: &Options,
+        hash: String,
     ) -> Self {
         let stage = measured.stage;
         let ground = ground(scene, world);
@@ -188,6 +191,7 @@ impl SceneFacts {
         let (canopy_cover, canopy_cover_error) = canopy_cover(stage);
         Self {
             title: scene.title.clone(),
+            hash,
             instances: meshes.iter().map(|mesh| mesh.instances).sum(),
             faces: ground.triangles
                 + meshes.iter().map(|mesh| mesh.instances * mesh.faces).sum::<u64>(),

@@ -13,7 +13,7 @@ use sunfleck::run::Partition;
 
 use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
-use crate::commands::{Brf, Bt, Chm, Completions, Lai, Man, New, Preview, Stats, Sunpos};
+use crate::commands::{Brf, Bt, Chm, Completions, Lai, Man, New, Preview, Report, Stats, Sunpos};
 use crate::console::Console;
 use crate::verify::CHECKS;
 
@@ -45,6 +45,8 @@ pub(crate) enum Command {
     Respectrum(Respectrum),
     /// Combine the checkpoints of `run --part` and write the results
     Merge(Merge),
+    /// Write a page about a folder of results, with all figures, to read in a browser
+    Report(Report),
     /// Report what a scene consists of, its errors and its warnings, without running it
     Check(Check),
     /// Draw a map of a scene, as PNG and SVG

@@ -6,6 +6,7 @@ mod lai;
 mod new;
 mod preview;
 mod radiance;
+mod report;
 mod run;
 mod scenes;
 mod shell;
@@ -31,6 +32,7 @@ pub(crate) use lai::Lai;
 pub(crate) use new::New;
 pub(crate) use preview::Preview;
 pub(crate) use radiance::{Brf, Bt};
+pub(crate) use report::Report;
 pub(crate) use shell::{Completions, Man};
 pub(crate) use stats::Stats;
 pub(crate) use sunpos::Sunpos;
@@ -49,6 +51,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Merge(arguments) => run::merge(arguments),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Compare(arguments) => print(&compare::compare(arguments)?),
+        Command::Report(arguments) => arguments.execute(),
         Command::Check(arguments) => text::check(arguments),
         Command::Preview(arguments) => preview::preview(arguments),
         Command::Chm(arguments) => chm::chm(arguments),
@@ -126,7 +129,7 @@ fn verify(arguments: &Verify) -> anyhow::Result<()> {
 }
 
 /// Argument as a shell reads it.
-fn quoted(argument: &str) -> String {
+pub(crate) fn quoted(argument: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "-_./=+,:@%".contains(letter);
     if !argument.is_empty() && argument.chars().all(is_plain) {
         argument.to_owned()
