@@ -320,21 +320,25 @@ mod tests {
         assert!((given.0 - estimated.0).abs() < 3e-4 && (given.1 - estimated.1).abs() < 3e-4);
     }
 
-    /// The same example: sunrise 6.212067 h, transit 11.768045 h, sunset 17.338667 h of its clock (MIDC calculator of the
-    /// NREL; the report prints 6:12:43, 11:46:05 and 17:20:19).
+    /// The same example: the report's program prints sunrise 6:12:43 and sunset 17:20:19. It looks for events within the
+    /// day in Greenwich, so that its sunset is that of the day before on the clock of Denver.
     #[test]
     fn the_sun_rises_and_sets_when_the_worked_example_of_the_report_says() {
         let day = denver().day().unwrap();
+        let before = Spa { date: (2003, 10, 16), ..denver() }.day().unwrap();
         let seconds =
             |hours: f64, minutes: f64, seconds: f64| 3600.0 * hours + 60.0 * minutes + seconds;
         for (found, expected) in [
             (day.sunrise_h, seconds(6.0, 12.0, 43.0)),
             (day.noon_h, seconds(11.0, 46.0, 5.0)),
-            (day.sunset_h, seconds(17.0, 20.0, 19.0)),
+            (before.sunset_h, seconds(17.0, 20.0, 19.0)),
         ] {
             let found = 3600.0 * found.unwrap();
             assert!((found - expected).abs() < 2.0, "{found} s for {expected} s");
         }
+        // In autumn the sun sets earlier from day to day.
+        let later = 3600.0 * (before.sunset_h.unwrap() - day.sunset_h.unwrap());
+        assert!((80.0..100.0).contains(&later), "{later}");
         let polar = |month: u32| Spa { latitude_deg: 80.0, date: (2003, month, 21), ..denver() };
         for month in [6, 12] {
             let day = polar(month).day().unwrap();
