@@ -102,6 +102,10 @@ impl<'a> PlyFile<'a> {
         let mut reader = Reader::new(Guarded::new(BufReader::with_capacity(1 << 16, open(path)?)));
         let header = Parser::<Skipped>::new().read_header(&mut reader);
         let header = header.map_err(|error| wrong(path, malformed(&error)))?;
+        if (header.version.major, header.version.minor) != (1, 0) {
+            let problem = "its header names a version other than 1.0".to_owned();
+            return Err(wrong(path, PlyError::Malformed(problem)));
+        }
         let is_text = header.encoding == Encoding::Ascii;
         let content = if is_text { Content::Lines } else { Content::Binary };
         reader.get_mut().set_content(content);
@@ -204,6 +208,8 @@ impl<'a> PlyFile<'a> {
 /// What the parser says, on one line and not longer than a message may be.
 fn malformed(error: &ParseError) -> PlyError {
     let text = error.to_string();
+    // What its grammar would have taken is for programmers.
+    let text = text.split("Error: ParseError").next().unwrap_or_default();
     let words: Vec<&str> = text.split_whitespace().collect();
     PlyError::Malformed(excerpt_of_message(&words.join(" ")))
 }

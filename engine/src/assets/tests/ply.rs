@@ -134,14 +134,20 @@ fn what_is_wrong_with_a_mesh_is_told() {
     let long =
         with("4 0 1 2 3", &format!("3000{}", " 0".repeat(3000))).replace("list uchar", "list int");
     assert!(matches!(problem(long), PlyError::LongFace { face: 0, found: 3000, most: 2048 }));
-    assert!(matches!(
-        problem(with("1 1 0 10", "1 nan 0 10")),
-        PlyError::NotFinite { vertex: 2, .. }
-    ));
-    assert!(matches!(
-        problem(with("1 1 0 10", "1 inf 0 10")),
-        PlyError::NotFinite { vertex: 2, .. }
-    ));
+    // Words for what is no number are none in a text.
+    for word in ["nan", "inf"] {
+        let word = format!("1 {word} 0 10");
+        assert!(matches!(problem(with("1 1 0 10", &word)), PlyError::Malformed(_)), "{word}");
+    }
+    for value in [f64::NAN, f64::INFINITY] {
+        let mut bytes = binary(false);
+        let header = b"end_header\n";
+        let start = bytes.windows(header.len()).position(|w| w == header).unwrap() + header.len();
+        // The x of the third vertex, behind a byte of red each and three doubles.
+        let place = start + 2 * 25 + 1;
+        bytes[place..place + 8].copy_from_slice(&value.to_le_bytes());
+        assert!(matches!(problem(bytes), PlyError::NotFinite { vertex: 2, .. }), "{value}");
+    }
     let far = with("property float x", "property double x").replace("1 1 0 10", "1e300 1 0 10");
     assert!(matches!(problem(far), PlyError::FarVertex { vertex: 2, .. }));
     assert_eq!(
