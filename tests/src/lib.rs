@@ -2,6 +2,7 @@
 
 pub mod field;
 pub mod fuzz;
+pub mod readers;
 pub mod scene_text;
 
 use std::path::{Path, PathBuf};

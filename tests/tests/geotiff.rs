@@ -8,15 +8,12 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use sunfleck::document::{FileFormat, ReadOptions};
 use sunfleck::output;
 use sunfleck::products::Report;
 use sunfleck::run::{Options, Unwatched, run_file};
-
-/// Exit code of the script where a module is missing.
-const MISSING: i32 = 77;
+use sunfleck_tests::readers::{ScriptOutcome, run_reader};
 
 /// An image of 300 by 151 pixels that shows ground and its surroundings, and rasters of flux.
 fn scene(output: &str) -> String {
@@ -54,25 +51,6 @@ fn report(folder: &Path, output: &str, formats: Option<Vec<FileFormat>>) -> Repo
     run_file(&file, &options, &Unwatched).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
-/// Runs the script; returns false if it, or a module, is not there.
-fn is_read(folder: &Path, stem: &str) -> bool {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("readers/geotiff.py");
-    let python = std::env::var_os("SUNFLECK_PYTHON").unwrap_or_else(|| "python3".into());
-    let mut command = Command::new(python);
-    command.arg(script).arg(folder).args([stem, "32633", "red,nir"]);
-    let Ok(run) = command.output() else {
-        eprintln!("skipped: there is no Python");
-        return false;
-    };
-    let [said, wrong] = [&run.stdout, &run.stderr].map(|text| String::from_utf8_lossy(text));
-    if run.status.code() == Some(MISSING) {
-        eprintln!("skipped: {said}");
-        return false;
-    }
-    assert!(run.status.success(), "{stem}: {said}{wrong}");
-    true
-}
-
 /// *Expected*: GDAL and tifffile read the values of the ENVI rasters bit for bit, and the place, system, names and
 /// wavelengths of the scene; overviews are means.
 #[test]
@@ -88,7 +66,9 @@ fn other_programs_read_what_was_written() {
         .collect();
     assert!(rasters.len() >= 2 && rasters.contains(&"top_brf"), "{files:?}");
     for stem in rasters {
-        if !is_read(&out, stem) {
+        let arguments = [out.as_os_str(), stem.as_ref(), "32633".as_ref(), "red,nir".as_ref()];
+        if let ScriptOutcome::Skipped(why) = run_reader("geotiff.py", &arguments) {
+            eprintln!("skipped: {why}");
             return;
         }
     }

@@ -11,7 +11,7 @@ use crate::components::Projection;
 use crate::products::Image;
 
 /// Stands for "nothing was seen". Readers disagree on NaN; no product of light is negative.
-const NO_DATA: f32 = -9999.0;
+pub(super) const NO_DATA: f32 = -9999.0;
 
 /// Size of a value, bytes.
 const VALUE: usize = size_of::<f32>();

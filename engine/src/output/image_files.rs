@@ -1,8 +1,10 @@
 //! Files of an image: all rasters in one pass over its pixels, then pictures and `GeoTIFF` from these.
 
+use std::fs::File;
 use std::io;
 
 use super::band_rows::BandRows;
+use super::dataset::ImageRasters;
 use super::envi::Raster;
 use super::figure::{Caption, Figure};
 use super::picture::Picture;
@@ -12,13 +14,13 @@ use super::{OutputError, Source, envi, exr, geotiff, names};
 use crate::document::FileFormat;
 use crate::products::Image;
 
-/// Writes the files of an image; returns their size in bytes.
+/// Writes the files of an image; returns their size in bytes, and the rasters, if data sets are made of them.
 pub(super) fn put(
     source: &Source<'_>,
     image: &Image,
     names: &names::ProductNames,
     staging: &mut Staging,
-) -> Result<u64, OutputError> {
+) -> Result<(u64, Option<ImageRasters>), OutputError> {
     let has = |format| source.report.formats.contains(&format);
     let mut exr = has(FileFormat::Exr).then(|| staging.begin(&names.exr())).transpose()?;
     let mut rasters = None;
@@ -26,14 +28,14 @@ pub(super) fn put(
     if has(FileFormat::Envi) {
         let (files, headers) = Rasters::begin(source, image, names, staging)?;
         (rasters, size) = (Some(files), headers);
-    } else if has(FileFormat::Png) || has(FileFormat::GeoTiff) {
+    } else if [FileFormat::Png, FileFormat::GeoTiff, FileFormat::Zarr, FileFormat::NetCdf].map(has).contains(&true) {
         rasters = Some(Rasters::without_names(image, staging)?);
     }
     write_blocks(source, image, exr.as_mut(), rasters.as_mut())?;
     if let Some(exr) = exr {
         size += exr.finish()?;
     }
-    let Some(Rasters { mut values, mut errors, lit }) = rasters else { return Ok(size) };
+    let Some(Rasters { mut values, mut errors, lit }) = rasters else { return Ok((size, None)) };
     let readers = [values.reader()?, errors.reader()?];
     if has(FileFormat::Envi) {
         size += values.finish()? + errors.finish()?;
@@ -51,12 +53,19 @@ pub(super) fn put(
             size += file.finish()?;
         }
     }
+    let mut kept = None;
+    if has(FileFormat::Zarr) || has(FileFormat::NetCdf) {
+        let again = |file: &File| {
+            file.try_clone().map_err(|source| OutputError::Read { path: staging.shown(&names.img()), source })
+        };
+        kept = Some(ImageRasters { values: again(&values)?, errors: again(&errors)? });
+    }
     if has(FileFormat::Png) {
         let wavelengths = source.wavelengths(image);
         let input = PictureInput { image, wavelengths, lit, values, errors };
         size += put_pictures(source, &input, [&names.png(), &names.bare()], staging)?;
     }
-    Ok(size)
+    Ok((size, kept))
 }
 
 /// Writes all pixels, block by block, to the files that there are.

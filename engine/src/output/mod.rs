@@ -1,7 +1,7 @@
 //! Files of a run, with provenance; the only module that writes.
 //!
 //! A folder gets `summary.json`, for each image the formats that the scene asks for (an EXR, two ENVI rasters, two
-//! `GeoTIFF`, a PNG with a legend and one without), for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
+//! `GeoTIFF`, a PNG with a legend and one without), for each sensor a Zarr store or a `NetCDF` file if it asks for that, for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
 //! or height. They take the place of older results all at once (`staging`, `swap`).
 
 mod axes;
@@ -11,6 +11,8 @@ mod classification;
 mod colour;
 mod composite;
 mod daily;
+mod dataset;
+mod dataset_files;
 mod derivatives;
 mod destination;
 mod envi;
@@ -24,6 +26,7 @@ mod lettering;
 mod lines;
 mod manifest;
 mod names;
+mod netcdf;
 mod partial;
 mod picture;
 mod picture_input;
@@ -40,6 +43,7 @@ mod swap;
 mod sweep;
 mod table;
 mod web_page;
+mod zarr;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -128,21 +132,24 @@ fn put_products(
 ) -> Result<Vec<u64>, OutputError> {
     let mut sizes = Vec::with_capacity(plan.len());
     for (sensor, planned) in report.sensors.iter().zip(plan) {
-        let mut size = 0;
+        let (mut size, mut rasters) = (0, Vec::with_capacity(sensor.products.len()));
         for (product, names) in sensor.products.iter().zip(&planned.products) {
             let source = Source { report, sensor: &sensor.name, product };
             check_shape(&source)?;
-            size += match (&product.faces, &product.image) {
+            let (written, of_image) = match (&product.faces, &product.image) {
                 (Some(faces), _) => {
-                    staging.file(&names.ply(), |file| ply::write(&source, faces, file))?
+                    (staging.file(&names.ply(), |file| ply::write(&source, faces, file))?, None)
                 }
                 (None, None) => {
-                    staging.file(&names.csv(), |file| rows::write(&source, file))?
-                        + put_chart(&source, &names.svg(), staging)?
+                    let table = staging.file(&names.csv(), |file| rows::write(&source, file))?;
+                    (table + put_chart(&source, &names.svg(), staging)?, None)
                 }
                 (None, Some(image)) => image_files::put(&source, image, names, staging)?,
             };
+            size += written;
+            rasters.push(of_image);
         }
+        size += dataset_files::put(report, sensor, planned, &rasters, staging)?;
         sizes.push(size);
     }
     Ok(sizes)
@@ -208,23 +215,11 @@ impl Source<'_> {
         Err(OutputError::Shape { sensor, product, what, expected, found })
     }
 
-    /// Keys and values that every file contains.
+    /// Keys and values that every file of a product contains.
     fn provenance(&self) -> Vec<(&'static str, String)> {
-        // A line break in a title must not end a comment line.
-        let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let params = self.report.params.iter().map(|(name, value)| format!("{name}={value}"));
-        let params = params.collect::<Vec<_>>().join(" ");
-        let mut all = vec![
-            ("scene", line(&self.report.scene)),
-            ("params", line(&params)),
-            ("hash", line(&self.report.hash)),
-            ("version", line(&self.report.version)),
-            ("seed", self.report.seed.to_string()),
-            ("sensor", line(self.sensor)),
-            ("product", line(&self.product.name)),
-            ("unit", line(&self.product.unit)),
-        ];
-        all.retain(|(key, value)| *key != "params" || !value.is_empty());
+        let mut all = provenance(self.report, self.sensor);
+        all.push(("product", in_a_line(&self.product.name)));
+        all.push(("unit", in_a_line(&self.product.unit)));
         all
     }
 
@@ -236,6 +231,27 @@ impl Source<'_> {
         };
         image.bands.iter().map(|name| of(name).unwrap_or(f64::NAN)).collect()
     }
+}
+
+/// Keys and values that every file of a sensor contains.
+fn provenance(report: &Report, sensor: &str) -> Vec<(&'static str, String)> {
+    let params = report.params.iter().map(|(name, value)| format!("{name}={value}"));
+    let params = params.collect::<Vec<_>>().join(" ");
+    let mut all = vec![
+        ("scene", in_a_line(&report.scene)),
+        ("params", in_a_line(&params)),
+        ("hash", in_a_line(&report.hash)),
+        ("version", in_a_line(&report.version)),
+        ("seed", report.seed.to_string()),
+        ("sensor", in_a_line(sensor)),
+    ];
+    all.retain(|(key, value)| *key != "params" || !value.is_empty());
+    all
+}
+
+/// A text in one line: a line break in a title must not end a comment.
+fn in_a_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Checks the shape of all values but pixels, which are checked when they are read.

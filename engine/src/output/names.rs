@@ -30,6 +30,25 @@ pub(super) struct SensorNames {
     pub(super) key: String,
     /// Names for its products, in order.
     pub(super) products: Vec<ProductNames>,
+    /// Name of its data sets without extension.
+    stem: String,
+}
+
+impl SensorNames {
+    /// Name of the file or folder of its data set in a format; `None` if the format is of images alone.
+    pub(super) fn dataset(&self, format: FileFormat) -> Option<String> {
+        match format {
+            FileFormat::Zarr => Some(format!("{}.zarr", self.stem)),
+            FileFormat::NetCdf => Some(format!("{}.nc", self.stem)),
+            FileFormat::Exr | FileFormat::Envi | FileFormat::GeoTiff | FileFormat::Png => None,
+        }
+    }
+
+    /// Names of its data sets in these formats.
+    pub(super) fn datasets(&self, formats: &[FileFormat]) -> impl Iterator<Item = String> {
+        let asked = FileFormat::ALL.into_iter().filter(|format| formats.contains(format));
+        asked.filter_map(|format| self.dataset(format))
+    }
 }
 
 /// Names for one product.
@@ -96,6 +115,7 @@ impl ProductNames {
             }
             FileFormat::GeoTiff => self.geotiffs().to_vec(),
             FileFormat::Png => vec![self.png(), self.bare()],
+            FileFormat::Zarr | FileFormat::NetCdf => Vec::new(),
         };
         let asked = FileFormat::ALL.into_iter().filter(|format| formats.contains(format));
         asked.flat_map(files).collect()
@@ -115,6 +135,7 @@ const BARE: &str = ".pixels.png";
 pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
     let mut stems = Distinct::default();
     let mut sensors = Distinct::default();
+    let mut datasets = Distinct::default();
     let names = report.sensors.iter().map(|sensor| {
         let mut keys = Distinct::default();
         let products = sensor.products.iter().map(|product| {
@@ -127,7 +148,11 @@ pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
             };
             ProductNames { key: keys.take(&product.name), stem, errors }
         });
-        SensorNames { key: sensors.take(&sensor.name), products: products.collect() }
+        SensorNames {
+            key: sensors.take(&sensor.name),
+            products: products.collect(),
+            stem: datasets.take_ignoring_case(&sanitise(&sensor.name)),
+        }
     });
     names.collect()
 }
@@ -139,6 +164,11 @@ pub(super) struct Distinct {
 }
 
 impl Distinct {
+    /// Returns true if a name was not given yet.
+    pub(super) fn is_free(&self, name: &str) -> bool {
+        !self.taken.contains(name)
+    }
+
     pub(super) fn take(&mut self, name: &str) -> String {
         self.take_by(name, str::to_owned)
     }

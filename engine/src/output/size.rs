@@ -25,7 +25,7 @@ pub fn file_size(extent: ProductSize, formats: &[FileFormat]) -> u64 {
         ProductSize::Image { pixels, bands, .. } => {
             let values = 4 * (2 * bands + 1);
             let pixel = |format| match format {
-                FileFormat::Exr | FileFormat::Envi => values,
+                FileFormat::Exr | FileFormat::Envi | FileFormat::Zarr | FileFormat::NetCdf => values,
                 // Overviews have a third of the pixels.
                 FileFormat::GeoTiff => values * 4 / 3,
                 FileFormat::Png => PIXEL,
@@ -37,7 +37,8 @@ pub fn file_size(extent: ProductSize, formats: &[FileFormat]) -> u64 {
         ProductSize::Table { rows, axes, bands } => {
             // Once in the table, once in the summary.
             let row = 2 * NUMBER * 2 * bands + PLACE * axes;
-            rows.saturating_mul(row).saturating_add(HEADER)
+            let of_datasets = datasets(formats) * (16 * bands + PLACE * axes);
+            rows.saturating_mul(row + of_datasets).saturating_add(HEADER)
         }
         // Of a triangle three corners with their colour, their numbers, its colour; and the values.
         ProductSize::Faces { faces, bands } => {
@@ -46,18 +47,29 @@ pub fn file_size(extent: ProductSize, formats: &[FileFormat]) -> u64 {
     }
 }
 
-/// Rows of tiles of a band that a `GeoTIFF` is made of: as numbers, as bytes, and compressed.
+/// Number of data sets in these formats.
+fn datasets(formats: &[FileFormat]) -> u64 {
+    let all = [FileFormat::Zarr, FileFormat::NetCdf];
+    all.iter().filter(|format| formats.contains(format)).count() as u64
+}
+
+/// Rows of tiles of a band that a `GeoTIFF` or a Zarr store is made of: as numbers, as bytes, and compressed.
 const COPIES: u64 = 3;
 
 /// Additional memory for making the files of a product, bytes.
 #[must_use]
 pub fn memory_of_files(extent: ProductSize, formats: &[FileFormat]) -> u64 {
+    let row_of_tiles = |format| match format {
+        FileFormat::GeoTiff => super::geotiff::TILE as u64,
+        FileFormat::Zarr => super::zarr::TILE as u64,
+        FileFormat::Exr | FileFormat::Envi | FileFormat::Png | FileFormat::NetCdf => 0,
+    };
     let tiles = match extent {
-        ProductSize::Image { width, pixels, .. } if formats.contains(&FileFormat::GeoTiff) => {
-            let values = width.saturating_mul(super::geotiff::TILE as u64).min(pixels);
-            COPIES * 4 * values
+        ProductSize::Image { width, pixels, .. } => {
+            let rows = formats.iter().map(|format| row_of_tiles(*format)).max().unwrap_or(0);
+            COPIES * 4 * width.saturating_mul(rows).min(pixels)
         }
-        _ => 0,
+        ProductSize::Table { .. } | ProductSize::Faces { .. } => 0,
     };
     // When the tiles are made, all blocks of rows are gone.
     extent.memory_of_files().max(tiles)

@@ -108,7 +108,7 @@ impl Staging {
     /// Begins a file that will be called `name`.
     pub(super) fn begin(&mut self, name: &str) -> Result<StagedFile, OutputError> {
         let shown = self.destination.folder.join(name);
-        if self.destination.target.join(name).is_dir() {
+        if self.destination.target.join(name).is_dir() && !self.is_result(name) {
             return Err(OutputError::Taken { path: shown });
         }
         self.names.push(name.to_owned());
@@ -117,6 +117,20 @@ impl Staging {
             Ok(file) => Ok(StagedFile { writer: BufWriter::new(file), shown }),
             Err(source) => Err(OutputError::Write { path: shown, source }),
         }
+    }
+
+    /// Makes a folder that will be called `name` and is one result; returns its path for now.
+    pub(super) fn folder(&mut self, name: &str) -> Result<PathBuf, OutputError> {
+        let shown = self.destination.folder.join(name);
+        let path = self.partial.path.join(name);
+        fs::create_dir(&path).map_err(|source| OutputError::Write { path: shown, source })?;
+        self.names.push(name.to_owned());
+        Ok(path)
+    }
+
+    /// Path that a result will have.
+    pub(super) fn shown(&self, name: &str) -> PathBuf {
+        self.destination.folder.join(name)
     }
 
     /// Begins a temporary file, which has no name and is no result.
@@ -166,6 +180,11 @@ impl Staging {
         let written = self.names.iter().map(|name| folder.join(name)).collect();
         self.partial.finish(uninterrupted);
         Ok(written)
+    }
+
+    /// Returns true if what has this name in the folder is one of its results.
+    fn is_result(&self, name: &str) -> bool {
+        self.manifest().is_some_and(|manifest| manifest.files().contains(name))
     }
 
     /// The results that are in the folder.

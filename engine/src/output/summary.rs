@@ -261,7 +261,12 @@ fn products<'a>(
     names: &'a SensorNames,
 ) -> Ordered<'a, Entry<'a>> {
     let pairs = sensor.products.iter().zip(&names.products);
-    let entries = pairs.map(|(product, names)| (names.key.as_str(), entry(report, product, names)));
+    let datasets: Vec<String> = names.datasets(&report.formats).collect();
+    let entries = pairs.map(|(product, names)| {
+        let mut entry = entry(report, product, names);
+        entry.files.extend_from_slice(&datasets);
+        (names.key.as_str(), entry)
+    });
     Ordered(entries.collect())
 }
 

@@ -149,7 +149,12 @@ fn merge(new: &Path, target: &Path) -> io::Result<()> {
         for entry in fs::read_dir(new)? {
             let entry = entry?;
             if entry.file_name() != SUMMARY && entry.file_name() != OLD_SUMMARY {
-                fs::rename(entry.path(), target.join(entry.file_name()))?;
+                let place = target.join(entry.file_name());
+                // A file replaces a file in one step; a folder has to go first.
+                if place.is_dir() || entry.file_type()?.is_dir() {
+                    partial::remove(&place)?;
+                }
+                fs::rename(entry.path(), place)?;
             }
         }
         fs::rename(new.join(SUMMARY), &summary)?;

@@ -157,6 +157,8 @@ pub struct Report {
     pub bands: Vec<String>,
     /// The bands' centre wavelengths, nm.
     pub wavelengths: Vec<f64>,
+    /// The bands' widths, nm.
+    pub bandwidths: Vec<f64>,
     /// Total irradiance on the horizontal plane, W m⁻² nm⁻¹, shape `[bands]`; empty without results.
     pub irradiance: Vec<f64>,
     /// Responses of the bands, shape `[bands]`; empty without results.

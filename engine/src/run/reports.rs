@@ -66,6 +66,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             rays: sensors.iter().map(|report| report.rays).sum(),
             bands: context.bands.clone(),
             wavelengths: context.sources.iter().map(|source| source.center_nm).collect(),
+            bandwidths: context.sources.iter().map(|source| source.response.width()).collect(),
             irradiance: context.irradiance.clone(),
             responses: context.sources.iter().map(|source| source.response.clone()).collect(),
             stages: common.stages.iter().map(|(name, s)| (name.clone(), s * share)).collect(),

@@ -186,6 +186,7 @@ impl SweepRun {
             rays: 0,
             bands: Vec::new(),
             wavelengths: Vec::new(),
+            bandwidths: Vec::new(),
             irradiance: Vec::new(),
             responses: Vec::new(),
             stages: Vec::new(),

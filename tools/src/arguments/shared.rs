@@ -85,7 +85,8 @@ impl Out {
 /// File formats of images.
 #[derive(Args, Debug)]
 pub(crate) struct Formats {
-    /// File formats of images, in place of `output` of the scene: `Exr`, `Envi`, `GeoTiff`, `Png`
+    /// File formats of images, in place of `output` of the scene: `Exr`, `Envi`, `GeoTiff`, `Png`, and `Zarr` and
+    /// `NetCdf`, which hold tables too
     #[arg(long = "format", value_name = "NAME,..", value_delimiter = ',', value_parser = file_format)]
     formats: Vec<FileFormat>,
 }

@@ -1,7 +1,7 @@
 //! Files that results are written to.
 
 choice! {
-    /// File format of images.
+    /// File format of images; the last two hold tables too.
     #[derive(Copy, Eq)]
     pub enum FileFormat ("a file format") {
         /// `OpenEXR`: a float32 channel per band, its standard error and the coverage.
@@ -14,12 +14,17 @@ choice! {
         GeoTiff,
         /// Pictures for the eye, with a legend and without.
         Png,
+        /// Zarr store of all that a sensor measures, `<sensor>.zarr`: version 2 of the format, CF conventions.
+        Zarr,
+        /// `NetCDF` file of all that a sensor measures, `<sensor>.nc`: classic format, CF conventions.
+        NetCdf,
     }
 }
 
 impl FileFormat {
     /// All formats.
-    pub const ALL: [Self; 4] = [Self::Exr, Self::Envi, Self::GeoTiff, Self::Png];
+    pub const ALL: [Self; 6] =
+        [Self::Exr, Self::Envi, Self::GeoTiff, Self::Png, Self::Zarr, Self::NetCdf];
 
     /// Formats of a scene that names none.
     pub const DEFAULT: [Self; 3] = [Self::Exr, Self::Envi, Self::Png];
@@ -32,6 +37,8 @@ impl FileFormat {
             Self::Envi => "Envi",
             Self::GeoTiff => "GeoTiff",
             Self::Png => "Png",
+            Self::Zarr => "Zarr",
+            Self::NetCdf => "NetCdf",
         }
     }
 }

@@ -95,6 +95,7 @@ pub(in crate::output) fn report(sensors: Vec<SensorReport>) -> Report {
         rays: 3,
         bands: vec!["red".to_owned(), "nir, wide".to_owned()],
         wavelengths: vec![660.0, 865.5],
+        bandwidths: vec![10.0, 20.0],
         stages: vec![("z first".to_owned(), 0.5), ("a second".to_owned(), 0.25)],
         skipped: vec!["mesh \"bush\"".to_owned()],
         notes: vec!["the sun is that of ASTM G173".to_owned()],

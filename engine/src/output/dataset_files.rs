@@ -1,0 +1,37 @@
+//! Data sets of a sensor: a Zarr store, a `NetCDF` file.
+
+use std::io;
+
+use super::dataset::{ImageRasters, of_sensor};
+use super::names::SensorNames;
+use super::staging::Staging;
+use super::{OutputError, netcdf, zarr};
+use crate::document::FileFormat;
+use crate::products::{Report, SensorReport};
+
+/// Writes the data sets that are asked for; returns their size in bytes.
+///
+/// - `rasters`: rasters of each product, if it is an image
+pub(super) fn put(
+    report: &Report,
+    sensor: &SensorReport,
+    planned: &SensorNames,
+    rasters: &[Option<ImageRasters>],
+    staging: &mut Staging,
+) -> Result<u64, OutputError> {
+    let mut size = 0;
+    let asked = FileFormat::ALL.into_iter().filter(|format| report.formats.contains(format));
+    for format in asked {
+        let Some(name) = planned.dataset(format) else { continue };
+        let fail = |source: io::Error| OutputError::Write { path: staging.shown(&name), source };
+        let dataset = of_sensor(report, sensor, planned, rasters).map_err(fail)?;
+        size += if format == FileFormat::Zarr {
+            let folder = staging.folder(&name)?;
+            let fail = |source| OutputError::Write { path: staging.shown(&name), source };
+            zarr::write(&dataset, &folder).map_err(fail)?
+        } else {
+            staging.file(&name, |file| netcdf::write(&dataset, file))?
+        };
+    }
+    Ok(size)
+}
