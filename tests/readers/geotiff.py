@@ -6,8 +6,10 @@ FOLDER holds STEM.tif, STEM_se.tif, STEM.img and STEM_se.img; EPSG is that of th
 bands. Exit code 77 says that a module is missing.
 """
 
+import base64
 import json
 import sys
+import zlib
 from pathlib import Path
 
 try:
@@ -48,9 +50,12 @@ def compare(folder, stem, ending, epsg, names):
         tags = tif.tags()
         provenance = dict(part.split(": ", 1) for part in keys["description"].split("; ") if ": " in part)
         assert {"hash", "seed", "version", "scene", "product"} <= provenance.keys(), provenance
+        recipe = provenance.pop("recipe")
         for key, value in provenance.items():
             assert tags[f"sunfleck_{key}"] == value, (key, tags)
-        assert tags["TIFFTAG_IMAGEDESCRIPTION"] == keys["description"], tags
+        packed = json.loads(zlib.decompress(base64.b64decode(recipe.removeprefix("zlib:"))))
+        assert json.loads(tags["sunfleck_recipe"]) == packed and "Scene(" in packed["scene"], tags
+        assert f"{tags['TIFFTAG_IMAGEDESCRIPTION']}; recipe: {recipe}" == keys["description"], tags
         if "wavelength" in keys:
             found = [float(tif.tags(band)["wavelength"]) for band in tif.indexes]
             assert found == [float(nm) for nm in keys["wavelength"].split(",")], found

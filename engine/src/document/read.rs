@@ -164,6 +164,12 @@ impl Scene {
         self.to_text().into_file()
     }
 
+    /// The scene on one line, which reads back as an equal one.
+    #[must_use]
+    pub fn to_ron_line(&self) -> String {
+        self.to_text().into_line()
+    }
+
     pub(super) fn to_text(&self) -> Text {
         match self.encode() {
             Text::Group(Group { items, .. }) => Text::record("Scene", items),

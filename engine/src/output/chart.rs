@@ -44,6 +44,8 @@ pub(super) struct Heading<'a> {
     pub(super) quantity: &'a str,
     /// Unit of the quantity; `1` for a fraction.
     pub(super) unit: &'a str,
+    /// Keys and values of its provenance as JSON.
+    pub(super) provenance: &'a str,
 }
 
 /// Draws lines with their standard errors; returns the text of an SVG.
@@ -59,6 +61,13 @@ pub(super) fn draw(lines: &Lines, heading: &Heading<'_>) -> io::Result<String> {
         draw_lines(&plot, lines, heading).map_err(failed)?;
         draw_names(&names, lines).map_err(failed)?;
         root.present().map_err(failed)?;
+    }
+    // Behind the opening tag.
+    if let Some(place) =
+        svg.find("<svg").and_then(|start| Some(start + svg[start..].find('>')? + 1))
+    {
+        let escaped = heading.provenance.replace('&', "&amp;").replace('<', "&lt;");
+        svg.insert_str(place, &format!("\n<metadata id=\"sunfleck\">{escaped}</metadata>"));
     }
     Ok(svg)
 }

@@ -5,26 +5,25 @@ use std::io;
 use super::dataset::{ImageRasters, of_sensor};
 use super::names::SensorNames;
 use super::staging::Staging;
-use super::{OutputError, netcdf, zarr};
+use super::{OfSensor, OutputError, netcdf, zarr};
 use crate::document::FileFormat;
-use crate::products::{Report, SensorReport};
 
 /// Writes the data sets that are asked for; returns their size in bytes.
 ///
 /// - `rasters`: rasters of each product, if it is an image
 pub(super) fn put(
-    report: &Report,
-    sensor: &SensorReport,
+    measured: &OfSensor<'_>,
     planned: &SensorNames,
     rasters: &[Option<ImageRasters>],
     staging: &mut Staging,
 ) -> Result<u64, OutputError> {
     let mut size = 0;
-    let asked = FileFormat::ALL.into_iter().filter(|format| report.formats.contains(format));
+    let asked =
+        FileFormat::ALL.into_iter().filter(|format| measured.report.formats.contains(format));
     for format in asked {
         let Some(name) = planned.dataset(format) else { continue };
         let fail = |source: io::Error| OutputError::Write { path: staging.shown(&name), source };
-        let dataset = of_sensor(report, sensor, planned, rasters).map_err(fail)?;
+        let dataset = of_sensor(measured, planned, rasters).map_err(fail)?;
         size += if format == FileFormat::Zarr {
             let folder = staging.folder(&name)?;
             let fail = |source| OutputError::Write { path: staging.shown(&name), source };

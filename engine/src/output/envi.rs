@@ -7,6 +7,7 @@ use std::ops::Range;
 use super::Source;
 use super::band_rows::BandRows;
 use super::classification::{self, classes_of};
+use super::provenance::RecipeForm;
 use crate::components::Projection;
 use crate::products::Image;
 
@@ -93,8 +94,8 @@ pub(super) fn write_header(
     raster: Raster,
     file: &mut impl Write,
 ) -> io::Result<()> {
-    let provenance =
-        source.provenance().into_iter().map(|(key, value)| format!("{key}: {}", item(&value)));
+    let provenance = source.provenance(RecipeForm::Packed);
+    let provenance = provenance.into_iter().map(|(key, value)| format!("{key}: {}", item(&value)));
     let mut description = provenance.collect::<Vec<_>>().join("; ");
     let mut names: Vec<_> = image.bands.iter().map(|name| item(name)).collect();
     if raster == Raster::Errors {

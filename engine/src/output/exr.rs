@@ -87,13 +87,8 @@ fn channels(image: &Image) -> Vec<(Text, Content)> {
 
 fn header(source: &Source<'_>, image: &Image, channels: &[(Text, Content)]) -> Header {
     // One text: the crate writes several attributes of its user in an order that differs from run to run.
-    let provenance: serde_json::Map<_, _> = source
-        .provenance()
-        .into_iter()
-        .map(|(key, value)| (key.to_owned(), value.into()))
-        .collect();
     let attributes = LayerAttributes {
-        comments: Some(text(&serde_json::Value::Object(provenance).to_string())),
+        comments: Some(text(&source.provenance_json())),
         software_name: Some(text(&format!("sunfleck {}", source.report.version))),
         ..LayerAttributes::default()
     };

@@ -9,6 +9,7 @@ use super::envi::Raster;
 use super::figure::{Caption, Figure};
 use super::picture::Picture;
 use super::picture_input::{LitBands, PictureInput};
+use super::provenance::RecipeForm;
 use super::staging::{StagedFile, Staging};
 use super::{OutputError, Source, envi, exr, geotiff, names};
 use crate::document::FileFormat;
@@ -28,7 +29,10 @@ pub(super) fn put(
     if has(FileFormat::Envi) {
         let (files, headers) = Rasters::begin(source, image, names, staging)?;
         (rasters, size) = (Some(files), headers);
-    } else if [FileFormat::Png, FileFormat::GeoTiff, FileFormat::Zarr, FileFormat::NetCdf].map(has).contains(&true) {
+    } else if [FileFormat::Png, FileFormat::GeoTiff, FileFormat::Zarr, FileFormat::NetCdf]
+        .map(has)
+        .contains(&true)
+    {
         rasters = Some(Rasters::without_names(image, staging)?);
     }
     write_blocks(source, image, exr.as_mut(), rasters.as_mut())?;
@@ -56,7 +60,8 @@ pub(super) fn put(
     let mut kept = None;
     if has(FileFormat::Zarr) || has(FileFormat::NetCdf) {
         let again = |file: &File| {
-            file.try_clone().map_err(|source| OutputError::Read { path: staging.shown(&names.img()), source })
+            file.try_clone()
+                .map_err(|source| OutputError::Read { path: staging.shown(&names.img()), source })
         };
         kept = Some(ImageRasters { values: again(&values)?, errors: again(&errors)? });
     }
@@ -149,7 +154,7 @@ fn put_pictures(
     let mut figure_file = staging.begin(framed)?;
     let mut shown = None;
     let size = staging.file(bare, |file| {
-        shown = Some(picture.encode(&source.provenance(), file)?);
+        shown = Some(picture.encode(&source.provenance(RecipeForm::Readable), file)?);
         Ok(())
     })?;
     let shown = shown.expect("the file was written");
@@ -159,6 +164,6 @@ fn put_pictures(
         unit: &source.product.unit,
     };
     let figure = Figure::new(&picture, shown, input.image.georeference, &caption);
-    figure_file.write(|file| figure.encode(&source.provenance(), file))?;
+    figure_file.write(|file| figure.encode(&source.provenance(RecipeForm::Readable), file))?;
     Ok(size + figure_file.finish()?)
 }

@@ -32,6 +32,7 @@ mod picture;
 mod picture_input;
 mod ply;
 mod point_tables;
+mod provenance;
 mod results;
 mod rows;
 mod run_record;
@@ -49,7 +50,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use crate::products::{Image, Product, Report};
+use crate::products::{Image, Product, Report, SensorReport};
+use provenance::RecipeTexts;
 
 pub use axes::{AxisCells, AxisColumns, ProductCells};
 pub use daily::{DailySums, daily_sums};
@@ -61,6 +63,7 @@ pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
 pub(crate) use picture::png_bytes;
 pub use point_tables::PointTables;
+pub use provenance::{RecordError, RunRecord, read_record};
 pub use results::{COEFFICIENTS, Results, ResultsOrigin, Written};
 pub use rows::{harmless, number};
 pub use run_record::RunRecord;
@@ -128,13 +131,14 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, OutputError
 fn put_products(
     report: &Report,
     plan: &[names::SensorNames],
+    recipe: &RecipeTexts,
     staging: &mut staging::Staging,
 ) -> Result<Vec<u64>, OutputError> {
     let mut sizes = Vec::with_capacity(plan.len());
     for (sensor, planned) in report.sensors.iter().zip(plan) {
         let (mut size, mut rasters) = (0, Vec::with_capacity(sensor.products.len()));
         for (product, names) in sensor.products.iter().zip(&planned.products) {
-            let source = Source { report, sensor: &sensor.name, product };
+            let source = Source { report, sensor: &sensor.name, product, recipe };
             check_shape(&source)?;
             let (written, of_image) = match (&product.faces, &product.image) {
                 (Some(faces), _) => {
@@ -149,7 +153,8 @@ fn put_products(
             size += written;
             rasters.push(of_image);
         }
-        size += dataset_files::put(report, sensor, planned, &rasters, staging)?;
+        size +=
+            dataset_files::put(&OfSensor { report, sensor, recipe }, planned, &rasters, staging)?;
         sizes.push(size);
     }
     Ok(sizes)
@@ -167,6 +172,7 @@ fn put_chart(
         scene: &source.report.scene,
         quantity: &source.product.name,
         unit: &source.product.unit,
+        provenance: &source.provenance_json(),
     };
     staging.file(name, |file| file.write_all(chart::draw(&lines, &heading)?.as_bytes()))
 }
@@ -198,11 +204,19 @@ pub fn probe(folder: &Path) -> Result<(), OutputError> {
     staging::Staging::open(folder).map(drop)
 }
 
+/// A sensor with its provenance.
+struct OfSensor<'a> {
+    report: &'a Report,
+    sensor: &'a SensorReport,
+    recipe: &'a RecipeTexts,
+}
+
 /// A product with its provenance.
 struct Source<'a> {
     report: &'a Report,
     sensor: &'a str,
     product: &'a Product,
+    recipe: &'a RecipeTexts,
 }
 
 impl Source<'_> {
@@ -215,14 +229,6 @@ impl Source<'_> {
         Err(OutputError::Shape { sensor, product, what, expected, found })
     }
 
-    /// Keys and values that every file of a product contains.
-    fn provenance(&self) -> Vec<(&'static str, String)> {
-        let mut all = provenance(self.report, self.sensor);
-        all.push(("product", in_a_line(&self.product.name)));
-        all.push(("unit", in_a_line(&self.product.unit)));
-        all
-    }
-
     /// Centre wavelengths of an image's bands, nm; NaN for a band that the report does not list.
     fn wavelengths(&self, image: &Image) -> Vec<f64> {
         let of = |name: &String| {
@@ -231,27 +237,6 @@ impl Source<'_> {
         };
         image.bands.iter().map(|name| of(name).unwrap_or(f64::NAN)).collect()
     }
-}
-
-/// Keys and values that every file of a sensor contains.
-fn provenance(report: &Report, sensor: &str) -> Vec<(&'static str, String)> {
-    let params = report.params.iter().map(|(name, value)| format!("{name}={value}"));
-    let params = params.collect::<Vec<_>>().join(" ");
-    let mut all = vec![
-        ("scene", in_a_line(&report.scene)),
-        ("params", in_a_line(&params)),
-        ("hash", in_a_line(&report.hash)),
-        ("version", in_a_line(&report.version)),
-        ("seed", report.seed.to_string()),
-        ("sensor", in_a_line(sensor)),
-    ];
-    all.retain(|(key, value)| *key != "params" || !value.is_empty());
-    all
-}
-
-/// A text in one line: a line break in a title must not end a comment.
-fn in_a_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Checks the shape of all values but pixels, which are checked when they are read.

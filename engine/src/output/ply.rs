@@ -5,7 +5,11 @@ use std::io::{self, Write};
 
 use super::Source;
 use super::names::Distinct;
+use super::provenance::{RECIPE, RecipeForm};
 use crate::products::Faces;
+
+/// Longest part of a recipe on a line, bytes.
+const LINE: usize = 500;
 
 /// Share of the faces below the top of the colours.
 const BELOW: f64 = 0.99;
@@ -34,8 +38,14 @@ pub(super) fn write(source: &Source<'_>, faces: &Faces, file: &mut impl Write) -
         return Err(io::Error::other(format!("{corners} corners are too many for a PLY file")));
     }
     writeln!(file, "ply\nformat binary_little_endian 1.0")?;
-    for (key, value) in source.provenance() {
-        writeln!(file, "comment {key}: {value}")?;
+    for (key, value) in source.provenance(RecipeForm::Packed) {
+        // Some readers have room for lines of a thousand letters; only the recipe, of one byte each, is longer.
+        let ends = [LINE.min(value.len()), value.len()];
+        let first = if key == RECIPE { ends[0] } else { ends[1] };
+        writeln!(file, "comment {key}: {}", &value[..first])?;
+        for more in value.as_bytes()[first..].chunks(LINE) {
+            file.write_all(&[b"comment recipe+ ", more, b"\n"].concat())?;
+        }
     }
     let (east, north) = faces.origin;
     writeln!(file, "comment origin_m: {east:?} {north:?} is what x and y count from")?;

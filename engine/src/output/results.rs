@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::daily::{self, DailySums};
 use super::derivatives::{DERIVATIVES, DerivativeTable};
 use super::manifest::{Manifest, relative};
+use super::provenance::{RecipeTexts, RunRecord};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
 use super::sweep::SweepTable;
@@ -120,14 +121,18 @@ impl Results {
     ) -> Result<Written, OutputError> {
         let plan = names::plan(report);
         self.put(|folder, staging| {
-            let sizes = put_products(report, &plan, staging)?;
+            let record = RunRecord::new(report, staging.target());
+            let recipe = RecipeTexts::new(record.as_ref());
+            let recipe =
+                recipe.map_err(|source| OutputError::Write { path: folder.to_owned(), source })?;
+            let sizes = put_products(report, &plan, &recipe, staging)?;
             if let Some(bytes) = &report.coefficients {
                 staging.file(COEFFICIENTS, |file| file.write_all(bytes))?;
             }
             more(staging)?;
             let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);
-            let head = head.with_files(staging.names());
+            let head = head.with_files(staging.names()).with_recipe(record);
             let sizes = Sizes { plan: &plan, bytes: &sizes };
             staging.file("summary.json", |file| summary::write(&head, report, &sizes, file))?;
             Ok(replaced(staging, folder, self.command, report))

@@ -3,12 +3,13 @@
 use std::io::{self, Write};
 
 use super::names::Distinct;
+use super::provenance::RecipeForm;
 use super::{Source, length};
 use crate::products::{AxisPoints, ProductAxis, Report};
 
 /// Writes a column an axis and, for each point of the last dimension, its value and standard error.
 pub(super) fn write(source: &Source<'_>, file: &mut impl Write) -> io::Result<()> {
-    for (key, value) in source.provenance() {
+    for (key, value) in source.provenance(RecipeForm::Packed) {
         writeln!(file, "# {key}: {}", harmless_line(&value))?;
     }
     let product = source.product;

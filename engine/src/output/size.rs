@@ -25,7 +25,9 @@ pub fn file_size(extent: ProductSize, formats: &[FileFormat]) -> u64 {
         ProductSize::Image { pixels, bands, .. } => {
             let values = 4 * (2 * bands + 1);
             let pixel = |format| match format {
-                FileFormat::Exr | FileFormat::Envi | FileFormat::Zarr | FileFormat::NetCdf => values,
+                FileFormat::Exr | FileFormat::Envi | FileFormat::Zarr | FileFormat::NetCdf => {
+                    values
+                }
                 // Overviews have a third of the pixels.
                 FileFormat::GeoTiff => values * 4 / 3,
                 FileFormat::Png => PIXEL,

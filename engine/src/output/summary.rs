@@ -11,6 +11,7 @@ use super::length;
 use super::lines::Lines;
 use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
+use super::provenance::RunRecord;
 use super::rows::columns;
 use crate::document::Param;
 use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport, SweepPoint};
@@ -38,6 +39,8 @@ pub(super) struct Head<'a> {
     version: &'a str,
     seed: u64,
     files: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recipe: Option<RunRecord>,
 }
 
 impl<'a> Head<'a> {
@@ -58,6 +61,7 @@ impl<'a> Head<'a> {
             version: &report.version,
             seed: report.seed,
             files: Vec::new(),
+            recipe: None,
         }
     }
 
@@ -65,6 +69,11 @@ impl<'a> Head<'a> {
     pub(super) fn with_files(mut self, names: &[String]) -> Self {
         self.files = names.iter().cloned().chain([SUMMARY.to_owned()]).collect();
         self
+    }
+
+    /// Adds what repeats the run.
+    pub(super) fn with_recipe(self, recipe: Option<RunRecord>) -> Self {
+        Self { recipe, ..self }
     }
 
     /// Text about the changes that were made to the scene.

@@ -15,6 +15,7 @@ mod leaf_area;
 mod of_scene;
 mod photons;
 mod product_size;
+mod recipe;
 mod reflectance;
 mod replicates;
 mod report;
@@ -34,6 +35,7 @@ pub use images::image_products;
 pub use leaf_area::{GapSums, LAI_2000_RINGS, LeafAreaIndex, lai_beer, lai_of_rings, lai_of_views};
 pub use photons::{albedo, brf_cells, brf_cones, brf_views, energy, fapar, fluxes};
 pub use product_size::{MeasuredLight, ProductSize, direction_sizes, image_sizes};
+pub use recipe::{InputFile, Recipe};
 pub use reflectance::{brf, flux_density, fraction, radiance};
 pub use report::{
     AxisPoints, CentralDifference, Day, Forecast, Night, Product, ProductAxis, Report, SceneSource,

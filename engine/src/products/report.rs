@@ -2,7 +2,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Faces, Image};
+use super::{Faces, Image, Recipe};
 use crate::components::Projection;
 use crate::document::{FileFormat, Param};
 use crate::spectral::BandResponse;
@@ -181,6 +181,8 @@ pub struct Report {
     pub source: Option<SceneSource>,
     /// Coefficients of products of spectra, as a file that `respectrum` reads, if the run kept some.
     pub coefficients: Option<Arc<Vec<u8>>>,
+    /// All that repeats the run; `None` for results of several runs.
+    pub recipe: Option<Arc<Recipe>>,
 }
 
 /// File that a scene was read from, and what was changed in it.

@@ -27,6 +27,7 @@ mod queries;
 mod radiance;
 mod reading;
 mod reports;
+mod rerun;
 mod respectrum;
 mod rounds;
 mod scene_world;
@@ -48,7 +49,7 @@ use std::time::Instant;
 use hecs::World;
 
 use crate::components::{Projection, TerrainPatch};
-use crate::document::{self, Diagnostic, Param, Scene, ScenePath};
+use crate::document::{self, Diagnostic, Param, Reading, Scene, ScenePath};
 use crate::extract::SceneOptics;
 use crate::products::{Context, Report, SceneSource};
 use crate::scattering::PathSpectra;
@@ -65,6 +66,7 @@ pub use loaded::LoadedScene;
 pub use options::{Options, Progress, SensorProgress, Unwatched};
 pub use queries::{LeafAreaSettings, height_model_file, leaf_area_file};
 pub use radiance::{RadianceError, RadianceQuantity, convert_radiance};
+pub use rerun::{changed_files, rerun};
 pub use respectrum::respectrum;
 pub use scene_world::SceneWorld;
 pub use session::Session;
@@ -103,7 +105,20 @@ fn report_of(
     let start = Instant::now();
     progress.stage("reading the scene");
     let reading = read(path, options)?;
-    let folder = folder_of(path);
+    let report =
+        report_of_reading(&reading, folder_of(path), options, progress, coefficients, start)?;
+    Ok(Report { source: Some(scene_source(path, options)), ..report })
+}
+
+/// Report of a scene that was read from `start` on.
+fn report_of_reading(
+    reading: &Reading,
+    folder: &Path,
+    options: &Options,
+    progress: &dyn Progress,
+    coefficients: Option<&Path>,
+    start: Instant,
+) -> Result<Report, Failure> {
     let read_seconds = start.elapsed().as_secs_f64();
     in_pool(options, || {
         let mut world = SceneWorld::new(folder);
@@ -116,7 +131,6 @@ fn report_of(
         // After an error there would be no scene: these are warnings.
         report.warnings.splice(0..0, reading.diagnostics.iter().map(failure::one_line));
         report.seconds = start.elapsed().as_secs_f64();
-        report.source = Some(scene_source(path, options));
         Ok(report)
     })
 }
@@ -245,6 +259,8 @@ fn measure_scenes(
             .flatten()
             .and_then(|spectra| store.coefficients(&spectra))
             .map(Arc::new),
+        quality: options.quality,
+        is_traced: kept.is_none(),
         seconds: clock.seconds(),
         stages: clock.laps,
     };

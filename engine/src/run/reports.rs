@@ -11,7 +11,7 @@ use super::settled::SettledScene;
 use super::{enclosed, footprint, params, projection, sensors, uncovered};
 use crate::document::Sun;
 use crate::extract::Stage;
-use crate::products::{Context, Product, Report, SensorReport};
+use crate::products::{Context, Product, Recipe, Report, SensorReport};
 
 /// Data that all scenes of a run share.
 pub(super) struct CommonResults<'a> {
@@ -23,6 +23,10 @@ pub(super) struct CommonResults<'a> {
     pub(super) warnings: Vec<String>,
     /// File of coefficients.
     pub(super) coefficients: Option<Arc<Vec<u8>>>,
+    /// Factor on the numbers of samples.
+    pub(super) quality: f64,
+    /// True if rays were traced, so that a run repeats the results.
+    pub(super) is_traced: bool,
     pub(super) stages: Vec<(String, f64)>,
     pub(super) seconds: f64,
 }
@@ -43,6 +47,9 @@ impl SharedReports {
     }
 }
 
+/// Number of scenes on the same paths above which their files hold no recipes: they are one table.
+const MOST_RECIPES: usize = 64;
+
 /// A report for each scene. Time is shared evenly among them; rays and samples are those that each result is made
 /// of, and so those of all.
 pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) -> Vec<Report> {
@@ -53,6 +60,18 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
     let sensors = sensors_by_scene(sensors, scenes, common.world);
     let own: Vec<&str> = scenes.iter().map(|settled| settled.hash.as_str()).collect();
     let hashes = if let [only] = own[..] { vec![only.to_owned()] } else { joint_hashes(&own) };
+    let recipe = |settled: &SettledScene| {
+        (common.is_traced && count <= MOST_RECIPES).then(|| {
+            Arc::new(Recipe {
+                scene: settled.scene.resolved().to_ron_line(),
+                folder: settled.folder.clone(),
+                files: settled.inputs.clone(),
+                quality: common.quality,
+                keeps_coefficients: common.stage.keeps_coefficients,
+                is_joint: count > 1,
+            })
+        })
+    };
     let report = |((settled, hash), sensors): ((&SettledScene, String), Vec<SensorReport>)| {
         let SettledScene { scene, context, .. } = settled;
         Report {
@@ -78,6 +97,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
             source: None,
             coefficients: common.coefficients.clone(),
+            recipe: recipe(settled),
         }
     };
     scenes.iter().zip(hashes).zip(sensors).map(report).collect()

@@ -198,6 +198,7 @@ impl SweepRun {
             sun_azimuth_deg: None,
             source: Some(scene_source(&self.file, &self.options)),
             coefficients: None,
+            recipe: None,
         }
     }
 }

@@ -43,6 +43,8 @@ pub(crate) enum Command {
     Compare(Compare),
     /// Evaluate the results of `run --keep-coefficients` for other spectra, irradiances or bands; no ray is traced
     Respectrum(Respectrum),
+    /// Repeat the run that wrote a file, with the scene that the file holds, and write the same results again
+    Rerun(Rerun),
     /// Combine the checkpoints of `run --part` and write the results
     Merge(Merge),
     /// Write a page about a folder of results, with all figures, to read in a browser
@@ -97,6 +99,7 @@ impl Command {
             Self::Sweep(arguments) => arguments.console,
             Self::Merge(arguments) => arguments.console,
             Self::Respectrum(arguments) => arguments.console,
+            Self::Rerun(arguments) => arguments.console,
             _ => Console::TEXT,
         }
     }
@@ -253,6 +256,44 @@ impl Respectrum {
             let stem = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let name = changed_name(stem, self.variant.as_deref(), &self.settings);
             self.results.with_file_name(name)
+        })
+    }
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Rerun {
+    /// A result of `run`, or the folder of its results
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    /// Folder for the results [default: that of the file, with `_rerun`]
+    #[arg(long = "out", value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Folder that paths of the scene are relative to [default: the one that the file names]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
+
+    /// Number of threads [default: all]; results do not depend on it
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Replace results of another scene
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    #[command(flatten)]
+    pub(crate) console: Console,
+}
+
+impl Rerun {
+    /// Folder for the results of a run whose results are in a folder.
+    pub(crate) fn out(&self, results: &Path) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            // `.` has no name of its own.
+            let folder = results.canonicalize().unwrap_or(results.to_owned());
+            let name = folder.file_name().unwrap_or_default().to_string_lossy();
+            folder.with_file_name(format!("{name}_rerun"))
         })
     }
 }

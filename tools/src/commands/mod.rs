@@ -7,6 +7,7 @@ mod new;
 mod preview;
 mod radiance;
 mod report;
+mod rerun;
 mod run;
 mod scenes;
 mod shell;
@@ -48,6 +49,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Run(arguments) => run::trace(arguments),
         Command::Respectrum(arguments) => run::respectrum(arguments),
+        Command::Rerun(arguments) => rerun::rerun(arguments),
         Command::Merge(arguments) => run::merge(arguments),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Compare(arguments) => print(&compare::compare(arguments)?),

@@ -170,7 +170,7 @@ fn results(
 }
 
 /// Writes a report and prints its table and what was done for it.
-fn write_report(
+pub(super) fn write_report(
     results: &Results,
     report: &Report,
     work: &str,

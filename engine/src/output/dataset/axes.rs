@@ -1,7 +1,7 @@
 //! Dimensions of products and their coordinates: those with the same points are shared.
 
-use super::names::{VariableNames, describe, in_words, name_and_unit};
 use super::super::rows::columns;
+use super::names::{VariableNames, describe, in_words, name_and_unit};
 use super::{Attributes, Dimension, Values, Variable};
 use crate::products::{AxisPoints, Georeference, Image, ProductAxis, Report};
 
@@ -36,13 +36,7 @@ enum Points {
 
 impl<'a> Axes<'a> {
     pub(super) fn new(report: &'a Report, names: VariableNames) -> Self {
-        Self {
-            report,
-            names,
-            dimensions: Vec::new(),
-            coordinates: Vec::new(),
-            known: Vec::new(),
-        }
+        Self { report, names, dimensions: Vec::new(), coordinates: Vec::new(), known: Vec::new() }
     }
 
     /// Dimension of a product's values.
@@ -53,8 +47,11 @@ impl<'a> Axes<'a> {
             let has = |(axis, _): &&(&str, &str)| axes.iter().any(|one| one.name == *axis);
             let several = SEVERAL_AXES.iter().find(has).filter(|_| all_axes.len() > 1);
             let is_band = axes.iter().any(|axis| axis.name == "band");
-            let (place, dimension) =
-                all.dimension(several.map_or(name, |(_, name)| *name), axes[0].points.len(), product);
+            let (place, dimension) = all.dimension(
+                several.map_or(name, |(_, name)| *name),
+                axes[0].points.len(),
+                product,
+            );
             let mut auxiliary = Vec::new();
             for axis in all_axes {
                 let (name, unit) = name_and_unit(&axis.name);
@@ -94,12 +91,7 @@ impl<'a> Axes<'a> {
         ]
     }
 
-    fn along_pixels(
-        &mut self,
-        points: Points,
-        name: &str,
-        product: &str,
-    ) -> AlongDimension {
+    fn along_pixels(&mut self, points: Points, name: &str, product: &str) -> AlongDimension {
         let (length, on_ground) = match &points {
             Points::Rows(length, place) | Points::Columns(length, place) => (*length, *place),
             Points::Axes(axes) => (axes[0].points.len(), None),
@@ -109,11 +101,8 @@ impl<'a> Axes<'a> {
             let mut attributes = Attributes::default();
             // An image without a place on the ground counts from its lower left corner, so that programs that turn y
             // upwards show it upright.
-            let [edge, step] = on_ground.unwrap_or(if name == "x" {
-                [0.0, 1.0]
-            } else {
-                [length as f64, -1.0]
-            });
+            let [edge, step] =
+                on_ground.unwrap_or(if name == "x" { [0.0, 1.0] } else { [length as f64, -1.0] });
             match (on_ground, name) {
                 (Some(_), "x") => describe(&mut attributes, name, "easting", "m"),
                 (Some(_), _) => describe(&mut attributes, name, "northing", "m"),

@@ -3,13 +3,14 @@
 use std::io;
 
 use super::super::names::SensorNames;
-use super::super::length;
+use super::super::provenance::{self, RecipeForm};
+use super::super::{OfSensor, length};
 use super::axes::{AlongDimension, Axes};
 use super::grid_mapping::grid_mapping;
 use super::names::{VariableNames, describe, in_words, standard_name};
 use super::pixels::ImageRasters;
 use super::{Attribute, Attributes, Dataset, Values, Variable};
-use crate::products::{Class, Image, Product, Report, Rendering, SensorReport};
+use crate::products::{Class, Image, Product, Rendering};
 
 /// Version of the conventions that data sets follow.
 pub(super) const CONVENTIONS: &str = "CF-1.10";
@@ -21,11 +22,11 @@ pub(super) const CONVENTIONS: &str = "CF-1.10";
 /// # Errors
 /// If the file of a raster cannot be opened again.
 pub(in crate::output) fn of_sensor<'a>(
-    report: &'a Report,
-    sensor: &'a SensorReport,
+    measured: &OfSensor<'a>,
     planned: &SensorNames,
     rasters: &[Option<ImageRasters>],
 ) -> io::Result<Dataset<'a>> {
+    let OfSensor { report, sensor, .. } = *measured;
     let mut names = VariableNames::default();
     let keys: Vec<ProductKeys> =
         planned.products.iter().map(|product| ProductKeys::new(&product.key, &mut names)).collect();
@@ -37,7 +38,8 @@ pub(in crate::output) fn of_sensor<'a>(
         if product.values.is_empty() {
             continue;
         }
-        let mut of_product = ProductVariables { product, keys, axes: &mut axes, variables: &mut variables };
+        let mut of_product =
+            ProductVariables { product, keys, axes: &mut axes, variables: &mut variables };
         match (&product.image, rasters) {
             (Some(image), Some(rasters)) => {
                 let mapping = mapping.as_ref().map_or("", |(name, _)| name);
@@ -56,7 +58,7 @@ pub(in crate::output) fn of_sensor<'a>(
         is_raster: false,
     });
     let variables = coordinates.into_iter().chain(mapping).chain(variables).collect();
-    Ok(Dataset { dimensions, attributes: global(report, sensor), variables })
+    Ok(Dataset { dimensions, attributes: global(measured), variables })
 }
 
 /// Returns true if a product is an image on the ground.
@@ -65,14 +67,16 @@ fn has_place(product: &Product) -> bool {
 }
 
 /// Attributes of a data set.
-fn global(report: &Report, sensor: &SensorReport) -> Attributes {
+fn global(measured: &OfSensor<'_>) -> Attributes {
+    let OfSensor { report, sensor, recipe } = measured;
     let mut attributes = Attributes::default();
     attributes.text("Conventions", CONVENTIONS);
     attributes.text("title", format!("{}: {}", report.scene.trim(), sensor.name));
     attributes.text("source", format!("sunfleck {}", report.version));
     // Without a time, so that equal runs make equal files.
     attributes.text("history", format!("written by sunfleck {}", report.version));
-    for (key, value) in super::super::provenance(report, &sensor.name) {
+    let provenance = provenance::of_sensor(report, &sensor.name, recipe, RecipeForm::Readable);
+    for (key, value) in provenance {
         attributes.text(key, value);
     }
     attributes
@@ -113,7 +117,8 @@ impl<'a> ProductVariables<'a, '_, '_> {
     /// Dimensions of the product's values.
     fn along(&mut self) -> Vec<AlongDimension> {
         let Self { product, keys, axes, .. } = self;
-        let dimensions = product.dimensions.iter().filter(|axes| length(axes) > 0 && !axes.is_empty());
+        let dimensions =
+            product.dimensions.iter().filter(|axes| length(axes) > 0 && !axes.is_empty());
         dimensions.map(|dimension| axes.along(dimension, &keys.values)).collect()
     }
 
@@ -158,12 +163,19 @@ impl<'a> ProductVariables<'a, '_, '_> {
             let numbers = (1..=classes.len()).map(|number| number as f32).collect();
             attributes.0.push(("flag_values".to_owned(), Attribute::Floats(numbers)));
             let word = |class: &Class| class.name.split_whitespace().collect::<Vec<_>>().join("_");
-            attributes.text("flag_meanings", classes.iter().map(word).collect::<Vec<_>>().join(" "));
+            attributes
+                .text("flag_meanings", classes.iter().map(word).collect::<Vec<_>>().join(" "));
         }
         let [values, errors] = [&self.product.values, &self.product.standard_error]
             .map(|values| Values::Doubles(values.as_slice().into()));
         let names = [self.keys.mean.clone(), self.keys.mean_errors.clone()];
-        self.add_pair(names, &format!("mean of {name} over the image"), &of_mean, [values, errors], "");
+        self.add_pair(
+            names,
+            &format!("mean of {name} over the image"),
+            &of_mean,
+            [values, errors],
+            "",
+        );
         Ok(())
     }
 
@@ -209,4 +221,3 @@ impl<'a> ProductVariables<'a, '_, '_> {
         self.variables.push(Variable { name, dimensions, attributes, values, has_fill, is_raster });
     }
 }
-

@@ -1,4 +1,8 @@
+use std::sync::LazyLock;
+
+use super::super::OfSensor;
 use super::super::names::plan;
+use super::super::provenance::RecipeTexts;
 use super::super::tests::{image, report, sensor};
 use super::*;
 use crate::products::{AxisPoints, Product, ProductAxis, Report};
@@ -32,10 +36,16 @@ fn report_of(products: Vec<Product>) -> Report {
     report
 }
 
+/// The only sensor of a report.
+fn of(report: &Report) -> OfSensor<'_> {
+    static NONE: LazyLock<RecipeTexts> = LazyLock::new(RecipeTexts::default);
+    OfSensor { report, sensor: &report.sensors[0], recipe: &NONE }
+}
+
 /// Each variable with its dimensions and the coordinates that it names.
 fn shown(report: &Report) -> Vec<String> {
     let none: Vec<Option<ImageRasters>> = report.sensors[0].products.iter().map(|_| None).collect();
-    let dataset = of_sensor(report, &report.sensors[0], &plan(report)[0], &none).unwrap();
+    let dataset = of_sensor(&of(report), &plan(report)[0], &none).unwrap();
     let line = |variable: &Variable<'_>| {
         let dimensions = variable.dimensions.iter().map(|&place| &dataset.dimensions[place]);
         let dimensions: Vec<String> =
@@ -100,7 +110,7 @@ fn names_are_distinct_and_begin_with_a_letter() {
     let names = ["band", "brf", "brf_standard_error", "2 ways", "ö"];
     let report = report_of(names.map(|name| table(name, bands())).into());
     let none: Vec<Option<ImageRasters>> = names.iter().map(|_| None).collect();
-    let dataset = of_sensor(&report, &report.sensors[0], &plan(&report)[0], &none).unwrap();
+    let dataset = of_sensor(&of(&report), &plan(&report)[0], &none).unwrap();
     let mut names: Vec<&str> = dataset.variables.iter().map(|one| one.name.as_str()).collect();
     let is_lawful = |name: &&str| {
         name.starts_with(|letter: char| letter.is_ascii_alphabetic())

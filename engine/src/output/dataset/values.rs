@@ -58,7 +58,7 @@ impl Values<'_> {
     pub(in crate::output) fn value_type(&self) -> ValueType {
         match self {
             Self::Doubles(_) => ValueType::Double,
-                Self::Stored(_) => ValueType::Float,
+            Self::Stored(_) => ValueType::Float,
             Self::Nothing => ValueType::Integer,
             Self::Texts(texts) => {
                 let longest = |length: fn(&String) -> usize| {

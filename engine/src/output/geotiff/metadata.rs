@@ -4,11 +4,13 @@ use std::fmt::Write as _;
 
 use super::super::Source;
 use super::super::envi::Raster;
+use super::super::provenance::{RECIPE, RecipeForm};
 use crate::products::{Class, Image};
 
-/// Provenance in one line, as in the other formats.
+/// Provenance in one line, as in the other formats, without the recipe.
 pub(super) fn description(source: &Source<'_>, raster: Raster) -> String {
-    let all = source.provenance().into_iter().map(|(key, value)| format!("{key}: {value}"));
+    let all = source.provenance(RecipeForm::Packed).into_iter();
+    let all = all.filter(|(key, _)| *key != RECIPE).map(|(key, value)| format!("{key}: {value}"));
     let heading = (raster == Raster::Errors).then(|| "standard errors and coverage".to_owned());
     heading.into_iter().chain(all).collect::<Vec<_>>().join("; ")
 }
@@ -31,7 +33,7 @@ pub(super) fn gdal(
         let _infallible =
             writeln!(text, "  <Item {attributes}>{}</Item>", escaped(&escaped(value)));
     };
-    for (key, value) in source.provenance() {
+    for (key, value) in source.provenance(RecipeForm::Readable) {
         item(&format!("name=\"sunfleck_{key}\""), &value);
     }
     for (number, class) in classes.unwrap_or_default().iter().enumerate() {

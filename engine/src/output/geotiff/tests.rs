@@ -9,6 +9,7 @@ use tiff::tags::{CompressionMethod, Predictor, Tag};
 use super::super::band_rows::BandRows;
 use super::super::envi;
 use super::super::file_size;
+use super::super::provenance::RecipeTexts;
 use super::super::tests::{image, report, sensor};
 use super::*;
 use crate::components::Projection;
@@ -57,7 +58,8 @@ fn written(report: &Report, raster: Raster, big_from: u64) -> Vec<u8> {
         let block = BandRows::new(image, rows.clone(), image.pixels.rows(rows).unwrap());
         envi::write_rows(image, raster, &block, &mut pixels).unwrap();
     }
-    let source = Source { report, sensor: "nadir", product };
+    let recipe = &RecipeTexts::default();
+    let source = Source { report, sensor: "nadir", product, recipe };
     let writer = Writer { source: &source, image, raster, big_from };
     let mut file = Cursor::new(Vec::new());
     writer.write(pixels, &|| tempfile::tempfile(), &mut file).unwrap();

@@ -4,9 +4,10 @@
 //! write the format with sizes of 64 bits. Without an unlimited dimension a file is a header, which is written here, and the
 //! values of one variable behind those of the other.
 //!
-//! Source: "NetCDF Classic Format Specification" (Unidata) and "CDF-5" (`PnetCDF`).
+//! Source: "`NetCDF` Classic Format Specification" (Unidata) and "CDF-5" (`PnetCDF`).
 
 mod header;
+mod read;
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -15,6 +16,7 @@ mod tests;
 use std::io::{self, Write};
 
 use self::header::{Header, Width};
+pub(super) use self::read::text_attribute;
 use super::dataset::{ByteOrder, Dataset};
 
 /// Number of values that are read and written at a time.

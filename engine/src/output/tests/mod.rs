@@ -23,7 +23,7 @@ fn labels(name: &str, points: &[&str]) -> ProductAxis {
 }
 
 /// BRF of three views in two bands, one of them without data.
-fn views() -> Product {
+pub(in crate::output) fn views() -> Product {
     Product {
         name: "brf".to_owned(),
         unit: "1".to_owned(),
@@ -107,6 +107,7 @@ pub(in crate::output) fn report(sensors: Vec<SensorReport>) -> Report {
         sun_azimuth_deg: Some(250.0),
         source: None,
         coefficients: None,
+        recipe: None,
     }
 }
 

@@ -83,8 +83,10 @@ impl Chunking {
         let counts: Vec<usize> = (0..self.shape.len())
             .map(|place| if place == self.cut_dimension() { 1 } else { self.count(place) })
             .collect();
-        (0..counts.iter().product())
-            .map(move |row| Slab { chunking: self, chunk: super::super::rows::indices(&counts, row) })
+        (0..counts.iter().product()).map(move |row| Slab {
+            chunking: self,
+            chunk: super::super::rows::indices(&counts, row),
+        })
     }
 
     /// Number of chunks along a dimension.
