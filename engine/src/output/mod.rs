@@ -42,6 +42,7 @@ mod staging;
 mod summary;
 mod swap;
 mod sweep;
+mod sweep_datasets;
 mod table;
 mod web_page;
 mod zarr;

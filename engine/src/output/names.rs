@@ -37,17 +37,33 @@ pub(super) struct SensorNames {
 impl SensorNames {
     /// Name of the file or folder of its data set in a format; `None` if the format is of images alone.
     pub(super) fn dataset(&self, format: FileFormat) -> Option<String> {
-        match format {
-            FileFormat::Zarr => Some(format!("{}.zarr", self.stem)),
-            FileFormat::NetCdf => Some(format!("{}.nc", self.stem)),
-            FileFormat::Exr | FileFormat::Envi | FileFormat::GeoTiff | FileFormat::Png => None,
-        }
+        dataset_name(&self.stem, format)
     }
 
     /// Names of its data sets in these formats.
     pub(super) fn datasets(&self, formats: &[FileFormat]) -> impl Iterator<Item = String> {
         let asked = FileFormat::ALL.into_iter().filter(|format| formats.contains(format));
         asked.filter_map(|format| self.dataset(format))
+    }
+}
+
+/// Name of the file or folder of a data set in a format; `None` if the format is of images alone.
+pub(super) fn dataset_name(stem: &str, format: FileFormat) -> Option<String> {
+    match format {
+        FileFormat::Zarr => Some(format!("{stem}.zarr")),
+        FileFormat::NetCdf => Some(format!("{stem}.nc")),
+        FileFormat::Exr | FileFormat::Envi | FileFormat::GeoTiff | FileFormat::Png => None,
+    }
+}
+
+/// Stems of the names of data sets.
+#[derive(Debug, Default)]
+pub(super) struct DatasetStems(Distinct);
+
+impl DatasetStems {
+    /// Stem for a sensor, which no other one has.
+    pub(super) fn take(&mut self, sensor: &str) -> String {
+        self.0.take_ignoring_case(&sanitise(sensor))
     }
 }
 
@@ -135,7 +151,7 @@ const BARE: &str = ".pixels.png";
 pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
     let mut stems = Distinct::default();
     let mut sensors = Distinct::default();
-    let mut datasets = Distinct::default();
+    let mut datasets = DatasetStems::default();
     let names = report.sensors.iter().map(|sensor| {
         let mut keys = Distinct::default();
         let products = sensor.products.iter().map(|product| {
@@ -151,7 +167,7 @@ pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
         SensorNames {
             key: sensors.take(&sensor.name),
             products: products.collect(),
-            stem: datasets.take_ignoring_case(&sanitise(&sensor.name)),
+            stem: datasets.take(&sensor.name),
         }
     });
     names.collect()

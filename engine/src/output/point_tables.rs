@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use super::names::{FOLDER_LENGTH, folder_name};
 use super::staging::Staging;
 use super::sweep::write_rows;
+use super::sweep_datasets::PointLayout;
 use super::{OutputError, Results};
 use crate::products::{Report, SweepPoint};
 
@@ -27,6 +28,18 @@ const TABLES: &str = "points.csv";
 /// by band.
 const KEY: &str = "# key: ";
 const IRRADIANCE: &str = "# irradiance_w_m2_nm: ";
+
+/// Start of the comment line that says what data sets hold.
+const LAYOUT: &str = "# data set: ";
+
+/// Value of a table with its standard error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PointValue<'a> {
+    pub(super) sensor: &'a str,
+    pub(super) product: &'a str,
+    /// Value and standard error.
+    pub(super) numbers: [f64; 2],
+}
 
 /// Number of points on the same paths above which their tables are all that is written, unless they have pictures:
 /// charts and summaries of thousands of points would take longer than their rays.
@@ -214,6 +227,47 @@ impl PointTable {
         Ok(HashMap::new())
     }
 
+    /// Products of the table as data sets have them; nothing if it was written without.
+    pub(super) fn layout(&self) -> Result<PointLayout, OutputError> {
+        for line in self.bytes()?.lines().take(3) {
+            let line = line.map_err(|source| self.unreadable(source))?;
+            if let Some(layout) = line.strip_prefix(LAYOUT) {
+                let parsed = serde_json::from_str(layout);
+                return parsed.map_err(|source| self.unreadable(source.into()));
+            }
+        }
+        Ok(PointLayout::default())
+    }
+
+    /// Visits all values in order.
+    pub(super) fn visit(&self, each: &mut dyn FnMut(PointValue<'_>)) -> Result<(), OutputError> {
+        let mut rows = self.rows()?;
+        let unreadable = |error: csv::Error| self.unreadable(error.into());
+        let header = rows.headers().map_err(unreadable)?.clone();
+        // Parameters come first, and may have any name.
+        let last = |name: &str| {
+            header
+                .iter()
+                .enumerate()
+                .filter(|(_, column)| *column == name)
+                .last()
+                .map(|(place, _)| place)
+        };
+        let places = [last("sensor"), last("product"), last("value"), last("standard_error")];
+        let [Some(sensor), Some(product), Some(value), Some(error)] = places else {
+            return Ok(());
+        };
+        let mut row = csv::StringRecord::new();
+        while rows.read_record(&mut row).map_err(unreadable)? {
+            let number = |place: usize| row.get(place).and_then(|text| text.parse().ok());
+            if let [Some(value), Some(error)] = [number(value), number(error)] {
+                let [sensor, product] = [sensor, product].map(|place| &row[place]);
+                each(PointValue { sensor, product, numbers: [value, error] });
+            }
+        }
+        Ok(())
+    }
+
     /// Error of reading the table.
     pub(super) fn unreadable(&self, source: io::Error) -> OutputError {
         OutputError::Read { path: self.path.to_path_buf(), source }
@@ -257,6 +311,9 @@ fn write_table(report: &Report, point: &SweepPoint, mut file: impl Write) -> io:
         report.bands.iter().zip(&report.irradiance).collect();
     if !lit.is_empty() {
         writeln!(file, "{IRRADIANCE}{}", serde_json::to_string(&lit)?)?;
+    }
+    if let Some(layout) = PointLayout::new(report) {
+        writeln!(file, "{LAYOUT}{}", serde_json::to_string(&layout)?)?;
     }
     write_rows(report, point, file)
 }

@@ -10,7 +10,7 @@ use super::provenance::{RecipeTexts, RunRecord};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
 use super::sweep::SweepTable;
-use super::{OutputError, names, put_products, summary};
+use super::{OutputError, names, put_products, summary, sweep_datasets};
 use crate::document::Param;
 use crate::products::{Report, SceneSource, SweepPoint};
 
@@ -184,6 +184,7 @@ impl Results {
     ) -> Result<Written, OutputError> {
         self.put(|folder, staging| {
             staging.file("sweep.csv", |file| table.write(file))?;
+            sweep_datasets::put(report, points, table, staging)?;
             if let Some(daily) = daily {
                 staging.file(daily::FILE, |file| daily.write(file))?;
             }

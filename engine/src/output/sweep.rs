@@ -18,6 +18,8 @@ pub(super) const REPLICATES: &str = "replicates";
 pub struct SweepTable<'a> {
     columns: Vec<String>,
     tables: Vec<&'a PointTable>,
+    /// Tables by point; `None` for points without one.
+    by_point: Vec<Option<&'a PointTable>>,
     /// True if each point has all columns.
     is_uniform: bool,
 }
@@ -28,8 +30,9 @@ impl<'a> SweepTable<'a> {
     /// # Errors
     /// If the table of a point cannot be read.
     pub fn new(points: &[SweepPoint], tables: &'a PointTables) -> Result<Self, OutputError> {
-        let tables: Vec<&PointTable> =
-            points.iter().filter_map(|point| tables.get(point)).collect();
+        let by_point: Vec<Option<&PointTable>> =
+            points.iter().map(|point| tables.get(point)).collect();
+        let tables: Vec<&PointTable> = by_point.iter().copied().flatten().collect();
         // A point may lack what others have: another axis, say.
         let (mut columns, mut is_uniform) = (Vec::<String>::new(), true);
         for table in &tables {
@@ -44,7 +47,12 @@ impl<'a> SweepTable<'a> {
                 }
             }
         }
-        Ok(Self { columns, tables, is_uniform })
+        Ok(Self { columns, tables, by_point, is_uniform })
+    }
+
+    /// Table of each point; `None` for points without one.
+    pub(super) fn by_point(&self) -> &[Option<&'a PointTable>] {
+        &self.by_point
     }
 
     /// Writes the table as CSV.

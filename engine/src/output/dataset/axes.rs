@@ -11,6 +11,8 @@ const SEVERAL_AXES: [(&str, &str); 2] = [("zenith_deg", "view"), ("bottom_m", "l
 /// Dimensions of a data set, with their coordinates, that grow while products ask for them.
 pub(super) struct Axes<'a> {
     report: &'a Report,
+    /// True if views have zenith angles with a sign too: the sun has one azimuth.
+    has_signs: bool,
     pub(super) names: VariableNames,
     pub(super) dimensions: Vec<Dimension>,
     pub(super) coordinates: Vec<Variable<'static>>,
@@ -36,22 +38,40 @@ enum Points {
 
 impl<'a> Axes<'a> {
     pub(super) fn new(report: &'a Report, names: VariableNames) -> Self {
-        Self { report, names, dimensions: Vec::new(), coordinates: Vec::new(), known: Vec::new() }
+        Self {
+            report,
+            has_signs: true,
+            names,
+            dimensions: Vec::new(),
+            coordinates: Vec::new(),
+            known: Vec::new(),
+        }
+    }
+
+    /// Axes of the points of a sweep, of which each may have another sun.
+    pub(super) fn of_sweep(report: &'a Report, names: VariableNames) -> Self {
+        Self { has_signs: false, ..Self::new(report, names) }
     }
 
     /// Dimension of a product's values.
     pub(super) fn along(&mut self, axes: &[ProductAxis], product: &str) -> AlongDimension {
+        let (first, _) = name_and_unit(&axes[0].name);
+        let has = |(axis, _): &&(&str, &str)| axes.iter().any(|one| one.name == *axis);
+        let several = SEVERAL_AXES.iter().find(has).filter(|_| axes.len() > 1);
+        self.along_named(several.map_or(first, |(_, name)| *name), axes, product)
+    }
+
+    /// Dimension of this name.
+    pub(super) fn along_named(
+        &mut self,
+        dimension: &str,
+        axes: &[ProductAxis],
+        product: &str,
+    ) -> AlongDimension {
         self.known_or(Points::Axes(axes.to_vec()), |all| {
-            let all_axes = columns(axes, all.report);
-            let (name, _) = name_and_unit(&axes[0].name);
-            let has = |(axis, _): &&(&str, &str)| axes.iter().any(|one| one.name == *axis);
-            let several = SEVERAL_AXES.iter().find(has).filter(|_| all_axes.len() > 1);
+            let all_axes = if all.has_signs { columns(axes, all.report) } else { axes.to_vec() };
             let is_band = axes.iter().any(|axis| axis.name == "band");
-            let (place, dimension) = all.dimension(
-                several.map_or(name, |(_, name)| *name),
-                axes[0].points.len(),
-                product,
-            );
+            let (place, dimension) = all.dimension(dimension, axes[0].points.len(), product);
             let mut auxiliary = Vec::new();
             for axis in all_axes {
                 let (name, unit) = name_and_unit(&axis.name);

@@ -1,6 +1,6 @@
 //! Data sets: named arrays with dimensions, coordinates and attributes after the CF conventions 1.10.
 //!
-//! Pure functions make a [`Dataset`] of what a sensor measured ([`sensor`]); [`super::zarr`] and
+//! Pure functions make a [`Dataset`] of what a sensor measured ([`sensor`]) or of a sweep ([`sweep`]); [`super::zarr`] and
 //! [`super::netcdf`] write it, and know neither sensors nor products. Values of images stay in files and are read in
 //! parts.
 
@@ -9,6 +9,7 @@ mod grid_mapping;
 mod names;
 mod pixels;
 mod sensor;
+mod sweep;
 mod values;
 
 #[cfg(test)]
@@ -17,6 +18,7 @@ mod tests;
 
 pub(super) use pixels::ImageRasters;
 pub(super) use sensor::of_sensor;
+pub(super) use sweep::{SweptProduct, of_sweep};
 pub(super) use values::{ByteOrder, ValueType, Values};
 
 /// Named arrays over common dimensions.

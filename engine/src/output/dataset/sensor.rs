@@ -3,14 +3,14 @@
 use std::io;
 
 use super::super::names::SensorNames;
-use super::super::provenance::{self, RecipeForm};
+use super::super::provenance::{self, RecipeForm, RecipeTexts};
 use super::super::{OfSensor, length};
 use super::axes::{AlongDimension, Axes};
 use super::grid_mapping::grid_mapping;
 use super::names::{VariableNames, describe, in_words, standard_name};
 use super::pixels::ImageRasters;
 use super::{Attribute, Attributes, Dataset, Values, Variable};
-use crate::products::{Class, Image, Product, Rendering};
+use crate::products::{Class, Image, Product, Rendering, Report};
 
 /// Version of the conventions that data sets follow.
 pub(super) const CONVENTIONS: &str = "CF-1.10";
@@ -26,7 +26,7 @@ pub(in crate::output) fn of_sensor<'a>(
     planned: &SensorNames,
     rasters: &[Option<ImageRasters>],
 ) -> io::Result<Dataset<'a>> {
-    let OfSensor { report, sensor, .. } = *measured;
+    let OfSensor { report, sensor, recipe } = *measured;
     let mut names = VariableNames::default();
     let keys: Vec<ProductKeys> =
         planned.products.iter().map(|product| ProductKeys::new(&product.key, &mut names)).collect();
@@ -58,7 +58,7 @@ pub(in crate::output) fn of_sensor<'a>(
         is_raster: false,
     });
     let variables = coordinates.into_iter().chain(mapping).chain(variables).collect();
-    Ok(Dataset { dimensions, attributes: global(measured), variables })
+    Ok(Dataset { dimensions, attributes: global(report, &sensor.name, recipe), variables })
 }
 
 /// Returns true if a product is an image on the ground.
@@ -67,15 +67,14 @@ fn has_place(product: &Product) -> bool {
 }
 
 /// Attributes of a data set.
-fn global(measured: &OfSensor<'_>) -> Attributes {
-    let OfSensor { report, sensor, recipe } = measured;
+pub(super) fn global(report: &Report, sensor: &str, recipe: &RecipeTexts) -> Attributes {
     let mut attributes = Attributes::default();
     attributes.text("Conventions", CONVENTIONS);
-    attributes.text("title", format!("{}: {}", report.scene.trim(), sensor.name));
+    attributes.text("title", format!("{}: {}", report.scene.trim(), sensor));
     attributes.text("source", format!("sunfleck {}", report.version));
     // Without a time, so that equal runs make equal files.
     attributes.text("history", format!("written by sunfleck {}", report.version));
-    let provenance = provenance::of_sensor(report, &sensor.name, recipe, RecipeForm::Readable);
+    let provenance = provenance::of_sensor(report, sensor, recipe, RecipeForm::Readable);
     for (key, value) in provenance {
         attributes.text(key, value);
     }
@@ -83,16 +82,16 @@ fn global(measured: &OfSensor<'_>) -> Attributes {
 }
 
 /// Names of the variables of a product.
-struct ProductKeys {
-    values: String,
-    errors: String,
+pub(super) struct ProductKeys {
+    pub(super) values: String,
+    pub(super) errors: String,
     coverage: String,
     mean: String,
     mean_errors: String,
 }
 
 impl ProductKeys {
-    fn new(key: &str, names: &mut VariableNames) -> Self {
+    pub(super) fn new(key: &str, names: &mut VariableNames) -> Self {
         let values = names.take(key);
         let mut with = |ending: &str| names.take(&format!("{values}{ending}"));
         Self {
@@ -106,22 +105,24 @@ impl ProductKeys {
 }
 
 /// Adds the variables of a product.
-struct ProductVariables<'a, 'p, 'r> {
-    product: &'a Product,
-    keys: &'p ProductKeys,
-    axes: &'p mut Axes<'r>,
-    variables: &'p mut Vec<Variable<'a>>,
+pub(super) struct ProductVariables<'a, 'v, 'p, 'r> {
+    pub(super) product: &'a Product,
+    pub(super) keys: &'p ProductKeys,
+    pub(super) axes: &'p mut Axes<'r>,
+    pub(super) variables: &'p mut Vec<Variable<'v>>,
 }
 
-impl<'a> ProductVariables<'a, '_, '_> {
+impl ProductVariables<'_, '_, '_, '_> {
     /// Dimensions of the product's values.
-    fn along(&mut self) -> Vec<AlongDimension> {
+    pub(super) fn along(&mut self) -> Vec<AlongDimension> {
         let Self { product, keys, axes, .. } = self;
         let dimensions =
             product.dimensions.iter().filter(|axes| length(axes) > 0 && !axes.is_empty());
         dimensions.map(|dimension| axes.along(dimension, &keys.values)).collect()
     }
+}
 
+impl<'a: 'v, 'v> ProductVariables<'a, 'v, '_, '_> {
     /// Adds the values of a table and their errors.
     fn add_table(&mut self) {
         let along = self.along();
@@ -178,16 +179,18 @@ impl<'a> ProductVariables<'a, '_, '_> {
         );
         Ok(())
     }
+}
 
+impl<'v> ProductVariables<'_, 'v, '_, '_> {
     /// Adds values and their standard errors.
     ///
     /// - `more`: name of a further ancillary variable, or none
-    fn add_pair(
+    pub(super) fn add_pair(
         &mut self,
         [name, error]: [String; 2],
         long_name: &str,
         along: &[AlongDimension],
-        [values, errors]: [Values<'a>; 2],
+        [values, errors]: [Values<'v>; 2],
         more: &str,
     ) {
         let Product { name: quantity, unit, .. } = self.product;
@@ -211,7 +214,7 @@ impl<'a> ProductVariables<'a, '_, '_> {
         name: String,
         along: &[AlongDimension],
         mut attributes: Attributes,
-        values: Values<'a>,
+        values: Values<'v>,
     ) {
         let auxiliary: Vec<&str> =
             along.iter().flat_map(|one| &one.auxiliary).map(String::as_str).collect();

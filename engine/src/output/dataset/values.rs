@@ -52,12 +52,16 @@ pub(in crate::output) enum StoredForm {
     Floats { no_data: f32 },
     /// Numbers of classes as bytes, with 0 in place of NaN.
     Classes,
+    /// `f64`.
+    Doubles,
 }
 
 impl Values<'_> {
     pub(in crate::output) fn value_type(&self) -> ValueType {
         match self {
-            Self::Doubles(_) => ValueType::Double,
+            Self::Doubles(_) | Self::Stored(StoredValues { form: StoredForm::Doubles, .. }) => {
+                ValueType::Double
+            }
             Self::Stored(_) => ValueType::Float,
             Self::Nothing => ValueType::Integer,
             Self::Texts(texts) => {
@@ -103,6 +107,7 @@ impl StoredValues {
         match self.form {
             StoredForm::Floats { .. } => size_of::<f32>(),
             StoredForm::Classes => 1,
+            StoredForm::Doubles => size_of::<f64>(),
         }
     }
 
@@ -123,6 +128,12 @@ impl StoredValues {
             StoredForm::Classes => {
                 let number = |class: u8| if class == 0 { f32::NAN } else { f32::from(class) };
                 bytes.into_iter().flat_map(|class| float(number(class), order)).collect()
+            }
+            StoredForm::Doubles => {
+                if order == ByteOrder::Big {
+                    bytes.as_chunks_mut::<8>().0.iter_mut().for_each(|value| value.reverse());
+                }
+                bytes
             }
         })
     }

@@ -1,0 +1,71 @@
+//! Data sets of sweeps, read by xarray against `sweep.csv`.
+//!
+//! Needs a Python with `numpy`, `xarray`, `zarr` and `netCDF4`: `python3`, or the one that `SUNFLECK_PYTHON` names. Without
+//! it the comparison is skipped, and says so.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::print_stderr, reason = "a skipped test says why")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// A scene with a sun that may stand below the horizon.
+fn scene(sweep: &str) -> String {
+    format!(
+        r#"Scene(
+    format: 1,
+    params: {{ "sza": 30.0, "rho": 0.2, "name_of_soil": "a" }},
+    bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.5, width_nm: 20.0)],
+    spectra: {{ "a": Constant("=rho"), "b": Bands([0.1, 0.3]) }},
+    materials: {{ "soil": Lambertian(reflectance: Named("=name_of_soil")) }},
+    terrain: Plane(size_m: (30.0, 20.0), material: "soil"),
+    sun: (zenith_deg: "=sza", azimuth_deg: 120.0),
+    sensors: {{
+        "top": Orthographic(size_px: (6, 4), extent_m: (30.0, 20.0), samples_per_px: 4, measure: [Brf]),
+        "plane": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), samples: 1000, measure: [Brf]),
+        "f": Photons(per_m2: 5.0, measure: [Albedo]),
+    }},
+    sweep: {sweep},
+    output: [Zarr, NetCdf],
+)"#
+    )
+}
+
+/// *Expected*: values and errors of the table bit for bit, at their parameters; NaN without light.
+#[test]
+fn data_sets_of_a_sweep_hold_its_table() {
+    let sweeps = [
+        (r#"Grid({ "sza": [20.0, 95.0, 60.0], "rho": [0.1, 0.4] })"#, "sza,rho", "sza,rho"),
+        (
+            r#"Grid({ "name_of_soil": ["a", "b"], "sza": [0.0, 50.0] })"#,
+            "name_of_soil,sza",
+            "name_of_soil,sza",
+        ),
+        (r#"Zip({ "sza": [20.0, 40.0, 60.0], "rho": [0.1, 0.1, 0.3] })"#, "sza,rho", "point"),
+    ];
+    for (sweep, parameters, dimensions) in sweeps {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.ron"), scene(sweep)).unwrap();
+        let run = Command::new(env!("CARGO_BIN_EXE_sunfleck"))
+            .args(["sweep", "a.ron", "--out", "out"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let script = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/readers/sweeps.py"));
+        let python = std::env::var_os("SUNFLECK_PYTHON").unwrap_or_else(|| "python3".into());
+        let mut command = Command::new(python);
+        command.arg(script).arg(folder.path().join("out")).args([parameters, dimensions]);
+        let Ok(read) = command.output() else {
+            eprintln!("skipped: there is no Python");
+            return;
+        };
+        let [said, wrong] = [&read.stdout, &read.stderr].map(|text| String::from_utf8_lossy(text));
+        if read.status.code() == Some(77) {
+            eprintln!("skipped: {said}");
+            return;
+        }
+        assert!(read.status.success(), "{sweep}: {said}{wrong}");
+    }
+}
