@@ -28,7 +28,7 @@ const SCENE: &str = r#"Scene(
     sun: (zenith_deg: "=sza", azimuth_deg: 120.0),
     sensors: {
         "top": Orthographic(size_px: (30, 20), extent_m: (30.0, 20.0), samples_per_px: 4, measure: [Brf, FourComponents]),
-        "plane": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), samples: 2000, measure: [Brf]),
+        "plane": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), until: Samples(2000), measure: [Brf]),
         "f": Photons(per_m2: 20.0, measure: [Albedo, Absorbed(per: Triangle)]),
     },
     output: [Exr, Envi, GeoTiff, Png, Zarr, NetCdf],

@@ -15,15 +15,18 @@ fn scene(sweep: &str) -> String {
     format!(
         r#"Scene(
     format: 1,
-    params: {{ "sza": 30.0, "rho": 0.2, "name_of_soil": "a" }},
+    params: {{ "hour": 12.0, "rho": 0.2, "name_of_soil": "a" }},
     bands: [(name: "red", center_nm: 660.0), (name: "nir", center_nm: 865.5, width_nm: 20.0)],
     spectra: {{ "a": Constant("=rho"), "b": Bands([0.1, 0.3]) }},
     materials: {{ "soil": Lambertian(reflectance: Named("=name_of_soil")) }},
     terrain: Plane(size_m: (30.0, 20.0), material: "soil"),
-    sun: (zenith_deg: "=sza", azimuth_deg: 120.0),
+    sun: (
+        position: Spa(date: (2026, 6, 21), time: ("=hour", 0.0, 0.0), latitude_deg: 52.5, longitude_deg: 0.0),
+        irradiance: Bands([1.5, 0.8]),
+    ),
     sensors: {{
         "top": Orthographic(size_px: (6, 4), extent_m: (30.0, 20.0), samples_per_px: 4, measure: [Brf]),
-        "plane": Directions(views: PrincipalPlane(max_deg: 60.0, step_deg: 30.0), samples: 1000, measure: [Brf]),
+        "plane": Directions(views: List([(0.0, 0.0), (30.0, 90.0)]), until: Samples(1000), measure: [Brf]),
         "f": Photons(per_m2: 5.0, measure: [Albedo]),
     }},
     sweep: {sweep},
@@ -36,13 +39,13 @@ fn scene(sweep: &str) -> String {
 #[test]
 fn data_sets_of_a_sweep_hold_its_table() {
     let sweeps = [
-        (r#"Grid({ "sza": [20.0, 95.0, 60.0], "rho": [0.1, 0.4] })"#, "sza,rho", "sza,rho"),
+        (r#"Grid({ "hour": [2.0, 10.0, 12.0], "rho": [0.1, 0.4] })"#, "hour,rho", "hour,rho"),
         (
             r#"Grid({ "name_of_soil": ["a", "b"], "sza": [0.0, 50.0] })"#,
             "name_of_soil,sza",
             "name_of_soil,sza",
         ),
-        (r#"Zip({ "sza": [20.0, 40.0, 60.0], "rho": [0.1, 0.1, 0.3] })"#, "sza,rho", "point"),
+        (r#"Zip({ "hour": [8.0, 11.0, 15.0], "rho": [0.1, 0.1, 0.3] })"#, "hour,rho", "point"),
     ];
     for (sweep, parameters, dimensions) in sweeps {
         let folder = tempfile::tempdir().unwrap();

@@ -38,6 +38,7 @@ mod rows;
 mod run_record;
 mod scale;
 mod size;
+mod staged_file;
 mod staging;
 mod summary;
 mod swap;

@@ -1,13 +1,14 @@
 //! A folder of files that appears all at once.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write as _};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use super::OutputError;
 use super::destination::{Destination, INSIDE};
 use super::manifest::Manifest;
 use super::partial::{Partial, Uninterrupted};
+use super::staged_file::StagedFile;
 use super::swap::{self, Exchange, Others, exchange};
 
 /// Files that are being written for one folder. If it is dropped before [`Staging::commit`] has ended, it removes
@@ -17,42 +18,6 @@ pub(super) struct Staging {
     destination: Destination,
     partial: Partial,
     names: Vec<String>,
-}
-
-/// File that is being written for a folder.
-#[derive(Debug)]
-pub(super) struct StagedFile {
-    writer: BufWriter<File>,
-    /// Path that it will have.
-    shown: PathBuf,
-}
-
-impl StagedFile {
-    /// Writes to it.
-    pub(super) fn write(
-        &mut self,
-        fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-    ) -> Result<(), OutputError> {
-        let path = &self.shown;
-        fill(&mut self.writer).map_err(|source| OutputError::Write { path: path.clone(), source })
-    }
-
-    /// Ends it; returns its size in bytes.
-    pub(super) fn finish(mut self) -> Result<u64, OutputError> {
-        let mut finish = || {
-            self.writer.flush()?;
-            // Some file systems report a full disk only here.
-            self.writer.get_ref().sync_all()?;
-            Ok(self.writer.get_ref().metadata()?.len())
-        };
-        finish().map_err(|source: io::Error| OutputError::Write { path: self.shown, source })
-    }
-
-    /// File to read what it holds so far; both share a place in the file, so that nothing is written to it after that.
-    pub(super) fn reader(&mut self) -> Result<File, OutputError> {
-        let file = self.writer.flush().and_then(|()| self.writer.get_ref().try_clone());
-        file.map_err(|source| OutputError::Read { path: self.shown.clone(), source })
-    }
 }
 
 impl Staging {
@@ -196,6 +161,8 @@ impl Staging {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 mod tests {
+    use std::io::Write as _;
+
     use super::super::manifest::SUMMARY;
     use super::*;
 
