@@ -140,7 +140,8 @@ def check_gdal(path, folder, name, summary, epsg):
         quoted = f'NETCDF:"{path}":{key}' if path.suffix == ".nc" else f'ZARR:"{path}":/{key}'
         with rasterio.open(quoted) as raster:
             read = raster.read()
-            same(read, values)
+            # Where lengths are no metres, GDAL begins with the lowest row, and says so.
+            same(read[:, ::-1] if raster.transform.e > 0 else read, values)
             place = keys.get("map info")
             if place:
                 west, north, dx, dy = map(float, place.split(", ")[3:7])

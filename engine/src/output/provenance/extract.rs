@@ -5,7 +5,9 @@ use std::io::{self, BufRead, BufReader, Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
 use ::exr::meta::MetaData;
+use serde::Deserialize;
 use serde_json::Value;
+use serde_json::value::RawValue;
 use tiff::decoder::{Decoder, Limits};
 use tiff::tags::Tag;
 
@@ -171,15 +173,25 @@ fn of_envi(file: File) -> io::Result<Extracted> {
     Ok(Extracted::of("a raster of ENVI", recipe.map(|recipe| recipe.trim().to_owned())))
 }
 
+/// Keys of a summary, or of the attributes of a Zarr store.
+#[derive(Deserialize)]
+struct Document {
+    /// As it is written: the order of parameters counts.
+    recipe: Option<Box<RawValue>>,
+    command: Option<String>,
+}
+
 /// Recipe of a summary, or of the attributes of a Zarr store.
 fn of_json(kind: &'static str, file: File) -> io::Result<Extracted> {
-    let text: Value = serde_json::from_reader(BufReader::new(file.take(MOST))).map_err(damaged)?;
-    let Value::Object(mut object) = text else { return Ok(Extracted::NotAResult) };
-    if let Some(recipe) = object.remove(RECIPE) {
-        return Ok(Extracted::Recipe(text_of(recipe)));
+    let Document { recipe, command } =
+        serde_json::from_reader(BufReader::new(file.take(MOST))).map_err(damaged)?;
+    if let Some(recipe) = recipe {
+        // A text, or the record itself.
+        let text = serde_json::from_str(recipe.get()).unwrap_or_else(|_| recipe.get().to_owned());
+        return Ok(Extracted::Recipe(text));
     }
-    match object.get("command").and_then(Value::as_str) {
-        Some(command) if command != "run" => Ok(Extracted::OtherCommand(command.to_owned())),
-        _ => Ok(Extracted::Nothing(kind)),
-    }
+    Ok(match command {
+        Some(command) if command != "run" => Extracted::OtherCommand(command),
+        _ => Extracted::Nothing(kind),
+    })
 }
