@@ -65,7 +65,7 @@ pub use partial::clean_up;
 pub(crate) use partial::{replace_file, try_file};
 pub(crate) use picture::png_bytes;
 pub use point_tables::PointTables;
-pub use provenance::{RecordError, RunRecord, read_record};
+pub use provenance::{RecipeRecord, RecordError, read_record};
 pub use results::{COEFFICIENTS, Results, ResultsOrigin, Written};
 pub use rows::{harmless, number};
 pub use run_record::RunRecord;

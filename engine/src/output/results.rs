@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::daily::{self, DailySums};
 use super::derivatives::{DERIVATIVES, DerivativeTable};
 use super::manifest::{Manifest, relative};
-use super::provenance::{RecipeTexts, RunRecord};
+use super::provenance::{RecipeRecord, RecipeTexts};
 use super::staging::Staging;
 use super::summary::{Head, Sizes};
 use super::sweep::SweepTable;
@@ -121,7 +121,7 @@ impl Results {
     ) -> Result<Written, OutputError> {
         let plan = names::plan(report);
         self.put(|folder, staging| {
-            let record = RunRecord::new(report, staging.target());
+            let record = RecipeRecord::new(report, staging.target());
             let recipe = RecipeTexts::new(record.as_ref());
             let recipe =
                 recipe.map_err(|source| OutputError::Write { path: folder.to_owned(), source })?;

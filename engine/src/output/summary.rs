@@ -11,7 +11,7 @@ use super::length;
 use super::lines::Lines;
 use super::manifest::SUMMARY;
 use super::names::{ProductNames, SensorNames};
-use super::provenance::RunRecord;
+use super::provenance::RecipeRecord;
 use super::rows::columns;
 use crate::document::Param;
 use crate::products::{AxisPoints, Forecast, Product, Report, SensorReport, SweepPoint};
@@ -40,7 +40,7 @@ pub(super) struct Head<'a> {
     seed: u64,
     files: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    recipe: Option<RunRecord>,
+    recipe: Option<RecipeRecord>,
 }
 
 impl<'a> Head<'a> {
@@ -72,7 +72,7 @@ impl<'a> Head<'a> {
     }
 
     /// Adds what repeats the run.
-    pub(super) fn with_recipe(self, recipe: Option<RunRecord>) -> Self {
+    pub(super) fn with_recipe(self, recipe: Option<RecipeRecord>) -> Self {
         Self { recipe, ..self }
     }
 

@@ -175,6 +175,7 @@ fn report(
         rays: 0,
         bands: Vec::new(),
         wavelengths: Vec::new(),
+        bandwidths: Vec::new(),
         irradiance: Vec::new(),
         responses: Vec::new(),
         stages: vec![(answer.name.to_owned(), seconds)],
@@ -186,6 +187,7 @@ fn report(
         sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
         source: Some(scene_source(path, options)),
         coefficients: None,
+        recipe: None,
     })
 }
 

@@ -98,6 +98,7 @@ pub fn convert_radiance(
         rays: 0,
         bands: Vec::new(),
         wavelengths: Vec::new(),
+        bandwidths: Vec::new(),
         irradiance: Vec::new(),
         responses: Vec::new(),
         stages: Vec::new(),
@@ -109,6 +110,7 @@ pub fn convert_radiance(
         sun_azimuth_deg: None,
         source: None,
         coefficients: None,
+        recipe: None,
     };
     for file in files {
         let image = SourceImage::read(file, quantity)?;

@@ -7,14 +7,14 @@ use super::reading::sound;
 use super::{Failure, Options, Progress, report_of_reading};
 use crate::document::{self, StopCriterion};
 use crate::files;
-use crate::output::RunRecord;
+use crate::output::RecipeRecord;
 use crate::products::{Report, SceneSource};
 
 /// Input files of a run that have changed since, each with what has changed.
 ///
 /// - `folder`: folder that paths of the scene are relative to
 #[must_use]
-pub fn changed_files(record: &RunRecord, folder: &Path) -> Vec<String> {
+pub fn changed_files(record: &RecipeRecord, folder: &Path) -> Vec<String> {
     let change = |(path, hash): (&String, &String)| {
         let path = folder.join(path);
         let found = files::open(&path).and_then(|file| {
@@ -36,7 +36,7 @@ pub fn changed_files(record: &RunRecord, folder: &Path) -> Vec<String> {
 /// # Errors
 /// All errors of the scene.
 pub fn rerun(
-    record: &RunRecord,
+    record: &RecipeRecord,
     folder: &Path,
     options: &Options,
     progress: &dyn Progress,

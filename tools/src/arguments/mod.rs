@@ -288,7 +288,7 @@ pub(crate) struct Rerun {
 
 impl Rerun {
     /// Folder for the results of a run whose results are in a folder.
-    pub(crate) fn out(&self, results: &Path) -> PathBuf {
+    pub(crate) fn out(&self, results: &std::path::Path) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             // `.` has no name of its own.
             let folder = results.canonicalize().unwrap_or(results.to_owned());

@@ -56,7 +56,7 @@ pub(super) fn rerun(arguments: &Rerun) -> anyhow::Result<()> {
 }
 
 /// Reasons for which results may differ from those before, though files are the same.
-fn differences(record: &output::RunRecord) -> Vec<String> {
+fn differences(record: &output::RecipeRecord) -> Vec<String> {
     let own = env!("CARGO_PKG_VERSION");
     let mut all = Vec::new();
     if record.version != own {

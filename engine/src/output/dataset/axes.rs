@@ -192,7 +192,8 @@ impl<'a> Axes<'a> {
         });
         let known = names.into_iter().flatten().map(|name| {
             let index = report.bands.iter().position(|band| band == name)?;
-            Some([*report.wavelengths.get(index)?, *report.bandwidths.get(index)?])
+            let width = report.bandwidths.get(index).copied().unwrap_or(f64::NAN);
+            Some([*report.wavelengths.get(index)?, width])
         });
         let Some(known) = known.collect::<Option<Vec<[f64; 2]>>>().filter(|all| !all.is_empty())
         else {
@@ -207,7 +208,9 @@ impl<'a> Axes<'a> {
             self.coordinate(&taken, place, attributes, Values::Doubles(values.into()));
             taken
         };
-        kinds.into_iter().enumerate().map(add).collect()
+        let is_known =
+            |(kind, _): &(usize, (&str, &str))| known.iter().all(|pair| pair[*kind].is_finite());
+        kinds.into_iter().enumerate().filter(is_known).map(add).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Origin of results: what every file says of it, and how it is read again.
 //!
-//! Each format holds keys and values in its own way; the value of `recipe` repeats the run ([`RunRecord`]).
+//! Each format holds keys and values in its own way; the value of `recipe` repeats the run ([`RecipeRecord`]).
 //!
 //! | format | keys and values | recipe |
 //! |---|---|---|
@@ -22,8 +22,8 @@ mod record;
 mod tests;
 
 pub use read::{RecordError, read_record};
+pub use record::RecipeRecord;
 pub(super) use record::RecipeTexts;
-pub use record::RunRecord;
 
 use super::Source;
 use crate::products::Report;

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::super::manifest::SUMMARY;
 use super::extract::{Extracted, recipe_of};
-use super::record::{FORMAT, IN_SUMMARY, RunRecord, unpacked};
+use super::record::{FORMAT, IN_SUMMARY, RecipeRecord, unpacked};
 
 /// Reason why a file does not say how to repeat its run.
 #[non_exhaustive]
@@ -32,7 +32,7 @@ pub enum RecordError {
 ///
 /// # Errors
 /// If the file says nothing of it, is damaged, or was written by a newer version.
-pub fn read_record(path: &Path) -> Result<RunRecord, RecordError> {
+pub fn read_record(path: &Path) -> Result<RecipeRecord, RecordError> {
     let path = &if path.join(SUMMARY).is_file() { path.join(SUMMARY) } else { path.to_owned() };
     let extracted = recipe_of(path).map_err(|error| match error.kind() {
         io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof => {
@@ -63,7 +63,7 @@ struct RecordHead {
     version: String,
 }
 
-fn parsed(path: &Path, text: &str) -> Result<RunRecord, RecordError> {
+fn parsed(path: &Path, text: &str) -> Result<RecipeRecord, RecordError> {
     let damaged = |what: String| RecordError::Damaged { path: path.to_owned(), what };
     let json = unpacked(text).map_err(|what| damaged(format!("its recipe: {what}")))?;
     let not_json = |error: serde_json::Error| damaged(format!("its recipe: {error}"));
@@ -71,7 +71,7 @@ fn parsed(path: &Path, text: &str) -> Result<RunRecord, RecordError> {
     if format > FORMAT {
         return Err(RecordError::Newer { path: path.to_owned(), version });
     }
-    let record: RunRecord = serde_json::from_str(&json).map_err(not_json)?;
+    let record: RecipeRecord = serde_json::from_str(&json).map_err(not_json)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    Ok(RunRecord { results: folder.unwrap_or(Path::new(".")).to_owned(), ..record })
+    Ok(RecipeRecord { results: folder.unwrap_or(Path::new(".")).to_owned(), ..record })
 }

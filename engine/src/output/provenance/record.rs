@@ -36,7 +36,7 @@ pub(super) const FORMAT: u32 = 1;
 
 /// Recipe of a run as files hold it.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct RunRecord {
+pub struct RecipeRecord {
     /// Name of the program, `sunfleck`.
     pub program: String,
     /// Version of the form.
@@ -77,7 +77,7 @@ pub struct RunRecord {
     pub results: PathBuf,
 }
 
-impl RunRecord {
+impl RecipeRecord {
     /// Record of the run of a report whose results go to a folder; `None` if it cannot be repeated.
     pub(in crate::output) fn new(report: &Report, target: &Path) -> Option<Self> {
         let Recipe { scene, folder, files, quality, keeps_coefficients, is_joint } =
@@ -148,7 +148,7 @@ impl RecipeTexts {
     ///
     /// # Errors
     /// If it cannot be written as JSON: never.
-    pub(in crate::output) fn new(record: Option<&RunRecord>) -> io::Result<Self> {
+    pub(in crate::output) fn new(record: Option<&RecipeRecord>) -> io::Result<Self> {
         let Some(record) = record else { return Ok(Self::default()) };
         let json = serde_json::to_string(record)?;
         let mut packed = packed(&json)?;
