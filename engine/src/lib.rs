@@ -33,9 +33,11 @@
 //! ```
 
 pub mod accel;
+pub mod appearance;
 pub mod assets;
 pub mod components;
 pub mod document;
+pub mod export;
 pub mod extract;
 mod files;
 pub mod geometry;

@@ -1,9 +1,10 @@
-//! Maps of scenes: what stands where on them, read from their SVG and their pixels.
+//! Maps and views of scenes: what stands where on them, read from their SVG and their pixels.
 
 use std::fs;
 use std::io::Cursor;
 
-use sunfleck::preview::{SceneMap, map_svg};
+use sunfleck::components::View;
+use sunfleck::preview::{SceneMap, SceneView, ViewSettings, map_svg, replace_by_boxes};
 use sunfleck::run::{LoadedScene, Options, Unwatched};
 use tempfile::TempDir;
 
@@ -154,7 +155,7 @@ fn many_crowns_are_pixels() {
     ]);
     let svg = SceneMap::new(&loaded, 400).svg();
     assert!(svg.len() < 200_000 && svg.matches("<circle").count() < 20, "{}", svg.len());
-    assert!(svg.contains("a pixel shows the last on it"));
+    assert!(svg.contains("pixels show their mean"));
 }
 
 /// *Expected*: the same bytes of both files for one thread as for all.
@@ -167,4 +168,102 @@ fn maps_do_not_depend_on_threads() {
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     assert!(pool.install(draw) == draw());
+}
+
+/// Pixels of a picture, row by row.
+struct Pixels {
+    width: usize,
+    rgb: Vec<u8>,
+}
+
+impl Pixels {
+    fn new(png: &[u8]) -> Self {
+        let mut reader = png::Decoder::new(Cursor::new(png)).read_info().expect("a PNG");
+        let mut rgb = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut rgb).expect("pixels");
+        Self { width: info.width as usize, rgb }
+    }
+
+    /// Colour at film coordinates, from `(0, 0)` top left to `(1, 1)` bottom right.
+    fn at(&self, x: f64, y: f64) -> [u8; 3] {
+        let rows = self.rgb.len() / 3 / self.width;
+        let at = 3 * ((y * rows as f64) as usize * self.width + (x * self.width as f64) as usize);
+        [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
+    }
+}
+
+/// Pictures of a view from above of a scene with these edits.
+fn views(edits: &[(&str, &str)], has_boxes: bool) -> Vec<Vec<u8>> {
+    let (_folder, mut loaded) = load(edits);
+    if has_boxes {
+        replace_by_boxes(&mut loaded);
+    }
+    let options = Options::default();
+    let stage = loaded.isolated_stage(&options, &Unwatched).unwrap_or_else(|e| panic!("{e}"));
+    let towards = Some(View::from_degrees(0.0, 180.0));
+    let view = SceneView::new(&loaded, &stage, ViewSettings { width: 240, samples: 2, towards });
+    let mut pictures = Vec::new();
+    let shown: Result<(), ()> = view.trace(|png| {
+        pictures.push(png);
+        Ok(())
+    });
+    shown.expect("nothing fails");
+    pictures
+}
+
+/// A plate of 10 m in the middle of 40 m x 20 m, 5 m high, under a sun in the east.
+const PLATE: [(&str, &str); 3] = [
+    ("boundary: Periodic", "boundary: Isolated"),
+    (
+        "List(of: \"slab\", at_m: [(10.0, 10.0, 0.0), (40.0, 5.0, 0.0)], scale: [1.0, 1.0])",
+        "List(of: \"slab\", at_m: [(20.0, 10.0, 0.0)])",
+    ),
+    ("stems: Count(1)", "stems: Count(0)"),
+];
+
+/// *Expected*: three pictures, the last complete; the plate is as bright as the ground, which has the same material, its
+/// shadow lies to the west and is darker, but not black; beside the ground is none of its colour.
+#[test]
+fn views_show_light_and_shadow() {
+    let pictures = views(&PLATE, false);
+    assert_eq!(pictures.len(), 3, "coarse, first and last");
+    let last = Pixels::new(&pictures[2]);
+    assert_eq!(last.rgb.len(), 3 * 240 * 150);
+    // The plate is 4 m of a picture that is 43 m wide or so: its middle and the ground to the east are sunlit.
+    let (plate, ground) = (last.at(0.5, 0.5), last.at(0.65, 0.5));
+    let shadow = last.at(0.5 - 5.0 / 42.0, 0.5);
+    let brightness =
+        |colour: [u8; 3]| colour.iter().map(|&channel| u32::from(channel)).sum::<u32>();
+    assert!(brightness(plate).abs_diff(brightness(ground)) < 30, "{plate:?} {ground:?}");
+    assert!(brightness(shadow) + 100 < brightness(ground), "{shadow:?} {ground:?}");
+    assert!(shadow.iter().all(|&channel| channel > 20), "{shadow:?}");
+    let beside = last.at(0.01, 0.01);
+    assert!(beside[2] > ground[2] || beside[0].abs_diff(ground[0]) > 10, "{beside:?}");
+    // A level plate is its own box.
+    assert!(views(&PLATE, true)[2] == pictures[2]);
+}
+
+/// *Expected*: a picture without black pixels for scenes without instances, without a sun and with a thermal band alone.
+#[test]
+fn any_scene_has_a_view() {
+    let thermal = [
+        ("(name: \"red\", center_nm: 660.0)", "(name: \"tir\", center_nm: 10000.0)"),
+        (
+            "Lambertian(reflectance: Constant(0.2))",
+            "Lambertian(reflectance: Constant(0.05), temperature: Uniform(300.0))",
+        ),
+        ("sun: (zenith_deg: 45.0, azimuth_deg: 90.0),", ""),
+    ];
+    let bare = [PLATE[1], PLATE[2], ("List(of: \"slab\", at_m: [(20.0, 10.0, 0.0)]),", "")];
+    for edits in [&thermal[..], &bare, &[thermal[2]]] {
+        let last = Pixels::new(views(edits, false).last().expect("a picture"));
+        assert!(last.rgb.chunks_exact(3).all(|pixel| pixel.iter().any(|&channel| channel > 15)));
+    }
+}
+
+/// *Expected*: the same bytes for one thread as for all.
+#[test]
+fn views_do_not_depend_on_threads() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    assert!(pool.install(|| views(&PLATE, false)) == views(&PLATE, false));
 }

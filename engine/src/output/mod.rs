@@ -188,7 +188,7 @@ pub fn replace(file: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputErro
 }
 
 /// Writes a file that appears when it is complete; makes its folder if it does not exist.
-fn put_file(
+pub(crate) fn put_file(
     path: &Path,
     fill: impl FnOnce(&mut fs::File) -> io::Result<()>,
 ) -> Result<(), OutputError> {

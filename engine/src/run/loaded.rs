@@ -1,10 +1,11 @@
 use std::path::Path;
 
 use super::failure::one_line;
+use super::provenance::{self, FileHashes};
 use super::reading::{folder_of, read};
 use super::staging::staged;
 use super::{Failure, Options, Progress, SceneWorld};
-use crate::document::{Reading, Scene};
+use crate::document::{Boundary, Reading, Scene};
 use crate::extract::{SceneOptics, Stage};
 
 /// A scene and its world: what every question about a scene is asked of, be it answered by a run or not.
@@ -57,5 +58,34 @@ impl LoadedScene {
         let optics = SceneOptics::from_world(&world.world, reading.scene.bands.len());
         staged(world, &reading.scene, &optics, options.free_memory())
             .map_err(|failure| failure.with_source(&reading.source))
+    }
+
+    /// Builds the stage of the scene as if its rectangle did not repeat, for pictures of it from outside. Its ray engine is
+    /// not kept for other stages.
+    ///
+    /// # Errors
+    /// As of [`stage`](Self::stage).
+    pub fn isolated_stage(
+        &mut self,
+        options: &Options,
+        progress: &dyn Progress,
+    ) -> Result<Stage, Failure> {
+        progress.stage("building");
+        let Self { reading, world } = self;
+        let scene = Scene { boundary: Boundary::Isolated, ..reading.scene.clone() };
+        let optics = SceneOptics::from_world(&world.world, scene.bands.len());
+        let kept = world.geometry.take();
+        let stage = staged(world, &scene, &optics, options.free_memory());
+        world.geometry = kept;
+        stage.map_err(|failure| failure.with_source(&reading.source))
+    }
+
+    /// Returns the hash of the scene as it was resolved and of the content of each file that it reads, hexadecimal.
+    ///
+    /// # Errors
+    /// If a file cannot be read again.
+    pub fn hash(&self) -> Result<String, Failure> {
+        let files = self.world.resources.messages.files();
+        provenance::hash(self.scene(), &files, &FileHashes::default())
     }
 }

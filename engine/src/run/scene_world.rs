@@ -41,6 +41,11 @@ impl SceneWorld {
         Ok(world)
     }
 
+    /// Makes the next stage build the ray engine anew, after a change of meshes that no system has made.
+    pub fn forget_geometry(&mut self) {
+        self.geometry = None;
+    }
+
     /// Warnings about the scene; errors too if it has any.
     #[must_use]
     pub fn diagnostics(&self) -> Vec<Diagnostic> {

@@ -13,12 +13,12 @@ use sunfleck::run::Partition;
 
 use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
-use crate::commands::{Brf, Bt, Chm, Completions, Lai, Man, New, Preview, Report, Stats, Sunpos};
+use crate::commands::{Brf, Bt, Chm, Completions, Export, Lai, Man, New, Preview, Report, Stats, Sunpos};
 use crate::console::Console;
 use crate::verify::CHECKS;
 
 pub(crate) use self::shared::{Formats, Measured, Out, Run, Scene};
-pub(crate) use self::values::length;
+pub(crate) use self::values::{length, memory};
 pub(crate) use import::{Import, ImportLess};
 
 /// Simulates light in forest scenes that are written as text: images, BRF, albedo, absorbed light.
@@ -51,7 +51,7 @@ pub(crate) enum Command {
     Report(Report),
     /// Report what a scene consists of, its errors and its warnings, without running it
     Check(Check),
-    /// Draw a map of a scene, as PNG and SVG
+    /// Draw a map and a shaded view of a scene
     Preview(Preview),
     /// Count leaf area by cells and layers: maps, profiles and totals, exact for every triangle and disc
     Lai(Lai),
@@ -65,6 +65,8 @@ pub(crate) enum Command {
     Bt(Bt),
     /// Compute where the sun is: at a time, over a day, or sunrise and sunset over a year
     Sunpos(Sunpos),
+    /// Write the geometry of a scene as glTF or PLY, or points on its leaves as LAS
+    Export(Export),
     /// Measure run time and error of each product with each transport system, for several numbers of
     /// samples
     Bench(Bench),

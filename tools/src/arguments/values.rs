@@ -76,7 +76,7 @@ pub(super) fn part(text: &str) -> Result<Partition, String> {
     }
 }
 
-pub(super) fn memory(text: &str) -> Result<u64, String> {
+pub(crate) fn memory(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let power = match text[end..].trim() {

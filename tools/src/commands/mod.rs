@@ -3,6 +3,7 @@
 mod answer;
 mod chm;
 mod lai;
+mod export;
 mod new;
 mod preview;
 mod radiance;
@@ -30,6 +31,7 @@ use crate::{bench, compare, verify};
 
 pub(crate) use chm::Chm;
 pub(crate) use lai::Lai;
+pub(crate) use export::Export;
 pub(crate) use new::New;
 pub(crate) use preview::Preview;
 pub(crate) use radiance::{Brf, Bt};
@@ -62,6 +64,7 @@ pub(crate) fn execute(command: &Command) -> anyhow::Result<()> {
         Command::Bt(arguments) => radiance::bt(arguments),
         Command::Stats(arguments) => stats::stats(arguments),
         Command::Lai(arguments) => lai::lai(arguments),
+        Command::Export(arguments) => export::write(arguments),
         Command::Expand(scene) => text::expand(scene),
         Command::Fmt(arguments) => text::fmt(arguments),
         Command::Schema => print(&document::json_schema()),

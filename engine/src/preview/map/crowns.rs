@@ -13,8 +13,11 @@ use crate::components::{
 use crate::geometry::Rectangle;
 use crate::preview::palette::{CLASSES, OTHERS};
 
-/// Circles that a map draws as such; of more, each pixel has the colour of the last crown on it.
+/// Circles that a map draws as such; of more, each pixel has the mean colour of the crowns on it.
 const MOST_CIRCLES: usize = 5000;
+
+/// Opacity of pixels of crowns.
+const PIXEL_OPACITY: u8 = 190;
 
 /// Smallest radius of a crown, pixels.
 const SMALLEST: f64 = 0.9;
@@ -100,7 +103,7 @@ impl MeshClasses {
 /// Crowns as items of a drawing.
 pub(super) struct DrawnCrowns {
     pub(super) items: Vec<Item>,
-    /// True if they are pixels, of which each shows one crown.
+    /// True if they are pixels, which show mean colours.
     pub(super) are_pixels: bool,
 }
 
@@ -115,7 +118,7 @@ pub(super) fn crowns(
     let widest = 0.5 * tile.size().min_element();
     let instances = Instance::in_order(world);
     let are_pixels = instances.len() > MOST_CIRCLES;
-    let mut layer = Pixels::new(projection);
+    let mut layer = CrownPixels::new(projection);
     let mut items = Vec::new();
     for Instance { placement, .. } in &instances {
         let Some(outline) = classes.outline(placement, widest) else { continue };
@@ -126,7 +129,7 @@ pub(super) fn crowns(
                     let centre = projection.page(centre + shift);
                     let radius = (radius * projection.scale).max(SMALLEST);
                     if are_pixels {
-                        layer.disc(centre, radius, colour);
+                        layer.add_disc(centre, radius, colour);
                     } else {
                         items.push(Item::Circle { centre, radius, paint: crown_paint(colour) });
                     }
@@ -143,7 +146,7 @@ pub(super) fn crowns(
         }
     }
     if are_pixels {
-        items.push(Item::Pixels(layer.layer));
+        items.push(Item::Pixels(layer.layer()));
     } else {
         // Small crowns lie on large ones, else they were hidden.
         items.sort_by(|a, b| radius_of(b).total_cmp(&radius_of(a)));
@@ -193,23 +196,27 @@ fn shifts(
 }
 
 /// Crowns as pixels of the map.
-struct Pixels {
-    layer: PixelLayer,
+struct CrownPixels {
+    corner: DVec2,
+    extent: DVec2,
+    columns: usize,
+    rows: usize,
+    /// Sums of red, green and blue of the crowns on each pixel, and their number.
+    sums: Vec<[u32; 4]>,
 }
 
-impl Pixels {
+impl CrownPixels {
     fn new(projection: &Projection) -> Self {
         let [corner, high] = projection.frame;
         let extent = high - corner;
         let (columns, rows) =
             (extent.x.ceil().max(1.0) as usize, extent.y.ceil().max(1.0) as usize);
-        let rgba = vec![0; 4 * columns * rows];
-        Self { layer: PixelLayer { corner, extent, columns, rows, rgba, is_smooth: false } }
+        Self { corner, extent, columns, rows, sums: vec![[0; 4]; columns * rows] }
     }
 
-    /// Paints the pixels whose middles lie on a disc, and that of its centre.
-    fn disc(&mut self, centre: DVec2, radius: f64, [r, g, b]: [u8; 3]) {
-        let PixelLayer { corner, extent, columns, rows, rgba, .. } = &mut self.layer;
+    /// Adds a crown to the pixels whose middles lie on its disc, and to that of its centre.
+    fn add_disc(&mut self, centre: DVec2, radius: f64, [r, g, b]: [u8; 3]) {
+        let Self { corner, extent, columns, rows, sums } = self;
         let scale = DVec2::new(*columns as f64, *rows as f64) / *extent;
         let at = (centre - *corner) * scale;
         let range = |middle: f64, count: usize| {
@@ -222,10 +229,26 @@ impl Pixels {
                 let middle = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
                 let is_home = (at - middle).abs().max_element() <= 0.5;
                 if is_home || middle.distance_squared(at) <= radius * radius {
-                    let pixel = 4 * (row * *columns + column);
-                    rgba[pixel..pixel + 4].copy_from_slice(&[r, g, b, 255]);
+                    let sum = &mut sums[row * *columns + column];
+                    let added = [r.into(), g.into(), b.into(), 1];
+                    *sum =
+                        std::array::from_fn(|channel| sum[channel].saturating_add(added[channel]));
                 }
             }
         }
+    }
+
+    /// Mean colour of each pixel, through which the ground is visible.
+    fn layer(self) -> PixelLayer {
+        let Self { corner, extent, columns, rows, sums } = self;
+        let pixel = |&[r, g, b, count]: &[u32; 4]| match count {
+            0 => [0; 4],
+            count => {
+                let [r, g, b] = [r, g, b].map(|sum| ((sum + count / 2) / count) as u8);
+                [r, g, b, PIXEL_OPACITY]
+            }
+        };
+        let rgba = sums.iter().flat_map(pixel).collect();
+        PixelLayer { corner, extent, columns, rows, rgba, is_smooth: false }
     }
 }

@@ -117,7 +117,7 @@ impl Legend {
             column.row(sample, &mesh_line(mesh));
         }
         if self.are_pixels {
-            column.row(Vec::new(), "a pixel shows the last on it");
+            column.row(Vec::new(), "pixels show their mean");
         }
         column.at.y += 0.5 * line;
         for sensor in &self.sensors {

@@ -159,8 +159,13 @@ impl SceneMap {
         let world = &loaded.world.world;
         let drawn = crowns(world, &classes, contents.tile, contents.is_periodic, &projection);
         let legend = Legend::new(&contents, &classes, &relief, drawn.are_pixels);
-        let mut clipped = relief.items;
+        let mut clipped = vec![relief.ground];
+        // Contours are visible through circles, and would be hidden by pixels.
+        let (below, above) =
+            if drawn.are_pixels { (None, relief.contours) } else { (relief.contours, None) };
+        clipped.extend(below);
         clipped.extend(drawn.items);
+        clipped.extend(above);
         clipped.extend(area_items(&contents.areas, &projection));
         if !contents.is_periodic {
             let Rectangle { min, max } = contents.tile;

@@ -34,7 +34,10 @@ pub(super) struct HeightGrid {
 
 /// Relief as items of a drawing.
 pub(super) struct DrawnRelief {
-    pub(super) items: Vec<Item>,
+    /// Hillshade.
+    pub(super) ground: Item,
+    /// Contours.
+    pub(super) contours: Option<Item>,
     /// Difference in height between contours, m; `None` without contours.
     pub(super) interval: Option<f64>,
     pub(super) has_holes: bool,
@@ -75,9 +78,9 @@ impl HeightGrid {
 
     pub(super) fn draw(&self, projection: &Projection) -> DrawnRelief {
         let has_holes = self.heights.iter().any(|height| height.is_nan());
-        let mut items = vec![Item::Pixels(self.hillshade(projection))];
+        let ground = Item::Pixels(self.hillshade(projection));
         if self.is_level() {
-            return DrawnRelief { items, interval: None, has_holes };
+            return DrawnRelief { ground, contours: None, interval: None, has_holes };
         }
         let mut interval = round_step(self.relief() / MOST_LEVELS);
         let mut lines = self.contours(interval, projection);
@@ -86,8 +89,8 @@ impl HeightGrid {
             lines = self.contours(interval, projection);
         }
         let ink = Ink::with_opacity([120, 90, 50], 0.55);
-        items.push(Item::Path { lines, is_closed: false, paint: Paint::line(ink, 0.8) });
-        DrawnRelief { items, interval: Some(interval), has_holes }
+        let contours = Item::Path { lines, is_closed: false, paint: Paint::line(ink, 0.8) };
+        DrawnRelief { ground, contours: Some(contours), interval: Some(interval), has_holes }
     }
 
     fn hillshade(&self, projection: &Projection) -> PixelLayer {
