@@ -132,7 +132,7 @@ fn sums(loaded: &LoadedScene, are_leaves: bool) -> Sums {
         let PrototypeId(prototype) = placement.prototype;
         let mesh = meshes.iter().find(|(id, _)| *id == prototype).expect("its mesh").1;
         for part in &mesh.parts {
-            if !are_leaves || part.name != "trunk" {
+            if !are_leaves || part.name != "wood" {
                 sums.add_part(mesh, part, placement.world_from_object(), placement.position);
             }
         }
