@@ -107,7 +107,9 @@ impl Sums {
             let [a, b, c] =
                 mesh.corners(triangle as usize).map(|at| origin + linear * at.as_dvec3());
             self.add((a + b + c) / 3.0, (b - a).cross(c - a));
-            [a, b, c].into_iter().for_each(|corner| self.see(corner));
+            for corner in [a, b, c] {
+                self.see(corner);
+            }
             self.triangles += 1;
         }
         for disc in &mesh.discs[part.discs.start as usize..part.discs.end as usize] {

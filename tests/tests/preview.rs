@@ -252,7 +252,10 @@ fn any_scene_has_a_view() {
             "Lambertian(reflectance: Constant(0.2))",
             "Lambertian(reflectance: Constant(0.05), temperature: Uniform(300.0))",
         ),
-        ("sun: (zenith_deg: 45.0, azimuth_deg: 90.0),", "sky: Isotropic(irradiance: Constant(1.0)),"),
+        (
+            "sun: (zenith_deg: 45.0, azimuth_deg: 90.0),",
+            "sky: Isotropic(irradiance: Constant(1.0)),",
+        ),
     ];
     let bare = [PLATE[1], PLATE[2], ("List(of: \"slab\", at_m: [(20.0, 10.0, 0.0)]),", "")];
     for edits in [&thermal[..], &bare, &[thermal[2]]] {

@@ -160,15 +160,13 @@ fn header(scene: &ExportedScene<'_>, format: ExportFormat) -> Result<Header, ::l
         description: description.to_owned(),
         data,
     };
-    let mut about = TEXT.to_owned();
-    for (key, value) in &scene.provenance {
-        about.push_str(&format!("; {key}: {value}"));
-    }
-    for (number, material) in scene.colours.iter().enumerate() {
-        about.push_str(&format!("; material {number}: {}", material.name));
-    }
+    let materials = scene.colours.iter().enumerate();
+    let about: Vec<String> = std::iter::once(TEXT.to_owned())
+        .chain(scene.provenance.iter().map(|(key, value)| format!("{key}: {value}")))
+        .chain(materials.map(|(number, material)| format!("material {number}: {}", material.name)))
+        .collect();
     // Records hold less than 64 KiB.
-    let mut about = about.into_bytes();
+    let mut about = about.join("; ").into_bytes();
     about.truncate(60_000);
     builder.vlrs = vec![
         record("LASF_Projection", 2112, "OGC coordinate system WKT", text),
@@ -280,12 +278,11 @@ fn points(
             (false, false) => OTHER,
         };
         let own;
-        let faces = match surface.faces {
-            Some(faces) => &faces[number],
-            None => {
-                own = SampledSurface::new(surface.mesh, part, &surface.pose);
-                &own
-            }
+        let faces = if let Some(faces) = surface.faces {
+            &faces[number]
+        } else {
+            own = SampledSurface::new(surface.mesh, part, &surface.pose);
+            &own
         };
         let stream = surface.stream.index(number as u64);
         points.extend(faces.points(count, &surface.pose, stream).map(|at| {

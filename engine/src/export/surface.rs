@@ -1,6 +1,6 @@
 //! Points on surfaces, drawn uniformly by area.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::contents::Pose;
 use crate::components::{Mesh, MeshPart};
@@ -34,7 +34,7 @@ fn faces(part: &MeshPart) -> impl Iterator<Item = FaceIndex> + use<> {
 fn face_area(mesh: &Mesh, face: FaceIndex, pose: &Pose) -> f64 {
     match face {
         FaceIndex::Triangle(triangle) => {
-            let [a, b, c] = mesh.corners(triangle as usize).map(|corner| corner.as_dvec3());
+            let [a, b, c] = mesh.corners(triangle as usize).map(Vec3::as_dvec3);
             0.5 * (pose.linear * (b - a)).cross(pose.linear * (c - a)).length()
         }
         FaceIndex::Disc(disc) => {
@@ -77,8 +77,7 @@ impl<'a> SampledSurface<'a> {
     fn point(&self, face: FaceIndex, u: f64, v: f64) -> DVec3 {
         match face {
             FaceIndex::Triangle(triangle) => {
-                let [a, b, c] =
-                    self.mesh.corners(triangle as usize).map(|corner| corner.as_dvec3());
+                let [a, b, c] = self.mesh.corners(triangle as usize).map(Vec3::as_dvec3);
                 // Beyond the diagonal of the parallelogram, the point is turned into the triangle.
                 let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
                 a + u * (b - a) + v * (c - a)

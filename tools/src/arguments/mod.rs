@@ -13,7 +13,9 @@ use sunfleck::run::Partition;
 
 use self::shared::changed_name;
 use self::values::{SystemName, part, quality, seconds, setting, system};
-use crate::commands::{Brf, Bt, Chm, Completions, Export, Lai, Man, New, Preview, Report, Stats, Sunpos};
+use crate::commands::{
+    Brf, Bt, Chm, Completions, Export, Lai, Man, New, Preview, Report, Stats, Sunpos,
+};
 use crate::console::Console;
 use crate::verify::CHECKS;
 

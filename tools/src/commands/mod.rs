@@ -2,8 +2,8 @@
 
 mod answer;
 mod chm;
-mod lai;
 mod export;
+mod lai;
 mod new;
 mod preview;
 mod radiance;
@@ -30,8 +30,8 @@ use crate::import::{self, ImportOptions, SourceProgram};
 use crate::{bench, compare, verify};
 
 pub(crate) use chm::Chm;
-pub(crate) use lai::Lai;
 pub(crate) use export::Export;
+pub(crate) use lai::Lai;
 pub(crate) use new::New;
 pub(crate) use preview::Preview;
 pub(crate) use radiance::{Brf, Bt};

@@ -153,10 +153,10 @@ fn shade(stage: &Stage, shading: &Shading, samples: &[Sample]) -> Vec<(Vec3, boo
     });
     let mut next = occluded.chunks_exact(2);
     let colour = |(sample, lit): (&Sample, &Option<Lit>)| match lit {
-        None => (shading.background(sample.ray.direction), false),
+        None => (Shading::background(sample.ray.direction), false),
         Some(lit) => {
             let of_hit = next.next().expect("two shadow rays per hit");
-            (shading.colour(lit, [of_hit[0], of_hit[1]]), true)
+            (Shading::colour(lit, [of_hit[0], of_hit[1]]), true)
         }
     };
     samples.iter().zip(&lit).map(colour).collect()

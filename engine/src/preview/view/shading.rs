@@ -82,7 +82,7 @@ impl Shading {
     }
 
     /// Colour of a ray that hits nothing.
-    pub(super) fn background(&self, direction: DVec3) -> Vec3 {
+    pub(super) fn background(direction: DVec3) -> Vec3 {
         let height = direction.z as f32;
         if height >= 0.0 {
             HORIZON.lerp(ZENITH, height.powf(0.6))
@@ -114,7 +114,7 @@ impl Shading {
     }
 
     /// Colour of a hit whose shadow rays are traced.
-    pub(super) fn colour(&self, lit: &Lit, is_occluded: [bool; 2]) -> Vec3 {
+    pub(super) fn colour(lit: &Lit, is_occluded: [bool; 2]) -> Vec3 {
         let sun = if is_occluded[0] { Vec3::ZERO } else { SUN * lit.sunlit };
         let sky = if is_occluded[1] {
             SCATTERED

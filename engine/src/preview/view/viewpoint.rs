@@ -78,7 +78,7 @@ pub(super) fn placed_box(world: &World) -> Option<Bounds> {
         query.iter().map(|(id, bounds)| (id.0, reach(bounds))).collect();
     let mut instances = world.query::<InstanceQuery<'_>>();
     let mut all: Option<Bounds> = None;
-    for components in instances.iter() {
+    for components in &mut instances {
         let Placement { prototype, position, scale, .. } =
             Instance::from_components(components).placement;
         let reach = reaches.get(&prototype.0).copied().unwrap_or(0.0);
