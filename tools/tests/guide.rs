@@ -118,8 +118,10 @@ fn commands_of_the_guide_succeed() {
 fn scenes_of_the_guide_are_without_warnings() {
     let guide = page("scenes/README.md");
     let entries = fs::read_dir(root().join("scenes/guide")).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.filter(|name| name.ends_with(".ron")).collect();
+    let files = entries.map(|entry| entry.unwrap().path());
+    let scenes = files.filter(|file| file.extension().is_some_and(|ending| ending == "ron"));
+    let name = |file: PathBuf| file.file_name().unwrap().to_str().unwrap().to_owned();
+    let mut names: Vec<String> = scenes.map(name).collect();
     names.sort();
     assert_eq!(names.len(), 10);
     for name in names {

@@ -96,27 +96,24 @@ pub(super) fn write(arguments: &Export) -> anyhow::Result<()> {
     }
     let options = run::Options { document: arguments.scene.options(), ..run::Options::default() };
     let bars = Bars::new();
-    let exported =
-        LoadedScene::from_file(&arguments.scene.file, &options, &bars).and_then(|loaded| {
-            bars.stage("writing");
-            let settings = ExportSettings {
-                format,
-                disc_sides: arguments.disc_sides,
-                is_flat: arguments.flat,
-                points_per_m2: arguments.points_per_m2,
-                has_all_surfaces: arguments.all_surfaces,
-                limit: arguments.limit,
-            };
-            Ok((loaded.warnings(), export(&loaded, &arguments.out, &settings)))
-        });
+    let loaded = LoadedScene::from_file(&arguments.scene.file, &options, &bars);
+    let exported = loaded.map(|loaded| {
+        bars.stage("writing");
+        let settings = ExportSettings {
+            format,
+            disc_sides: arguments.disc_sides,
+            is_flat: arguments.flat,
+            points_per_m2: arguments.points_per_m2,
+            has_all_surfaces: arguments.all_surfaces,
+            limit: arguments.limit,
+        };
+        (loaded.warnings(), export(&loaded, &arguments.out, &settings))
+    });
     bars.clear();
     let (warnings, exported) = exported?;
     warn(&warnings);
     let exported = exported?;
-    let mut text: String =
-        exported.contents.iter().flat_map(|line| [line.as_str(), "\n"]).collect();
-    for file in &exported.files {
-        text.push_str(&format!("{}\n", file.display()));
-    }
-    print(&text)
+    let files = exported.files.iter().map(|file| file.display().to_string());
+    let lines: Vec<String> = exported.contents.iter().cloned().chain(files).collect();
+    print(&(lines.join("\n") + "\n"))
 }

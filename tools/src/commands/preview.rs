@@ -73,7 +73,10 @@ pub(super) fn preview(arguments: &Preview) -> anyhow::Result<()> {
     let (warnings, text) = drawn?;
     warn(&warnings);
     print(&text)?;
-    if arguments.open { open(&folder.join("view.png")) } else { Ok(()) }
+    if arguments.open {
+        open(&folder.join("view.png"));
+    }
+    Ok(())
 }
 
 /// Draws the pictures; returns warnings, and what was drawn.
@@ -110,8 +113,8 @@ fn draw(
     Ok((loaded.warnings(), lines.join("\n") + "\n"))
 }
 
-/// Opens a file with the program that the desktop has for it.
-fn open(file: &Path) -> anyhow::Result<()> {
+/// Opens a file with the program that the desktop has for it; where that fails, a warning says why.
+fn open(file: &Path) {
     let has_display =
         ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     let needs_display = cfg!(all(unix, not(target_os = "macos")));
@@ -120,7 +123,7 @@ fn open(file: &Path) -> anyhow::Result<()> {
             "{} is not opened: there is no desktop here (neither DISPLAY nor WAYLAND_DISPLAY is set)",
             file.display()
         )]);
-        return Ok(());
+        return;
     }
     let mut command = if cfg!(target_os = "windows") {
         let mut command = Command::new("cmd");
@@ -131,12 +134,8 @@ fn open(file: &Path) -> anyhow::Result<()> {
     };
     let command =
         command.arg(file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    match command.spawn() {
-        Ok(_) => Ok(()),
-        Err(error) => {
-            warn(&[format!("{} is not opened: {error}", file.display())]);
-            Ok(())
-        }
+    if let Err(error) = command.spawn() {
+        warn(&[format!("{} is not opened: {error}", file.display())]);
     }
 }
 
