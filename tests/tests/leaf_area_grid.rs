@@ -279,7 +279,7 @@ fn each_cell_holds_what_brute_force_finds() {
         let (grid, placed) = (&found.grid, placed(&world));
         let mut brute = Brute::default();
         for (corners, material) in placed.all {
-            let depth = if area_of(&corners) > 1e-2 { 10 } else { 4 };
+            let depth = if area_of(&corners) > 1e-2 { 12 } else { 6 };
             brute.add(grid, corners, material, depth);
         }
         // Materials in the order of the scene, behind the soil.

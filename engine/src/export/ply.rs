@@ -14,7 +14,7 @@ use crate::products::data_size;
 
 /// Bytes of a corner: place, normal, colour; and of a face: number of corners, their numbers, its material.
 const CORNER_BYTES: u64 = 12 + 12 + 3;
-const FACE_BYTES: u64 = 1 + 12 + 2;
+const FACE_BYTES: u64 = 1 + 12 + 4;
 
 /// Instances whose corners are made side by side.
 const BLOCK: usize = 64;
@@ -78,7 +78,7 @@ fn header(scene: &ExportedScene<'_>, triangles: u64, out: &mut impl Write) -> io
         writeln!(out, "property uchar {name}")?;
     }
     writeln!(out, "element face {triangles}\nproperty list uchar int vertex_indices")?;
-    writeln!(out, "property ushort material\nend_header")
+    writeln!(out, "property int material\nend_header")
 }
 
 /// A mesh in the world.
@@ -145,7 +145,7 @@ fn faces(
 ) -> io::Result<()> {
     for (part, material) in shape.parts.iter().zip(&shape.materials.0) {
         let of_discs = part.discs.len() * (sides as usize - 2);
-        let material = (material.0 as u16).to_le_bytes();
+        let material = (material.0 as i32).to_le_bytes();
         for _ in 0..part.triangles.len() + of_discs {
             out.write_all(&[3])?;
             out.write_all([*next, *next + 1, *next + 2].map(i32::to_le_bytes).as_flattened())?;

@@ -1,9 +1,9 @@
 //! Passes over the pixels of a view: one ray per block of pixels, then one per pixel, again and again.
 
-use glam::{DVec2, UVec2, Vec3};
+use glam::{DVec2, UVec2};
 use rayon::prelude::*;
 
-use super::shading::{Lit, Shading, exposed};
+use super::shading::{Lit, PixelColour, Shading, exposed};
 use crate::accel::{Hit, Ray, RayBatch};
 use crate::extract::Stage;
 use crate::sampling::{Key, Sampler};
@@ -19,9 +19,7 @@ const ROWS: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Accumulator {
     size: UVec2,
-    sums: Vec<Vec3>,
-    /// Number of samples that hit a surface.
-    hits: Vec<u32>,
+    sums: Vec<PixelColour>,
     /// Number of samples per pixel; 0 after the coarse pass alone.
     samples: u32,
 }
@@ -35,7 +33,7 @@ struct Sample {
 impl Accumulator {
     pub(super) fn new(size: UVec2) -> Self {
         let pixels = (size.x * size.y) as usize;
-        Self { size, sums: vec![Vec3::ZERO; pixels], hits: vec![0; pixels], samples: 0 }
+        Self { size, sums: vec![PixelColour::default(); pixels], samples: 0 }
     }
 
     /// Fills each block of pixels with the colour of one ray through its middle.
@@ -46,7 +44,7 @@ impl Accumulator {
         shading: &Shading,
     ) {
         let blocks = UVec2::new(self.size.x.div_ceil(COARSE), self.size.y.div_ceil(COARSE));
-        let colours: Vec<(Vec3, bool)> = (0..blocks.y)
+        let colours: Vec<PixelColour> = (0..blocks.y)
             .into_par_iter()
             .flat_map_iter(|row| {
                 let samples = (0..blocks.x).map(|column| {
@@ -61,10 +59,9 @@ impl Accumulator {
                 shade(stage, shading, &samples.collect::<Vec<_>>())
             })
             .collect();
-        for (index, (sum, hits)) in self.sums.iter_mut().zip(&mut self.hits).enumerate() {
+        for (index, sum) in self.sums.iter_mut().enumerate() {
             let at = UVec2::new(index as u32 % self.size.x, index as u32 / self.size.x) / COARSE;
-            let (colour, is_hit) = colours[(at.y * blocks.x + at.x) as usize];
-            (*sum, *hits) = (colour, u32::from(is_hit));
+            *sum = colours[(at.y * blocks.x + at.x) as usize];
         }
     }
 
@@ -77,43 +74,33 @@ impl Accumulator {
         shading: &Shading,
     ) {
         if self.samples == 0 {
-            self.sums.fill(Vec3::ZERO);
-            self.hits.fill(0);
+            self.sums.fill(PixelColour::default());
         }
         self.samples += 1;
-        let Self { size, sums, hits, .. } = self;
+        let Self { size, sums, .. } = self;
         let strip = ROWS * size.x as usize;
         let pixels = size.as_dvec2();
-        sums.par_chunks_mut(strip).zip(hits.par_chunks_mut(strip)).enumerate().for_each(
-            |(index, (sums, hits))| {
-                let samples: Vec<Sample> = (0..sums.len())
-                    .map(|offset| {
-                        let pixel = index * strip + offset;
-                        let key = Key::new(0).path("preview").index(pixel as u64);
-                        let [x, y, u, v] = Sampler::new(key, pass.into()).next_4d();
-                        let corner = DVec2::new(
-                            (pixel as u32 % size.x).into(),
-                            (pixel as u32 / size.x).into(),
-                        );
-                        sample(camera, (corner + DVec2::new(x, y)) / pixels, [u, v])
-                    })
-                    .collect();
-                let colours = shade(stage, shading, &samples);
-                for ((sum, hits), (colour, is_hit)) in sums.iter_mut().zip(hits).zip(colours) {
-                    *sum += colour;
-                    *hits += u32::from(is_hit);
-                }
-            },
-        );
+        sums.par_chunks_mut(strip).enumerate().for_each(|(index, sums)| {
+            let samples: Vec<Sample> = (0..sums.len())
+                .map(|offset| {
+                    let pixel = index * strip + offset;
+                    let key = Key::new(0).path("preview").index(pixel as u64);
+                    let [x, y, u, v] = Sampler::new(key, pass.into()).next_4d();
+                    let corner =
+                        DVec2::new((pixel as u32 % size.x).into(), (pixel as u32 / size.x).into());
+                    sample(camera, (corner + DVec2::new(x, y)) / pixels, [u, v])
+                })
+                .collect();
+            let colours = shade(stage, shading, &samples);
+            for (sum, colour) in sums.iter_mut().zip(colours) {
+                sum.add(colour);
+            }
+        });
     }
 
     /// Red, green and blue of the picture so far, shape `[rows, columns, 3]`.
     pub(super) fn rgb(&self) -> Vec<u8> {
-        let scale = 1.0 / self.samples.max(1) as f32;
-        let colours: Vec<Vec3> = self.sums.iter().map(|sum| *sum * scale).collect();
-        let is_surface: Vec<bool> =
-            self.hits.iter().map(|hits| 2 * hits > self.samples.max(1)).collect();
-        exposed(&colours, &is_surface)
+        exposed(&self.sums, self.samples.max(1))
     }
 }
 
@@ -121,8 +108,8 @@ fn sample(camera: &PerspectiveCamera, at: DVec2, numbers: [f64; 2]) -> Sample {
     Sample { ray: camera.ray(at), numbers }
 }
 
-/// Colour of each sample, and whether it hit a surface.
-fn shade(stage: &Stage, shading: &Shading, samples: &[Sample]) -> Vec<(Vec3, bool)> {
+/// Colour of each sample.
+fn shade(stage: &Stage, shading: &Shading, samples: &[Sample]) -> Vec<PixelColour> {
     let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
     let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
     stage.geometry.trace_each(RayBatch {
@@ -153,10 +140,10 @@ fn shade(stage: &Stage, shading: &Shading, samples: &[Sample]) -> Vec<(Vec3, boo
     });
     let mut next = occluded.chunks_exact(2);
     let colour = |(sample, lit): (&Sample, &Option<Lit>)| match lit {
-        None => (Shading::background(sample.ray.direction), false),
+        None => PixelColour::from_background(Shading::background(sample.ray.direction)),
         Some(lit) => {
             let of_hit = next.next().expect("two shadow rays per hit");
-            (Shading::colour(lit, [of_hit[0], of_hit[1]]), true)
+            PixelColour::from_surface(Shading::colour(lit, [of_hit[0], of_hit[1]]))
         }
     };
     samples.iter().zip(&lit).map(colour).collect()

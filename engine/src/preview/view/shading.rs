@@ -134,18 +134,40 @@ fn used(materials: Vec<MaterialColour>, stage: &Stage) -> Vec<MaterialColour> {
     materials.into_iter().filter(is_used).collect()
 }
 
-/// Red, green and blue of a picture from linear sRGB, so bright that nearly all pixels of surfaces are below white.
+/// Sums of the colours of a pixel's samples, linear sRGB: those of surfaces are exposed, the background is not.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PixelColour {
+    surface: Vec3,
+    background: Vec3,
+    /// Number of samples that hit a surface.
+    hits: u32,
+}
+
+impl PixelColour {
+    /// Colour of a sample that hit a surface.
+    pub(super) fn from_surface(surface: Vec3) -> Self {
+        Self { surface, background: Vec3::ZERO, hits: 1 }
+    }
+
+    /// Colour of a sample that hit nothing.
+    pub(super) fn from_background(background: Vec3) -> Self {
+        Self { surface: Vec3::ZERO, background, hits: 0 }
+    }
+
+    /// Adds the samples of another sum.
+    pub(super) fn add(&mut self, other: Self) {
+        self.surface += other.surface;
+        self.background += other.background;
+        self.hits += other.hits;
+    }
+}
+
+/// Red, green and blue of a picture, so bright that nearly all of its surfaces are below white.
 ///
-/// - `colours`: mean of each pixel
-/// - `is_surface`: true for pixels that show more than the background
-pub(super) fn exposed(colours: &[Vec3], is_surface: &[bool]) -> Vec<u8> {
-    let mut bright: Vec<f32> = colours
-        .iter()
-        .zip(is_surface)
-        .filter(|(_, is_surface)| **is_surface)
-        .map(|(colour, _)| colour.max_element())
-        .filter(|value| *value > 0.0)
-        .collect();
+/// - `samples`: number of samples per pixel
+pub(super) fn exposed(sums: &[PixelColour], samples: u32) -> Vec<u8> {
+    let brightness = |sum: &PixelColour| sum.surface.max_element() / sum.hits.max(1) as f32;
+    let mut bright: Vec<f32> = sums.iter().map(brightness).filter(|value| *value > 0.0).collect();
     let gain = if bright.is_empty() {
         1.0
     } else {
@@ -154,9 +176,8 @@ pub(super) fn exposed(colours: &[Vec3], is_surface: &[bool]) -> Vec<u8> {
         // Bright sand stays bright: only what is darker than that is lifted.
         (0.85 / top).clamp(1.0, 6.0)
     };
-    let pixel = |(colour, is_surface): (&Vec3, &bool)| {
-        let gain = if *is_surface { gain } else { 1.0 };
-        srgb((gain * *colour).to_array())
-    };
-    colours.iter().zip(is_surface).flat_map(pixel).collect()
+    let scale = 1.0 / samples as f32;
+    let pixel =
+        |sum: &PixelColour| srgb((scale * (gain * sum.surface + sum.background)).to_array());
+    sums.iter().flat_map(pixel).collect()
 }
