@@ -16,7 +16,6 @@ try:
     if sys.argv[1] == "gltf":
         import trimesh
     elif sys.argv[1] == "ply":
-        import meshio
         import trimesh
         from plyfile import PlyData
     else:
@@ -134,9 +133,6 @@ def read_ply(path):
     turned = np.linalg.norm(normals[faces[:, 0]][has_area] - unit, axis=1)
     heights = (doubled / lengths.max(1))[has_area]
     assert (turned * heights < 4 * np.finfo(np.float32).eps * np.abs(corners).max()).all(), turned.max()
-    other = meshio.read(path)
-    np.testing.assert_array_equal(other.points, corners)
-    np.testing.assert_array_equal(other.cells_dict["triangle"], faces)
     mesh = trimesh.load(path, process=False)
     result["trimesh"] = facts(np.asarray(mesh.triangles))
     assert (mesh.visual.vertex_colors[:, :3] == np.stack([ply["vertex"][c] for c in ("red", "green", "blue")], -1)).all()

@@ -1,6 +1,6 @@
 //! Exported scenes, read by other programs, against sums over all triangles and discs of the world.
 //!
-//! Needs a Python with `numpy`, `trimesh`, `plyfile`, `meshio`, `laspy` and `lazrs` (`python3`, or the one that
+//! Needs a Python with `numpy`, `trimesh`, `plyfile`, `laspy` and `lazrs` (`python3`, or the one that
 //! `SUNFLECK_PYTHON` names), and for the validation of glTF `node` with the package `gltf-validator` (`NODE_PATH`). Without
 //! them the comparison is skipped, and says so.
 
@@ -233,7 +233,7 @@ fn gltf_holds_the_scene() {
     }
 }
 
-/// *Expected*: as of glTF, read by plyfile, meshio and trimesh; materials by their numbers.
+/// *Expected*: as of glTF, read by plyfile and trimesh; materials by their numbers.
 #[test]
 fn ply_holds_all_triangles() {
     let (folder, loaded) = load(&[]);
