@@ -14,6 +14,7 @@ from pathlib import Path
 
 try:
     import numpy as np
+    import imagecodecs  # noqa: F401, tifffile needs it for the predictor of floats
     import rasterio
     import tifffile
 except ImportError as missing:

@@ -41,9 +41,9 @@ fn data_sets_of_a_sweep_hold_its_table() {
     let sweeps = [
         (r#"Grid({ "hour": [2.0, 10.0, 12.0], "rho": [0.1, 0.4] })"#, "hour,rho", "hour,rho"),
         (
-            r#"Grid({ "name_of_soil": ["a", "b"], "sza": [0.0, 50.0] })"#,
-            "name_of_soil,sza",
-            "name_of_soil,sza",
+            r#"Grid({ "name_of_soil": ["a", "b"], "rho": [0.1, 0.4] })"#,
+            "name_of_soil,rho",
+            "name_of_soil,rho",
         ),
         (r#"Zip({ "hour": [8.0, 11.0, 15.0], "rho": [0.1, 0.1, 0.3] })"#, "hour,rho", "point"),
     ];
