@@ -14,7 +14,7 @@ pub enum ColourSource {
     Spectrum,
     /// The scene's bands, which include blue, green and red ones.
     Bands,
-    /// What it is: a leaf, ground or anything else, as bright as in a visible band if the scene has one.
+    /// The kind of surface: a leaf, ground or anything else, as bright as in a visible band if the scene has one.
     Kind,
 }
 

@@ -320,7 +320,7 @@ mod tests {
         assert!((given.0 - estimated.0).abs() < 3e-4 && (given.1 - estimated.1).abs() < 3e-4);
     }
 
-    /// The same example: the report's program prints sunrise 6:12:43 and sunset 17:20:19. It looks for events within the
+    /// *Expected*: in the same example the report's program prints sunrise 6:12:43 and sunset 17:20:19. It looks for events within the
     /// day in Greenwich, so that its sunset is that of the day before on the clock of Denver.
     #[test]
     fn the_sun_rises_and_sets_when_the_worked_example_of_the_report_says() {

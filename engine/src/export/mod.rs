@@ -74,7 +74,7 @@ impl Default for ExportSettings {
 pub struct Exported {
     /// The files.
     pub files: Vec<PathBuf>,
-    /// What they hold, a line each.
+    /// Contents of the files, one line per kind.
     pub contents: Vec<String>,
 }
 

@@ -135,7 +135,7 @@ pub fn data_size(bytes: u64) -> String {
 }
 
 /// Results of a run with their provenance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// Projection of eastings and northings, if the terrain's raster names one.
     pub projection: Option<Projection>,

@@ -88,29 +88,9 @@ pub fn convert_radiance(
     let start = Instant::now();
     let first = files.first().ok_or(RadianceError::NoFiles)?;
     let mut report = Report {
-        projection: None,
-        scene: String::new(),
         formats: formats.to_vec(),
-        hash: String::new(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        seed: 0,
-        seconds: 0.0,
-        rays: 0,
-        bands: Vec::new(),
-        wavelengths: Vec::new(),
-        bandwidths: Vec::new(),
-        irradiance: Vec::new(),
-        responses: Vec::new(),
-        stages: Vec::new(),
-        skipped: Vec::new(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-        sensors: Vec::new(),
-        params: Vec::new(),
-        sun_azimuth_deg: None,
-        source: None,
-        coefficients: None,
-        recipe: None,
+        ..Report::default()
     };
     for file in files {
         let image = SourceImage::read(file, quantity)?;

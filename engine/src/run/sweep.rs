@@ -176,29 +176,14 @@ impl SweepRun {
             hasher.update(point.key.as_bytes());
         }
         Report {
-            projection: None,
             scene: self.scene.title.clone(),
             formats: self.scene.output.clone(),
             hash: hasher.finalize().to_hex().to_string(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed: self.scene.transport.seed,
-            seconds: 0.0,
-            rays: 0,
-            bands: Vec::new(),
-            wavelengths: Vec::new(),
-            bandwidths: Vec::new(),
-            irradiance: Vec::new(),
-            responses: Vec::new(),
-            stages: Vec::new(),
-            skipped: Vec::new(),
-            notes: Vec::new(),
-            warnings: Vec::new(),
-            sensors: Vec::new(),
             params: params(&self.scene),
-            sun_azimuth_deg: None,
             source: Some(scene_source(&self.file, &self.options)),
-            coefficients: None,
-            recipe: None,
+            ..Report::default()
         }
     }
 }

@@ -3,10 +3,10 @@
 use clap::Args;
 use sunfleck::run;
 
+use super::text::described;
 use super::{SKIPPED, print, warn};
 use crate::arguments::Scene;
 use crate::describe;
-use crate::progress::Bars;
 
 #[derive(Args, Debug)]
 pub(crate) struct Stats {
@@ -19,12 +19,7 @@ pub(crate) struct Stats {
 }
 
 pub(super) fn stats(arguments: &Stats) -> anyhow::Result<()> {
-    let scene = &arguments.scene;
-    let options = run::Options { document: scene.options(), ..run::Options::default() };
-    let bars = Bars::new();
-    let checked = run::describe_file(&scene.file, &options, &bars);
-    bars.clear();
-    let run::Checked { warnings, facts } = checked?;
+    let run::Checked { warnings, facts } = described(&arguments.scene)?;
     if arguments.json {
         return print(&describe::json(facts.as_ref(), &warnings)?);
     }

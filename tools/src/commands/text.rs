@@ -10,13 +10,18 @@ use crate::arguments::{Check, Fmt, Scene};
 use crate::describe;
 use crate::progress::Bars;
 
-pub(super) fn check(arguments: &Check) -> anyhow::Result<()> {
-    let scene = &arguments.scene;
+/// Checks a scene and describes its contents.
+pub(super) fn described(scene: &Scene) -> anyhow::Result<run::Checked> {
     let options = run::Options { document: scene.options(), ..run::Options::default() };
     let bars = Bars::new();
     let checked = run::describe_file(&scene.file, &options, &bars);
     bars.clear();
-    let run::Checked { warnings, facts } = checked?;
+    Ok(checked?)
+}
+
+pub(super) fn check(arguments: &Check) -> anyhow::Result<()> {
+    let scene = &arguments.scene;
+    let run::Checked { warnings, facts } = described(scene)?;
     if arguments.json {
         return print(&describe::json(facts.as_ref(), &warnings)?);
     }

@@ -47,7 +47,7 @@ impl<R: BufRead> BufRead for Guarded<R> {
             Content::Header => self.used += amount,
             Content::Binary => {}
             Content::Lines => {
-                // What was filled is still there: nothing is read.
+                // The buffer still holds what was filled, so that this reads nothing.
                 let filled = self.inner.fill_buf().unwrap_or_default();
                 let taken = &filled[..amount.min(filled.len())];
                 match taken.iter().rposition(|&byte| byte == b'\n') {

@@ -205,10 +205,10 @@ impl<'a> PlyFile<'a> {
     }
 }
 
-/// What the parser says, on one line and not longer than a message may be.
+/// Error with the parser's message, on one line and cut to the length of a message.
 fn malformed(error: &ParseError) -> PlyError {
     let text = error.to_string();
-    // What its grammar would have taken is for programmers.
+    // The rest lists rules of the parser's grammar, which helps programmers alone.
     let text = text.split("Error: ParseError").next().unwrap_or_default();
     let words: Vec<&str> = text.split_whitespace().collect();
     PlyError::Malformed(excerpt_of_message(&words.join(" ")))

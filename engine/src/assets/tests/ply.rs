@@ -12,7 +12,7 @@ const SQUARE: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement verte
 property float z\nproperty uchar red\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n\
 0 0 0 10\n1 0 0 10\n1 1 0 10\n0 1 0 10\n0 0 1 10\n1 0 1 10\n0 1 1 10\n4 0 1 2 3\n3 4 5 6\n";
 
-/// The same mesh in binary: doubles, uint indices, an element that nothing is made of.
+/// Binary file of the same mesh, with doubles, unsigned indices and an element that no mesh is made of.
 fn binary(is_big: bool) -> Vec<u8> {
     let order = if is_big { "big" } else { "little" };
     let mut bytes = format!(

@@ -11,7 +11,7 @@ choice! {
         Bands(Vec<f64> => "[0.1, 0.2]"),
         /// Points (wavelength nm, value), joined by straight lines and averaged over each band.
         Points(Vec<(f64, f64)> => "[(400.0, 0.05), (800.0, 0.3)]"),
-        /// Such points from a file: a CSV file or a spectral library.
+        /// Points of a spectrum in a file: a CSV file or a spectral library.
         Table(..TabulatedSpectrum),
         /// Irradiance of the sun and of the 2.9° around it on a plane that faces it, under a clear sky at
         /// air mass 1.5: 280 to 4000 nm.

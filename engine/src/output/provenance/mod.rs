@@ -36,7 +36,7 @@ pub(super) const RECIPE: &str = "recipe";
 pub(super) enum RecipeForm {
     /// As JSON, if it is short.
     Readable,
-    /// Of letters, digits and a few signs alone, in formats that split or change texts.
+    /// Compressed text of letters, digits and a few signs alone, for formats that split or change texts.
     Packed,
 }
 

@@ -55,7 +55,7 @@ pub fn read_record(path: &Path) -> Result<RecipeRecord, RecordError> {
     }
 }
 
-/// What every version of the form has.
+/// Fields that every version of the record has.
 #[derive(Deserialize)]
 struct RecordHead {
     format: u32,
