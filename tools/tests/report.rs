@@ -119,6 +119,7 @@ fn a_run_is_told_with_figures_values_and_files() {
         "hemi: fAPAR by layer",
         "hemi: energy balance",
         "leaf area index 0.375",
+        "sunfleck rerun . --out again",
         "sunfleck run ../leaves.ron --out again",
         "data:image/png;base64,",
         "areas are",
@@ -135,6 +136,18 @@ fn a_run_is_told_with_figures_values_and_files() {
     for link in links {
         assert!(folder.path().join("out").join(link).is_file(), "{link}");
     }
+}
+
+/// *Expected*: what repeats the results of other spectra is the command that made them, on the results of the run.
+#[test]
+fn other_spectra_are_repeated_from_the_run_whose_paths_they_share() {
+    let folder = folder("Leaves");
+    succeeds(folder.path(), &["run", "leaves.ron", "--keep-coefficients", "--out", "out"]);
+    succeeds(folder.path(), &["respectrum", "out", "--set", "soil=0.2", "--out", "other"]);
+    succeeds(folder.path(), &["report", "other"]);
+    let page = fs::read_to_string(folder.path().join("other/report.html")).unwrap();
+    assert!(page.contains("sunfleck respectrum RESULTS --set soil=0.2 --out again"));
+    assert!(!page.contains("sunfleck rerun"));
 }
 
 /// *Expected*: the next run replaces results and takes the report with it, and leaves a page that is somebody else's.

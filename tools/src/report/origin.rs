@@ -12,7 +12,12 @@ pub(super) fn section(results: &Results, state: &SceneState) -> Markup {
     let summary = &results.summary;
     html! {
         p { "From the folder of the results, with sunfleck " (name(&summary.version)) ":" }
+        @if summary.command == "run" {
+            pre tabindex="0" { code { "sunfleck rerun . --out again" } }
+            p { "repeats the run from the scene that its files hold. The scene file as it is now runs by" }
+        }
         pre tabindex="0" { code { (cut(&command(results), 4000)) } }
+        @if summary.command == "respectrum" { p { "where RESULTS is the folder of the run whose paths these are." } }
         p {
             "Equal hashes, versions and seeds give equal numbers, on any number of threads."
             @if state.is == Agreement::Changed { " The scene file has changed: the command gives other numbers." }
@@ -39,7 +44,12 @@ pub(super) fn section(results: &Results, state: &SceneState) -> Markup {
 fn command(results: &Results) -> String {
     let summary = &results.summary;
     let mut words = vec!["sunfleck".to_owned(), summary.command.clone()];
-    words.push(quoted(summary.scene_file.as_deref().unwrap_or("SCENE.ron")));
+    words.push(match (summary.command.as_str(), &summary.scene_file) {
+        // Their paths lie in the results of another run, and nothing here says where those are.
+        ("respectrum", _) => "RESULTS".to_owned(),
+        (_, Some(scene)) => quoted(scene),
+        (_, None) => "SCENE.ron".to_owned(),
+    });
     if let Some(variant) = &summary.variant {
         words.extend(["--variant".to_owned(), quoted(variant)]);
     }
