@@ -78,7 +78,10 @@ impl<'a> Figure<'a> {
     /// # Errors
     /// If `file` cannot be written, or the pixels cannot be read.
     pub(super) fn encode(&self, texts: &[(&str, String)], file: &mut impl Write) -> io::Result<()> {
-        encode_png(self.size(), png::ColorType::Rgb, texts, file, |out| self.paint(out))
+        let compression = png::Compression::Balanced;
+        encode_png(self.size(), png::ColorType::Rgb, texts, compression, file, |out| {
+            self.paint(out)
+        })
     }
 
     /// Writes all rows of pixels from top to bottom: first those above the picture, with its frame, then the picture a

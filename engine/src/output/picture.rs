@@ -154,7 +154,8 @@ impl<'a> Picture<'a> {
         file: &mut impl Write,
     ) -> io::Result<ShownPixels> {
         let mut shown = ShownPixels { has_holes: false, is_blank: true };
-        encode_png(self.size(), png::ColorType::Rgba, texts, file, |out| {
+        let compression = png::Compression::Balanced;
+        encode_png(self.size(), png::ColorType::Rgba, texts, compression, file, |out| {
             for rows in self.blocks() {
                 let rgba = self.paint(rows)?;
                 let mut opacity = rgba.iter().skip(3).step_by(4);
@@ -208,6 +209,7 @@ pub(super) fn encode_png(
     (width, height): (usize, usize),
     colour: png::ColorType,
     texts: &[(&str, String)],
+    compression: png::Compression,
     file: &mut impl Write,
     paint: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
@@ -215,6 +217,7 @@ pub(super) fn encode_png(
     let mut encoder = png::Encoder::new(file, size(width)?, size(height)?);
     encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(compression);
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     for (keyword, text) in texts {
         encoder.add_itxt_chunk((*keyword).to_owned(), text.clone()).map_err(plain)?;
@@ -226,12 +229,14 @@ pub(super) fn encode_png(
     writer.finish().map_err(plain)
 }
 
-/// PNG in memory of pixels of three or four channels of eight bits, shape `[rows, columns, channels]`.
+/// PNG in memory of pixels of three or four channels of eight bits, shape `[rows, columns, channels]`. It is made
+/// quickly, for who waits for it, and is some tenths larger than it could be.
 pub(crate) fn png_bytes(width: usize, height: usize, pixels: &[u8]) -> Vec<u8> {
     let channels = pixels.len() / (width * height).max(1);
     let colour = if channels == 4 { png::ColorType::Rgba } else { png::ColorType::Rgb };
     let mut bytes = Vec::new();
-    encode_png((width, height), colour, &[], &mut bytes, |stream| stream.write_all(pixels))
+    let compression = png::Compression::Fast;
+    encode_png((width, height), colour, &[], compression, &mut bytes, |out| out.write_all(pixels))
         .expect("memory takes what is written, and sizes of pictures fit into 32 bits");
     bytes
 }

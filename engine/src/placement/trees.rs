@@ -60,9 +60,10 @@ pub fn instantiate_trees(
         .map(|purpose| stream.path(purpose));
     let tree = |number: usize, place: DVec2| {
         let number = number as u64;
-        let arrival =
-            |&(key, species): &(Key, &Species<'_>)| -key.uniform(number).ln() / species.share;
-        let (_, species) = rivals.iter().min_by(|a, b| arrival(a).total_cmp(&arrival(b)))?;
+        let arrivals = rivals
+            .iter()
+            .map(|(key, species)| (-key.uniform(number).ln() / species.share, species));
+        let (_, species) = arrivals.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
         let [yaw, tilt, tilt_azimuth, height, scale, vertical] = of.map(|key| key.index(number));
         let whole = habit.height_m.map_or(1.0, |of| draw(of, height) / species.height);
         let scale = draw(habit.scale, scale);

@@ -25,7 +25,7 @@ const MANY_IMAGES: f64 = 200.0;
 const MOST_ALIKE: usize = 1000;
 
 /// Instances that one thread looks at at a time.
-const BATCH: u32 = 1 << 14;
+pub(super) const BATCH: u32 = 1 << 14;
 
 /// Scene id that no instance has.
 const NO_INSTANCE: SceneId = SceneId(u32::MAX);

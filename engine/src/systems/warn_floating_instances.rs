@@ -2,10 +2,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use hecs::World;
+use rayon::prelude::*;
 
 use super::Resources;
 use super::coordinate_advice::terrain_advice;
 use super::measure_bounds::placed_meshes;
+use super::measure_extents::BATCH;
 use crate::components::{Instance, InstanceQuery, MeshBounds, Placement};
 use crate::document::{Diagnostic, Instances};
 use crate::geometry::place_text;
@@ -26,11 +28,14 @@ struct Case {
 }
 
 impl Case {
-    fn add(case: &mut Option<Self>, instance: Instance, heights: [f64; 3]) {
-        let case = case.get_or_insert(Self { count: 0, first: instance, heights });
-        case.count += 1;
-        if instance.id < case.first.id {
-            (case.first, case.heights) = (instance, heights);
+    fn add(self, to: &mut Option<Self>) {
+        let Some(case) = to else {
+            *to = Some(self);
+            return;
+        };
+        case.count += self.count;
+        if self.first.id < case.first.id {
+            (case.first, case.heights) = (self.first, self.heights);
         }
     }
 }
@@ -43,6 +48,66 @@ struct Cases {
     flat: Option<Case>,
 }
 
+impl Cases {
+    /// Adds an instance if it is a case.
+    fn look_at(&mut self, instance: Instance, bounds: &MeshBounds, below: f64) {
+        let (low, high) = vertical_extent(&instance.placement, bounds);
+        let (gap, height) = (low - below, high - low);
+        let is_flat = height < FLAT && gap.abs() < ROUNDING * (below.abs() + 1.0);
+        let floats = gap > height.max(FLAT);
+        if !is_flat && !floats && high - below >= 0.5 * height {
+            return;
+        }
+        let case = Case { count: 1, first: instance, heights: [low, high, below] };
+        case.add(if is_flat {
+            &mut self.flat
+        } else if floats {
+            &mut self.floating
+        } else {
+            &mut self.sunken
+        });
+    }
+
+    fn merge(&mut self, other: Self) {
+        let Self { sunken, floating, flat } = other;
+        let pairs =
+            [(sunken, &mut self.sunken), (floating, &mut self.floating), (flat, &mut self.flat)];
+        for (case, to) in pairs {
+            if let Some(case) = case {
+                case.add(to);
+            }
+        }
+    }
+}
+
+/// Cases of all instances, by mesh: the same for any order of looking at them.
+fn cases(
+    world: &World,
+    ground: &Ground,
+    bounds: &BTreeMap<u32, MeshBounds>,
+) -> BTreeMap<u32, Cases> {
+    let mut query = world.query::<InstanceQuery<'_>>();
+    query
+        .iter_batched(BATCH)
+        .par_bridge()
+        .map(|batch| {
+            let mut cases: BTreeMap<u32, Cases> = BTreeMap::new();
+            for instance in batch.map(Instance::from_components) {
+                let Placement { prototype, position, .. } = instance.placement;
+                let Some(bounds) = bounds.get(&prototype.0) else { continue };
+                let Some(below) = ground.height(position.truncate()) else { continue };
+                cases.entry(prototype.0).or_default().look_at(instance, bounds, below);
+            }
+            cases
+        })
+        .reduce(BTreeMap::new, |mut all, some| {
+            for (mesh, cases) in some {
+                all.entry(mesh).or_default().merge(cases);
+            }
+            all
+        })
+}
+
 /// Warns of instances that float above the ground by more than their height, or are sunken into it by half of their
 /// height: crowns without trunks, and roots, are left alone. Reads the components of
 /// instances, [`MeshBounds`] and [`Ground`].
@@ -51,29 +116,7 @@ pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resourc
     let meshes = placed_meshes(world);
     let bounds: BTreeMap<u32, MeshBounds> =
         meshes.iter().filter_map(|(&id, mesh)| Some((id, mesh.bounds?))).collect();
-    let mut cases: BTreeMap<u32, Cases> = BTreeMap::new();
-    for components in &mut world.query::<InstanceQuery<'_>>() {
-        let instance = Instance::from_components(components);
-        let placement = &instance.placement;
-        let Some(bounds) = bounds.get(&placement.prototype.0) else { continue };
-        let (low, high) = vertical_extent(placement, bounds);
-        let Some(below) = ground.height(placement.position.truncate()) else { continue };
-        let (gap, height) = (low - below, high - low);
-        let is_flat = height < FLAT && gap.abs() < ROUNDING * (below.abs() + 1.0);
-        let floats = gap > height.max(FLAT);
-        if !is_flat && !floats && high - below >= 0.5 * height {
-            continue;
-        }
-        let of_mesh = cases.entry(placement.prototype.0).or_default();
-        let case = if is_flat {
-            &mut of_mesh.flat
-        } else if floats {
-            &mut of_mesh.floating
-        } else {
-            &mut of_mesh.sunken
-        };
-        Case::add(case, instance, [low, high, below]);
-    }
+    let cases = cases(world, &ground, &bounds);
     for (prototype, Cases { flat, .. }) in &cases {
         let Some(Case { count, first, .. }) = flat else { continue };
         let name = &meshes[prototype].name;

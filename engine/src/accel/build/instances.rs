@@ -1,26 +1,19 @@
-use std::{
-    ops::Range,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::geometry::Bounds;
 
 use crate::accel::{
-    layout::{Bounds32, ChildRef, Domain, InstanceRecord, MeshBvh, PeriodicCopies},
+    layout::{Domain, InstanceRecord, MeshBvh, PeriodicCopies},
     simd::with_huge_pages,
 };
 
-use super::{BuildError, InstanceInput};
+use super::{BuildError, InstanceInput, extent::MeshExtent};
 
 /// Maximum number of instances and periodic copies.
 const MAX_RECORDS: usize = 1 << 30;
-
-/// Maximum number of topmost parts of a mesh from which the boxes of instances follow, eight smaller ones in each:
-/// with the boxes of the topmost alone, a ray enters a tenth more instances.
-const MAX_TOPMOST_PARTS: usize = 64;
 
 /// Records of all instances, and their boxes; the box of an instance without primitives is empty.
 pub(super) fn records(
@@ -31,14 +24,15 @@ pub(super) fn records(
     if count > MAX_RECORDS {
         return Err(BuildError::TooManyCopies { count, limit: MAX_RECORDS });
     }
-    let parts: Vec<_> = meshes.iter().map(MeshParts::new).collect();
+    let extents: Vec<_> =
+        meshes.par_iter().map(|mesh| MeshExtent::new(mesh, count / meshes.len())).collect();
     let first_invalid = AtomicUsize::new(usize::MAX);
     let (mut records, mut boxes) = (with_huge_pages(count), Vec::new());
     instances
         .enumerate()
         .map(|(instance, input)| {
-            let parts = parts.get(input.mesh as usize);
-            parts.and_then(|parts| record(&input, parts)).unwrap_or_else(|| {
+            let extent = extents.get(input.mesh as usize);
+            extent.and_then(|extent| record(&input, extent)).unwrap_or_else(|| {
                 first_invalid.fetch_min(instance, Ordering::Relaxed);
                 let (object_from_world, translation) = ([0.0; 9], input.translation);
                 let mesh = input.mesh;
@@ -57,7 +51,7 @@ pub(super) fn records(
 }
 
 /// Record of an instance and its box in the world; `None` if its map is not finite or not invertible.
-fn record(input: &InstanceInput, parts: &MeshParts) -> Option<(InstanceRecord, Bounds)> {
+fn record(input: &InstanceInput, extent: &MeshExtent) -> Option<(InstanceRecord, Bounds)> {
     let determinant = input.linear.determinant();
     if !determinant.is_finite() || determinant == 0.0 || !input.translation.is_finite() {
         return None;
@@ -71,9 +65,9 @@ fn record(input: &InstanceInput, parts: &MeshParts) -> Option<(InstanceRecord, B
     }
     let (mut min, mut max) = (input.translation, input.translation);
     let mut bounds = Bounds::EMPTY;
-    if !parts.topmost.is_empty() {
+    if !extent.is_empty() {
         for axis in 0..3 {
-            let (low, high) = parts.extent(linear.row(axis));
+            let (low, high) = extent.along(linear.row(axis));
             min[axis] += low;
             max[axis] += high;
         }
@@ -83,94 +77,6 @@ fn record(input: &InstanceInput, parts: &MeshParts) -> Option<(InstanceRecord, B
         InstanceRecord { object_from_world, mesh: input.mesh, translation: input.translation },
         bounds,
     ))
-}
-
-/// Boxes around parts of a mesh, from its topmost nodes: their union, when rotated, is tighter than the rotated box
-/// around the whole mesh.
-struct MeshParts {
-    /// Boxes of the topmost parts and the ranges of their own parts, those that are farthest from the middle first.
-    topmost: Vec<(PartBox, Range<usize>)>,
-    parts: Vec<PartBox>,
-}
-
-impl MeshParts {
-    fn new(mesh: &MeshBvh) -> Self {
-        let mut topmost = Vec::new();
-        if mesh.tree.root != ChildRef::NONE {
-            topmost.push((mesh.bounds, mesh.tree.root));
-        }
-        let mut next = 0;
-        while next < topmost.len() && topmost.len() + 7 <= MAX_TOPMOST_PARTS {
-            let (_, node) = topmost[next];
-            if node.is_inner() {
-                topmost.remove(next);
-                topmost.extend(children(mesh, node));
-            } else {
-                next += 1;
-            }
-        }
-        let mut parts = Vec::new();
-        let mut topmost: Vec<_> = topmost
-            .into_iter()
-            .map(|(bounds, node)| {
-                let start = parts.len();
-                if node.is_inner() {
-                    parts.extend(children(mesh, node).map(|(part, _)| PartBox::from(part)));
-                } else {
-                    parts.push(PartBox::from(bounds));
-                }
-                (PartBox::from(bounds), start..parts.len())
-            })
-            .collect();
-        let middle = PartBox::from(mesh.bounds).center;
-        let distance = |part: &PartBox| part.center.distance_squared(middle);
-        topmost.sort_by(|(a, _), (b, _)| distance(b).total_cmp(&distance(a)));
-        Self { topmost, parts }
-    }
-
-    /// Lowest and highest scalar product of `direction` and a point of the parts.
-    fn extent(&self, direction: DVec3) -> (f64, f64) {
-        let absolute = direction.abs();
-        let project = |part: &PartBox| {
-            let (center, half) = (direction.dot(part.center), absolute.dot(part.half));
-            (center - half, center + half)
-        };
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (part, parts) in &self.topmost {
-            let (part_low, part_high) = project(part);
-            if part_low < low || part_high > high {
-                for (part_low, part_high) in self.parts[parts.clone()].iter().map(project) {
-                    low = low.min(part_low);
-                    high = high.max(part_high);
-                }
-            }
-        }
-        (low, high)
-    }
-}
-
-struct PartBox {
-    center: DVec3,
-    half: DVec3,
-}
-
-impl From<Bounds32> for PartBox {
-    fn from(bounds: Bounds32) -> Self {
-        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        Self { center: 0.5 * (min + max), half: 0.5 * (max - min) }
-    }
-}
-
-/// Children of a node, with boxes that are not padded beyond the mesh's own.
-fn children(mesh: &MeshBvh, node: ChildRef) -> impl Iterator<Item = (Bounds32, ChildRef)> {
-    let node = &mesh.tree.nodes[node.index()];
-    let present = (0..8).filter(|&slot| node.child.0[slot] != ChildRef::NONE.0);
-    present.map(|slot| {
-        let side =
-            |side: usize| Vec3::from_array([0, 1, 2].map(|axis| node.bounds[axis][side].0[slot]));
-        let (min, max) = (side(0).max(mesh.bounds.min), side(1).min(mesh.bounds.max));
-        (Bounds32 { min, max }, ChildRef(node.child.0[slot]))
-    })
 }
 
 /// Adds records of the periodic copies that reach into the tile, and clips every box to the tile: a ray that has

@@ -1,11 +1,12 @@
 //! Construction of the hierarchies: meshes and instances in, a [`TwoLevelBvh`] out.
 //!
-//! `mesh` and `instances` turn the input into boxes and leaves; `wide` builds the eight-wide hierarchy over boxes
-//! from binary ones (`binary`) by collapsing them (`collapse`).
+//! `mesh` and `instances` turn the input into boxes and leaves, those of instances by the `extent` of their mesh;
+//! `wide` builds the eight-wide hierarchy over boxes from binary ones (`binary`) by collapsing them (`collapse`).
 
 mod binary;
 mod collapse;
 mod error;
+mod extent;
 mod input;
 mod instances;
 mod leaves;
