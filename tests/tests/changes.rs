@@ -4,8 +4,8 @@ use std::path::Path;
 
 use sunfleck::components::{
     BlackBody, Emission, Instance, InstanceCount, InstanceRange, LeafArea, Mesh, MeshBounds,
-    PartMaterials, ResolvedSensor, SceneId, ShownMeshes, SkyLight, SunLight, SurfaceOptics,
-    TerrainPatch,
+    PartMaterials, PlantingAreas, ResolvedSensor, SceneId, ShownMeshes, SkyLight, SunLight,
+    SurfaceOptics, TerrainPatch,
 };
 use sunfleck::document::{ReadOptions, Scene, read_text};
 use sunfleck::run::SceneWorld;
@@ -147,6 +147,7 @@ fn contents(world: &SceneWorld) -> Vec<String> {
         Mesh,
         MeshBounds,
         PartMaterials,
+        PlantingAreas,
         ResolvedSensor,
         ShownMeshes,
         SkyLight,
@@ -184,6 +185,10 @@ fn changed_world_is_that_of_a_scene_read_anew() {
         ("boundary: Periodic", "boundary: Isolated"),
         ("sky: Isotropic(irradiance: Bands([0.1, 0.1]))", "sky: None"),
         ("stems: Count(8)", "stems: Count(3)"),
+        (
+            "stems: Count(8)",
+            "stems: Count(8), inside: [Polygon(outline_m: [(1.0, 1.0), (19.0, 1.0), (10.0, 19.0)])]",
+        ),
         ("hide: [],", "hide: [], transport: (seed: 7),"),
         (r#"List(of: "crown", at_m: [(5.0, 5.0, 0.0), (12.0, 5.0, 0.0)]),"#, ""),
     ];

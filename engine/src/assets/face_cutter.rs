@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::AssetError;
-use super::import::Collector;
+use super::import::MeshCollector;
 use super::polygon::{Pieces, Tangled, triangulate};
 
 /// Most corners of a face: cutting a concave polygon takes the square of them.
@@ -42,7 +42,7 @@ impl FaceCutter {
     /// Returns false, and adds nothing, if that takes new vertices and `may_add_vertices` is false.
     pub(super) fn cut(
         &mut self,
-        mesh: &mut Collector,
+        mesh: &mut MeshCollector,
         corners: impl Iterator<Item = u32>,
         number: usize,
         part: u32,
@@ -84,7 +84,7 @@ impl FaceCutter {
     }
 
     /// Warns of faces that cross themselves; `place` is what their numbers are, `line` or `face`.
-    pub(super) fn warn_crossed(&self, mesh: &mut Collector, place: &str) {
+    pub(super) fn warn_crossed(&self, mesh: &mut MeshCollector, place: &str) {
         let (crossed, first) = self.crossed;
         if crossed > 0 {
             mesh.warn(&format!(

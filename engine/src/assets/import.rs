@@ -57,7 +57,7 @@ impl Import {
 }
 
 /// Triangles of a file in metres, z up, from which a mesh is made.
-pub(super) struct Collector {
+pub(super) struct MeshCollector {
     pub(super) file: PathBuf,
     pub(super) vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -68,7 +68,7 @@ pub(super) struct Collector {
     pub(super) transparent: BTreeMap<u32, String>,
 }
 
-impl Collector {
+impl MeshCollector {
     pub(super) fn new(file: &Path) -> Self {
         Self {
             file: file.to_owned(),

@@ -11,7 +11,7 @@ use crate::document::{INSTANCE_COLUMNS, meant_column};
 
 /// Position, orientation and size of one instance, from a row of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct StemRow {
     /// Position, m.
     pub position: DVec3,
     /// Turn about the vertical, counter-clockwise seen from above, rad.
@@ -38,7 +38,7 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StemTable {
     /// Rows in file order.
-    pub rows: Vec<Row>,
+    pub rows: Vec<StemRow>,
     /// Species in the order of their first rows.
     pub species: Vec<String>,
     /// True if the diameters are said to be those of crowns.
@@ -181,7 +181,7 @@ fn row(
     has: &impl Fn(&str) -> bool,
     path: &Path,
     line: usize,
-) -> Result<Row, AssetError> {
+) -> Result<StemRow, AssetError> {
     let &[
         x,
         y,
@@ -216,7 +216,7 @@ fn row(
             return Err(AssetError::NotPositive { file, line, what, value });
         }
     }
-    Ok(Row {
+    Ok(StemRow {
         position: DVec3::new(x, y, z),
         yaw: yaw_deg.to_radians() + yaw_rad,
         tilt: tilt_deg.to_radians(),

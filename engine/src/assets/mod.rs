@@ -41,7 +41,7 @@ pub use error::AssetError;
 pub use faces::mesh_of_faces;
 pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
-pub use instances::{Row, StemTable, read_instances};
+pub use instances::{StemRow, StemTable, read_instances};
 pub use obj::read_obj;
 pub use ply::{PlyError, read_ply};
 pub(crate) use raster::companions;

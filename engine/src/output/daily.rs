@@ -24,11 +24,11 @@ const MJ_OF_WH: f64 = 3600.0 * 1e-6;
 pub struct DailySums {
     /// Columns that name a value: those of the sweep's table without values and without the parameters.
     names: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<DailyRow>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Row {
+struct DailyRow {
     params: Vec<(String, Param)>,
     span_h: (f64, f64),
     /// A cell for each of the names.
@@ -185,7 +185,7 @@ impl DailySums {
             let found = cells.iter().find(|(known, _)| known == name);
             found.map(|(_, cell)| cell.clone()).unwrap_or_default()
         };
-        self.rows.push(Row {
+        self.rows.push(DailyRow {
             params: day.params.clone(),
             span_h: day.span_h,
             cells: self.names.iter().map(cell).collect(),
@@ -215,7 +215,7 @@ impl DailySums {
 
     /// Returns the rows as a list of objects; numbers without a value are null.
     pub(super) fn json(&self) -> Value {
-        let row = |row: &Row| {
+        let row = |row: &DailyRow| {
             let params: Map<_, _> =
                 row.params.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
             let mut entry = Map::from_iter([("params".to_owned(), Value::Object(params))]);

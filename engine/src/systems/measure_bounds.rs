@@ -16,7 +16,7 @@ pub(super) fn measure_bounds(world: &mut World, resources: &mut Resources) {
 
 /// A mesh of which instances are placed.
 #[derive(Clone, Debug)]
-pub(super) struct PlacedMesh {
+pub(super) struct MeshSummary {
     pub(super) name: String,
     /// Box around it; `None` if it is empty.
     pub(super) bounds: Option<MeshBounds>,
@@ -25,7 +25,7 @@ pub(super) struct PlacedMesh {
 }
 
 /// Meshes of which instances are placed, by their id.
-pub(super) fn placed_meshes(world: &World) -> BTreeMap<u32, PlacedMesh> {
+pub(super) fn placed_meshes(world: &World) -> BTreeMap<u32, MeshSummary> {
     let mut query = world.query::<(&SceneId, &Name, &Mesh, Option<&MeshBounds>, &InstanceCount)>();
     let placed = query.iter().filter(|(.., count)| count.0 > 0);
     let view = |(id, name, mesh, bounds, _): (
@@ -36,7 +36,7 @@ pub(super) fn placed_meshes(world: &World) -> BTreeMap<u32, PlacedMesh> {
         &InstanceCount,
     )| {
         let primitives = mesh.triangles.len() + mesh.discs.len();
-        (id.0, PlacedMesh { name: name.0.clone(), bounds: bounds.copied(), primitives })
+        (id.0, MeshSummary { name: name.0.clone(), bounds: bounds.copied(), primitives })
     };
     placed.map(view).collect()
 }

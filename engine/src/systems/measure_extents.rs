@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Resources;
 use super::coordinate_advice::place_of_instance;
-use super::measure_bounds::{PlacedMesh, placed_meshes};
+use super::measure_bounds::{MeshSummary, placed_meshes};
 use crate::components::{Instance, InstanceQuery, Placement, SceneExtents, SceneId, TerrainPatch};
 use crate::document::{Diagnostic, HEIGHT, LENGTH, Range, SCALE, ScenePath};
 use crate::geometry::Bounds;
@@ -117,7 +117,7 @@ pub(super) fn measure_extents(world: &mut World, resources: &mut Resources) {
 /// Refuses meshes whose coordinates are beyond the lawful range of lengths.
 fn check_meshes(
     bounds: &BTreeMap<u32, Bounds>,
-    meshes: &BTreeMap<u32, PlacedMesh>,
+    meshes: &BTreeMap<u32, MeshSummary>,
     resources: &mut Resources,
 ) {
     for (id, Bounds { min, max }) in bounds {
@@ -203,7 +203,7 @@ fn check_tiles_high(
 }
 
 /// Refuses and warns of instances with the place, orientation, scale and mesh of another one.
-fn check_duplicates(world: &World, meshes: &BTreeMap<u32, PlacedMesh>, resources: &mut Resources) {
+fn check_duplicates(world: &World, meshes: &BTreeMap<u32, MeshSummary>, resources: &mut Resources) {
     let pose_of = |components: InstanceQuery<'_>| {
         let Instance { id, placement, .. } = Instance::from_components(components);
         (pose(&placement), id)

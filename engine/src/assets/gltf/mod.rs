@@ -21,7 +21,7 @@ use indexmap::IndexSet;
 
 use self::buffers::Buffers;
 use super::format::{self, FileReader};
-use super::import::{Collector, Import};
+use super::import::{Import, MeshCollector};
 use super::{AssetError, Loaded, text};
 use crate::components::Mesh;
 
@@ -48,7 +48,7 @@ pub fn read_gltf(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetErro
     let mut model = GltfImporter {
         import,
         buffers,
-        mesh: Collector::new(path),
+        mesh: MeshCollector::new(path),
         parts: IndexSet::new(),
         left_out: IndexSet::new(),
     };
@@ -123,7 +123,7 @@ fn other_version(json: &[u8]) -> Option<String> {
 struct GltfImporter<'a> {
     import: &'a Import,
     buffers: Buffers,
-    mesh: Collector,
+    mesh: MeshCollector,
     /// Index and name of each part's material.
     parts: IndexSet<(Option<usize>, String)>,
     left_out: IndexSet<&'static str>,

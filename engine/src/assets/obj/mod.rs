@@ -21,7 +21,7 @@ use self::line::{comment, is_name, without_comment};
 use super::error::excerpt;
 use super::face_cutter::{CutError, FaceCutter, MOST_CORNERS};
 use super::format::{self, FileReader};
-use super::import::{Collector, Import};
+use super::import::{Import, MeshCollector};
 use super::text::{TextLines, decode, number};
 use super::{AssetError, Loaded};
 use crate::components::Mesh;
@@ -111,7 +111,7 @@ struct Deferred {
 struct ObjImporter<'a> {
     import: &'a Import,
     parts_by: &'a PartsBy,
-    mesh: Collector,
+    mesh: MeshCollector,
     /// Group and material of each part, in order of appearance; an empty name is none.
     parts: IndexSet<(String, String)>,
     group: String,
@@ -135,7 +135,7 @@ impl<'a> ObjImporter<'a> {
         Self {
             import,
             parts_by,
-            mesh: Collector::new(path),
+            mesh: MeshCollector::new(path),
             parts: IndexSet::new(),
             group: String::new(),
             material: String::new(),

@@ -19,7 +19,7 @@ use self::elements::{INDICES, PlyFace, PlyVertex, Skipped};
 use self::guarded::{Content, Guarded};
 use super::face_cutter::{CutError, FaceCutter, MOST_CORNERS};
 use super::format::{self, FileReader};
-use super::import::{Collector, Import};
+use super::import::{Import, MeshCollector};
 use super::text::open;
 use super::{AssetError, Loaded};
 use crate::components::Mesh;
@@ -42,7 +42,7 @@ pub fn read_ply(path: &Path, import: &Import) -> Result<Loaded<Mesh>, AssetError
     format::check(path, FileReader::Ply)?;
     let mut file = PlyFile::open(path)?;
     file.check_elements()?;
-    let mut mesh = Collector::new(path);
+    let mut mesh = MeshCollector::new(path);
     let mut faces = FaceList::default();
     let elements: Vec<ElementDef> = file.header.elements.values().cloned().collect();
     for element in elements {
@@ -169,7 +169,7 @@ impl<'a> PlyFile<'a> {
         &mut self,
         element: &ElementDef,
         import: &Import,
-        mesh: &mut Collector,
+        mesh: &mut MeshCollector,
     ) -> Result<(), AssetError> {
         let path = self.path;
         self.blocks::<PlyVertex>(element, |vertex, PlyVertex(place)| {

@@ -29,7 +29,7 @@ fn discs(path: &Path) -> bool {
 }
 
 fn instances(path: &Path) -> bool {
-    let lawful = |row: &crate::assets::Row| {
+    let lawful = |row: &crate::assets::StemRow| {
         row.position.is_finite() && row.scale_horizontal > 0.0 && row.scale_vertical > 0.0
     };
     read_instances(path, None).inspect(|table| assert!(table.rows.iter().all(lawful))).is_ok()

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::*;
 use crate::assets::{
-    Row, SpectrumColumns, SpectrumTable, read_discs, read_instances, read_spectrum,
+    SpectrumColumns, SpectrumTable, StemRow, read_discs, read_instances, read_spectrum,
 };
 use crate::components::Disc;
 use crate::document::WavelengthUnit;
@@ -16,7 +16,7 @@ fn discs(text: &str) -> Result<Vec<Disc>, AssetError> {
     Ok(loaded.value.discs)
 }
 
-fn instances(text: &str) -> Result<Vec<Row>, AssetError> {
+fn instances(text: &str) -> Result<Vec<StemRow>, AssetError> {
     let mut table = read_instances(file(text).path(), None)?;
     // Lines have tests of their own.
     table.rows.iter_mut().for_each(|row| row.line = 0);
@@ -36,7 +36,7 @@ fn spectrum(text: &str) -> Result<Vec<(f64, f64)>, AssetError> {
     Ok(points(&table))
 }
 
-const ROW: Row = Row {
+const ROW: StemRow = StemRow {
     position: DVec3::new(1.0, 2.0, 0.0),
     yaw: 0.0,
     tilt: 0.0,
@@ -105,7 +105,7 @@ fn instances_are_read_by_header_in_any_order_and_by_any_separator() {
     }
     let all = "scale_vertical,scale,tilt_azimuth_deg,tilt_deg,yaw_deg,z_m,y_m,x_m\n\
                3,2,90,45,180,5,2,1\n";
-    let full = Row {
+    let full = StemRow {
         position: DVec3::new(1.0, 2.0, 5.0),
         yaw: PI,
         tilt: PI / 4.0,
@@ -116,18 +116,18 @@ fn instances_are_read_by_header_in_any_order_and_by_any_separator() {
     };
     assert_eq!(instances(all).unwrap(), [full]);
     let rows = instances("x_m,y_m,scale,yaw_rad\n1,2,2,1.5\n1,2,0.5,0\n").unwrap();
-    assert_eq!(rows[0], Row { scale_horizontal: 2.0, scale_vertical: 2.0, yaw: 1.5, ..ROW });
-    assert_eq!(rows[1], Row { scale_horizontal: 0.5, scale_vertical: 0.5, ..ROW });
+    assert_eq!(rows[0], StemRow { scale_horizontal: 2.0, scale_vertical: 2.0, yaw: 1.5, ..ROW });
+    assert_eq!(rows[1], StemRow { scale_horizontal: 0.5, scale_vertical: 0.5, ..ROW });
 }
 
 #[test]
 fn the_scene_may_name_the_columns_of_a_table_without_header() {
     let names = ["x_m", "y_m", "yaw_rad"].map(str::to_owned);
     let rows = read_instances(file("1 2 0.5\n1 2 0\n").path(), Some(&names)).unwrap().rows;
-    assert_eq!(rows, [Row { yaw: 0.5, line: 1, ..ROW }, Row { line: 2, ..ROW }]);
+    assert_eq!(rows, [StemRow { yaw: 0.5, line: 1, ..ROW }, StemRow { line: 2, ..ROW }]);
     // A header of other names is replaced.
     let rows = read_instances(file("X Y R\n1 2 0.5\n").path(), Some(&names)).unwrap().rows;
-    assert_eq!(rows, [Row { yaw: 0.5, line: 2, ..ROW }]);
+    assert_eq!(rows, [StemRow { yaw: 0.5, line: 2, ..ROW }]);
     let error = read_instances(file("y_m x_m R\n1 2 0.5\n").path(), Some(&names)).unwrap_err();
     assert!(
         message(&error).contains("\"y_m\" which `columns` in the scene calls \"x_m\""),

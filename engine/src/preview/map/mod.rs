@@ -28,7 +28,7 @@ use self::crowns::{MeshClasses, crowns};
 use self::drawing::{Anchor, Drawing, Ink, Item, Paint};
 use self::legend::Legend;
 use self::page::{Projection, coordinates, north_arrow, scale_bar, widest_coordinate};
-use self::relief::HeightGrid;
+use self::relief::ReliefGrid;
 use self::sensors::{SensorMark, SensorShape};
 
 /// Longer side of the map in a picture, pixels, unless another is asked for.
@@ -65,7 +65,7 @@ struct MapContents {
     tile: Rectangle,
     shown: Rectangle,
     is_periodic: bool,
-    relief: HeightGrid,
+    relief: ReliefGrid,
     areas: PlantingAreas,
     sensors: Vec<SensorMark>,
     sun: Option<DVec3>,
@@ -86,7 +86,7 @@ impl MapContents {
             derived = Ground::of(patch);
             &derived
         };
-        let relief = HeightGrid::new(ground, tile);
+        let relief = ReliefGrid::new(ground, tile);
         let sensors = sensors::sensors(world, Some(ground), tile, patch.lowest());
         let mut suns = world.query::<&SunLight>();
         let is_periodic = resources.is_periodic();

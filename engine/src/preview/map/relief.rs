@@ -21,7 +21,7 @@ const HOLE: [u8; 4] = [205, 205, 215, 255];
 
 /// Heights of the ground on an even grid over its rectangle, northernmost row first; NaN in holes.
 #[derive(Clone, Debug)]
-pub(super) struct HeightGrid {
+pub(super) struct ReliefGrid {
     rectangle: Rectangle,
     columns: usize,
     rows: usize,
@@ -43,7 +43,7 @@ pub(super) struct DrawnRelief {
     pub(super) has_holes: bool,
 }
 
-impl HeightGrid {
+impl ReliefGrid {
     pub(super) fn new(ground: &Ground, rectangle: Rectangle) -> Self {
         let size = rectangle.size();
         let counts = (size / size.max_element() * POINTS as f64).ceil().max(DVec2::splat(2.0));

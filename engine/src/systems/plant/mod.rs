@@ -20,7 +20,7 @@ use hecs::{Entity, World};
 use super::coordinate_advice::{AdvicePlace, other_coordinates};
 use super::georeference::{MapFrame, MapTransform};
 use super::{Resources, set_component};
-use crate::assets::Row;
+use crate::assets::StemRow;
 use crate::components::{
     Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingAreas, PlantingId,
     PrototypeId, Scale, SceneId, ShownMeshes,
@@ -199,7 +199,7 @@ fn rectangle_of(ground: &Ground) -> Rectangle {
 /// it are reported.
 fn plant_rows(
     instances: &Instances,
-    rows: &[Row],
+    rows: &[StemRow],
     prototypes: &[PrototypeId],
     on_terrain: bool,
     site: &mut Site<'_>,
@@ -233,7 +233,7 @@ fn plant_rows(
     placed
 }
 
-fn placement(row: &Row, base: f64, prototype: PrototypeId) -> Placement {
+fn placement(row: &StemRow, base: f64, prototype: PrototypeId) -> Placement {
     Placement {
         prototype,
         position: row.position + DVec3::Z * base,
@@ -247,12 +247,12 @@ fn placement(row: &Row, base: f64, prototype: PrototypeId) -> Placement {
 }
 
 /// Rows of a list; `document::check` has seen to it that its columns are empty or of one length.
-fn listed(at_m: &[(f64, f64, f64)], yaw_deg: &[f64], scale: &[f64]) -> Vec<Row> {
+fn listed(at_m: &[(f64, f64, f64)], yaw_deg: &[f64], scale: &[f64]) -> Vec<StemRow> {
     at_m.iter()
         .enumerate()
         .map(|(index, &position)| {
             let scale = scale.get(index).copied().unwrap_or(1.0);
-            Row {
+            StemRow {
                 position: DVec3::from(position),
                 yaw: yaw_deg.get(index).copied().unwrap_or(0.0).to_radians(),
                 tilt: 0.0,

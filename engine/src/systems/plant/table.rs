@@ -1,7 +1,7 @@
 use glam::{DVec2, Vec3Swizzles as _};
 
 use super::{Site, plant_rows};
-use crate::assets::{Row, StemTable, read_instances};
+use crate::assets::{StemRow, StemTable, read_instances};
 use crate::components::{Placement, PrototypeId};
 use crate::document::{
     Diagnostic, InstanceTable, Instances, ScenePath, SpeciesMeshes, TableCoordinates, suggestion,
@@ -75,7 +75,7 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
 }
 
 /// Warns of rows that lie so near to each other that their coordinates may be degrees.
-fn warn_degrees(rows: &[Row], file: &str, path: &ScenePath, site: &mut Site<'_>) {
+fn warn_degrees(rows: &[StemRow], file: &str, path: &ScenePath, site: &mut Site<'_>) {
     let places = || rows.iter().map(|row| row.position.truncate());
     let Some(first) = places().next() else { return };
     let (low, high) = places().fold((first, first), |(a, b), p| (a.min(p), b.max(p)));
@@ -165,7 +165,7 @@ fn kinds(
 
 fn kind(mesh: &str, table: &StemTable, path: &ScenePath, site: &mut Site<'_>) -> Option<Kind> {
     let prototype = site.resources.prototype(mesh, path)?;
-    let has = |size: fn(&Row) -> Option<f64>| table.rows.iter().any(|row| size(row).is_some());
+    let has = |size: fn(&StemRow) -> Option<f64>| table.rows.iter().any(|row| size(row).is_some());
     // A hidden mesh is not loaded, and its size not needed.
     let Some(shape) = site.shapes.get(&prototype.0) else {
         return Some(Kind { prototype, top: 1.0, width: 1.0 });
@@ -187,7 +187,7 @@ fn kind(mesh: &str, table: &StemTable, path: &ScenePath, site: &mut Site<'_>) ->
 
 /// Returns whether coordinates are those of the map rather than the scene's: whichever lies on the terrain.
 fn guess_coordinates(
-    rows: &[Row],
+    rows: &[StemRow],
     file: &str,
     path: &ScenePath,
     site: &mut Site<'_>,
@@ -241,7 +241,7 @@ fn guess_coordinates(
 }
 
 /// Converts coordinates of the map to the local frame.
-fn move_from_map(rows: &mut [Row], on_terrain: bool, site: &Site<'_>) {
+fn move_from_map(rows: &mut [StemRow], on_terrain: bool, site: &Site<'_>) {
     let (map, (.., height)) = (site.transform(), site.resources.frame.origin_m);
     for row in rows {
         let z = if on_terrain { row.position.z } else { row.position.z - height };
@@ -250,7 +250,7 @@ fn move_from_map(rows: &mut [Row], on_terrain: bool, site: &Site<'_>) {
 }
 
 /// Scales a row so that its mesh gets the size that the row says.
-fn scale(row: &mut Row, kind: &Kind, is_of_crown: bool, file: &str) -> Result<(), SizeProblem> {
+fn scale(row: &mut StemRow, kind: &Kind, is_of_crown: bool, file: &str) -> Result<(), SizeProblem> {
     let vertical = row.height.filter(|_| kind.top > 0.0).map(|height| height / kind.top);
     let horizontal = row.diameter.filter(|_| kind.width > 0.0).map(|width| width / kind.width);
     let (Some(vertical), Some(horizontal)) = (vertical.or(horizontal), horizontal.or(vertical))
