@@ -4,7 +4,8 @@ use std::path::Path;
 use glam::DVec2;
 use sunfleck::assets::{
     AssetError, Import, Loaded, Raster, SpectrumColumns, SpectrumTable, StemTable, read_discs,
-    read_geojson, read_gltf, read_instances, read_obj, read_polygons, read_raster, read_spectrum,
+    read_geojson, read_gltf, read_instances, read_obj, read_ply, read_polygons, read_raster,
+    read_spectrum,
 };
 use sunfleck::components::Mesh;
 use sunfleck::document::{self, Axis, Origin, PartsBy, ReadOptions, Reading};
@@ -58,7 +59,7 @@ impl Reader {
 const PIPELINE: &str = "pipeline";
 
 /// All readers.
-pub const READERS: [Reader; 12] = [
+pub const READERS: [Reader; 14] = [
     Reader::new("scene", &["ron"], &["scenes", "tests/scenes", "engine/tests/language"], scene),
     Reader::new("obj", &["obj"], &["tools/tests/less"], obj),
     Reader::new("discs", &["csv", "txt"], &[], discs),
@@ -66,10 +67,12 @@ pub const READERS: [Reader; 12] = [
     Reader::new("ascii", &["asc"], &[], raster),
     Reader::new("geotiff", &["tif"], &[], raster),
     Reader::new("gltf", &["gltf", "glb"], &[], gltf),
+    Reader::new("ply", &["ply"], &[], ply),
     Reader::new("geojson", &["geojson"], &["scenes/assets"], geojson),
     Reader::new("polygons", &["csv"], &[], polygons),
     Reader::new("instances", &["csv"], &[], instances),
-    Reader::new("spectrum", &["csv"], &[], spectrum),
+    Reader::new("spectrum", &["csv", "txt", "asd"], &[], spectrum),
+    Reader::new("library", &["hdr"], &[], library),
     Reader {
         most_seconds: 20.0,
         free_bytes: 1 << 30,
@@ -161,6 +164,10 @@ fn gltf(path: &Path) -> Said {
     mesh(read_gltf(path, &AS_IS))
 }
 
+fn ply(path: &Path) -> Said {
+    mesh(read_ply(path, &AS_IS))
+}
+
 fn discs(path: &Path) -> Said {
     mesh(read_discs(path))
 }
@@ -183,15 +190,17 @@ fn mesh(read: Result<Loaded<Mesh>, AssetError>) -> Said {
     (format!("{said}\n{}", warnings.join("\n")), warnings.into_iter().chain([size]).collect())
 }
 
+/// Writes values for any header, unless they are there: small whole numbers, then bytes that are NaN as reals.
+fn write_values(path: &Path) {
+    let values: Vec<u8> = (0..4096_u32).map(|i| if i < 3072 { i as u8 } else { 0xff }).collect();
+    if !path.is_file() {
+        std::fs::write(path, values).expect("a file of values");
+    }
+}
+
 fn raster(path: &Path) -> Said {
     if path.extension().is_some_and(|extension| extension == "hdr") {
-        // Values for any header: small whole numbers, then bytes that are NaN as reals.
-        let values: Vec<u8> =
-            (0..4096_u32).map(|i| if i < 3072 { i as u8 } else { 0xff }).collect();
-        let values_path = path.with_extension("");
-        if !values_path.is_file() {
-            std::fs::write(values_path, values).expect("a file of values");
-        }
+        write_values(&path.with_extension(""));
     }
     let raster = match read_raster(path, None) {
         Ok(raster) => raster,
@@ -245,6 +254,13 @@ fn instances(path: &Path) -> Said {
         }
         Err(error) => said(&error),
     }
+}
+
+/// Reads the spectrum of an ENVI library, whose header the file is.
+fn library(path: &Path) -> Said {
+    let values = path.with_extension("sli");
+    write_values(&values);
+    spectrum(&values)
 }
 
 fn spectrum(path: &Path) -> Said {
