@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::MaterialId;
 
@@ -103,6 +103,19 @@ impl Mesh {
             .iter()
             .map(|disc| std::f64::consts::PI * f64::from(disc.radius).powi(2));
         triangles.chain(discs).sum()
+    }
+
+    /// Vectors of the areas of the surfaces of a part, m²: perpendicular to them, and as long as they are large.
+    pub fn area_vectors(&self, part: &MeshPart) -> impl Iterator<Item = DVec3> {
+        let triangles = part.triangles.clone().map(|index| {
+            let [a, b, c] = self.corners(index as usize).map(Vec3::as_dvec3);
+            0.5 * (b - a).cross(c - a)
+        });
+        let discs = &self.discs[part.discs.start as usize..part.discs.end as usize];
+        triangles.chain(discs.iter().map(|disc| {
+            let area = std::f64::consts::PI * f64::from(disc.radius).powi(2);
+            disc.normal.as_dvec3().normalize_or_zero() * area
+        }))
     }
 
     /// Smallest box around all primitives, m, as its lowest and highest corner; `None` if empty.

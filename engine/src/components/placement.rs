@@ -113,6 +113,14 @@ impl Lean {
     pub const UPRIGHT: Self = Self { tilt: 0.0, azimuth: 0.0 };
 }
 
+impl Scale {
+    /// Ratio of the sizes of the vertical scale and the horizontal one.
+    #[must_use]
+    pub fn ratio(self) -> f64 {
+        (f64::from(self.vertical) / f64::from(self.horizontal)).abs()
+    }
+}
+
 impl Placement {
     /// Factor by which the scales enlarge areas. It is exact if both are equal; leaves of all directions grow by
     /// nearly this factor if they differ.

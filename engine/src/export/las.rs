@@ -50,6 +50,7 @@ pub(super) fn write(
     scene: &ExportedScene<'_>,
     path: &Path,
     settings: &ExportSettings,
+    written: &dyn Fn(f64),
 ) -> Result<Exported, ExportError> {
     let ground_parts = scene.ground_parts();
     let areas = areas(scene, &ground_parts, settings);
@@ -72,7 +73,7 @@ pub(super) fn write(
         let out = BufWriter::with_capacity(1 << 20, file.try_clone()?);
         let out = GuardedWriter { file: out, error: Arc::clone(&error) };
         let mut writer = Writer::new(out, header).map_err(io::Error::other)?;
-        put_points(scene, &ground_parts, &areas, settings, &mut writer)
+        put_points(scene, &ground_parts, &areas, (settings, written), &mut writer)
             .map_err(io::Error::other)?;
         writer.close().map_err(io::Error::other)?;
         writer.into_inner().map_err(io::Error::other)?.flush()?;
@@ -207,7 +208,7 @@ fn put_points(
     scene: &ExportedScene<'_>,
     ground_parts: &[MeshPart],
     areas: &[Vec<f64>],
-    settings: &ExportSettings,
+    (settings, written): (&ExportSettings, &dyn Fn(f64)),
     writer: &mut Writer<GuardedWriter>,
 ) -> Result<(), ::las::Error> {
     let terrain = &*scene.terrain;
@@ -242,6 +243,7 @@ fn put_points(
         SurfacePoints { mesh: &placed.mesh, parts, faces, pose, is_ground: false, stream }
     };
     for first in (0..areas.len()).step_by(BLOCK) {
+        written(first as f64 / areas.len() as f64);
         let mut block = Vec::new();
         for (index, areas) in areas.iter().enumerate().skip(first).take(BLOCK) {
             let counts: Vec<u64> =

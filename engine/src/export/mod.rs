@@ -20,7 +20,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::output::{OutputError, put_file};
-use crate::run::{Failure, LoadedScene};
+use crate::run::{Failure, LoadedScene, Progress};
 
 use self::contents::ExportedScene;
 
@@ -105,12 +105,16 @@ pub fn export(
     loaded: &LoadedScene,
     file: &Path,
     settings: &ExportSettings,
+    progress: &dyn Progress,
 ) -> Result<Exported, ExportError> {
+    progress.stage("writing");
     let scene = ExportedScene::new(loaded)?;
+    let written = |done| progress.fraction("export", done);
     match settings.format {
+        // Each mesh is written once.
         ExportFormat::Gltf | ExportFormat::Glb => gltf::write(&scene, file, settings),
-        ExportFormat::Ply => ply::write(&scene, file, settings),
-        ExportFormat::Las | ExportFormat::Laz => las::write(&scene, file, settings),
+        ExportFormat::Ply => ply::write(&scene, file, settings, &written),
+        ExportFormat::Las | ExportFormat::Laz => las::write(&scene, file, settings, &written),
     }
 }
 

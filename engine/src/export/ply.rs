@@ -23,6 +23,7 @@ pub(super) fn write(
     scene: &ExportedScene<'_>,
     path: &Path,
     settings: &ExportSettings,
+    written: &dyn Fn(f64),
 ) -> Result<Exported, ExportError> {
     let sides = settings.disc_sides;
     let triangles = scene.triangles(sides);
@@ -42,14 +43,22 @@ pub(super) fn write(
         header(scene, triangles, &mut out)?;
         let ground = ground(scene);
         out.write_all(&corners(&ground, scene, sides))?;
-        for block in scene.instances.chunks(BLOCK) {
+        // Corners take most of the time, as they take most of the file.
+        let part_of_corners = (3 * CORNER_BYTES) as f64 / (3 * CORNER_BYTES + FACE_BYTES) as f64;
+        let part_of_faces = 1.0 - part_of_corners;
+        let part = |number: usize| number as f64 / scene.instances.len() as f64;
+        for (number, block) in scene.instances.chunks(BLOCK).enumerate() {
+            written(part_of_corners * part(number * BLOCK));
             let bytes: Vec<Vec<u8>> =
                 block.par_iter().map(|one| corners(&shape(one, scene), scene, sides)).collect();
             bytes.iter().try_for_each(|bytes| out.write_all(bytes))?;
         }
         let mut next = 0;
         faces(&ground, sides, &mut next, &mut out)?;
-        for one in &scene.instances {
+        for (number, one) in scene.instances.iter().enumerate() {
+            if number % BLOCK == 0 {
+                written(part_of_corners + part_of_faces * part(number));
+            }
             faces(&shape(one, scene), sides, &mut next, &mut out)?;
         }
         out.flush()

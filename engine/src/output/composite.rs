@@ -93,7 +93,7 @@ impl Composite {
         }
         let dark = image.bands.iter().zip(lit.dark()).filter(|(_, is_dark)| *is_dark);
         let dark = dark.map(|(name, _)| name.clone()).collect();
-        Legend { entries: Entries::Bars(bars), dark }
+        Legend { entries: Entries::Bars(bars), dark, zero: None }
     }
 }
 
@@ -114,13 +114,44 @@ impl Stretch {
         let Some([low, high]) = found.map(|all| all.map(|value| value as f32)) else {
             return Ok(Self::NONE);
         };
-        // A plain image is neither black nor white; differences in its last digits are no picture.
-        let plain = high - low <= 1e-5 * high.abs();
-        Ok(if plain {
-            Self { low: 0.0, high: (2.0 * high).max(f32::MIN_POSITIVE) }
+        // Differences in the last digits are no picture.
+        let is_plain = high - low <= 1e-5 * high.abs();
+        Ok(if is_plain { Self::plain(high) } else { Self { low, high } })
+    }
+
+    /// Range of all values of a band.
+    ///
+    /// - `has_zero`: true if the range begins at 0, however large the values are
+    pub(super) fn over_all(
+        input: &PictureInput<'_>,
+        band: usize,
+        has_zero: bool,
+    ) -> io::Result<Self> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        input.visit_band(band, &mut |value| {
+            (low, high) = (low.min(value), high.max(value));
+        })?;
+        if has_zero {
+            low = low.min(0.0);
+        }
+        Ok(if high > low {
+            Self { low: low as f32, high: high as f32 }
+        } else if high.is_finite() {
+            Self::plain(high as f32)
         } else {
-            Self { low, high }
+            Self::NONE
         })
+    }
+
+    /// Stretch of a plain image, which is neither black nor white.
+    fn plain(value: f32) -> Self {
+        Self { low: 0.0, high: (2.0 * value).max(f32::MIN_POSITIVE) }
+    }
+
+    /// Grey bar of a legend for a band with this name.
+    pub(super) const fn bar(self, name: String) -> Bar {
+        let Self { low, high } = self;
+        Bar { name, wavelength: None, channels: [true; 3], low, high }
     }
 
     /// `value` in [0, 1].

@@ -39,7 +39,7 @@ impl Content {
     }
 }
 
-/// Writes channels `<band>`, `<band>.se` and `coverage`, block by block; the attribute `comments` holds the provenance
+/// Writes channels `<band>`, `<band>.se` unless values are exact, and `coverage`, block by block; the attribute `comments` holds the provenance
 /// as JSON. Rows in order keep the pixels' bytes the same from run to run.
 ///
 /// - `blocks`: all rows of the image, from top to bottom
@@ -79,7 +79,9 @@ fn channels(image: &Image) -> Vec<(Text, Content)> {
         // A full stop in a channel's name parts layers: only `.se` shall.
         let name = names.take(&channel_name(band));
         channels.push((text(&name), Content::Values(index)));
-        channels.push((text(&format!("{name}.se")), Content::Errors(index)));
+        if image.has_errors {
+            channels.push((text(&format!("{name}.se")), Content::Errors(index)));
+        }
     }
     channels.sort_by(|(one, _), (other, _)| one.cmp(other));
     channels

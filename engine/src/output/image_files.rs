@@ -43,7 +43,10 @@ pub(super) fn put(
     let Some(Rasters { mut values, mut errors, lit }) = rasters else { return Ok((size, None)) };
     let readers = [values.reader()?, errors.reader()?];
     if has(FileFormat::Envi) {
-        size += values.finish()? + errors.finish()?;
+        size += values.finish()?;
+        if image.has_errors {
+            size += errors.finish()?;
+        }
     }
     let [values, errors] = readers;
     if has(FileFormat::GeoTiff) {
@@ -126,7 +129,11 @@ impl Rasters {
             Ok(file)
         };
         let values = begin(names.img(), Raster::Values)?;
-        let errors = begin(names.errors(), Raster::Errors)?;
+        let errors = match names.errors() {
+            Some(name) => begin(name, Raster::Errors)?,
+            // Pictures are made of the coverage that it holds.
+            None => staging.begin_unnamed()?,
+        };
         Ok((Self { values, errors, lit: LitBands::new(image.bands.len()) }, size))
     }
 

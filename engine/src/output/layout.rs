@@ -80,6 +80,7 @@ impl Layout {
             }
             Entries::Text(lines) => lines.iter().for_each(|line| self.text(line)),
         }
+        self.rows.extend(legend.zero.iter().cloned().map(Row::Class));
     }
 
     fn height(&self, row: &Row) -> usize {

@@ -9,6 +9,8 @@ pub(super) struct Legend {
     pub(super) entries: Entries,
     /// Names of bands that are dark in every pixel and not shown.
     pub(super) dark: Vec<String>,
+    /// Colour and meaning of the value 0, if it has a colour of its own.
+    pub(super) zero: Option<Class>,
 }
 
 /// Meaning of the colours of a picture.
@@ -38,7 +40,7 @@ pub(super) struct Bar {
 
 impl Legend {
     pub(super) fn classes(classes: &[Class], how: &'static str) -> Self {
-        Self { entries: Entries::Classes(classes.to_vec(), how), dark: Vec::new() }
+        Self { entries: Entries::Classes(classes.to_vec(), how), dark: Vec::new(), zero: None }
     }
 
     /// Legend of a picture that shows a white surface in full brightness at a gain of 1.
@@ -52,6 +54,6 @@ impl Legend {
             Channels::Cie => "natural colours (CIE 1931, sRGB)".to_owned(),
         };
         let exposure = format!("exposure {:+.1} stops over white", gain.log2());
-        Self { entries: Entries::Text(vec![what, exposure]), dark: Vec::new() }
+        Self { entries: Entries::Text(vec![what, exposure]), dark: Vec::new(), zero: None }
     }
 }

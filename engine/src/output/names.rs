@@ -74,8 +74,8 @@ pub(super) struct ProductNames {
     pub(super) key: String,
     /// Name of its files without extension.
     pub(super) stem: String,
-    /// Name of the file of an image's standard errors, without extension.
-    errors: String,
+    /// Name of the file of an image's standard errors, without extension; `None` if it has none.
+    errors: Option<String>,
 }
 
 impl ProductNames {
@@ -110,14 +110,15 @@ impl ProductNames {
         format!("{}.img", self.stem)
     }
 
-    /// ENVI pixels of standard errors and coverage.
-    pub(super) fn errors(&self) -> String {
-        format!("{}.img", self.errors)
+    /// ENVI pixels of standard errors and coverage; `None` of exact values.
+    pub(super) fn errors(&self) -> Option<String> {
+        Some(format!("{}.img", self.errors.as_ref()?))
     }
 
-    /// `GeoTIFF` of values, and of standard errors and coverage.
-    pub(super) fn geotiffs(&self) -> [String; 2] {
-        [&self.stem, &self.errors].map(|stem| format!("{stem}.tif"))
+    /// `GeoTIFF` of values, and of standard errors and coverage unless values are exact.
+    pub(super) fn geotiffs(&self) -> Vec<String> {
+        let stems = [Some(&self.stem), self.errors.as_ref()];
+        stems.into_iter().flatten().map(|stem| format!("{stem}.tif")).collect()
     }
 
     /// All files of an image in these formats.
@@ -125,11 +126,10 @@ impl ProductNames {
         let files = |format| match format {
             FileFormat::Exr => vec![self.exr()],
             FileFormat::Envi => {
-                let [img, errors] = [self.img(), self.errors()];
-                let [values_header, errors_header] = [header(&img), header(&errors)];
-                vec![img, values_header, errors, errors_header]
+                let pixels = [Some(self.img()), self.errors()].into_iter().flatten();
+                pixels.flat_map(|pixels| [pixels.clone(), header(&pixels)]).collect()
             }
-            FileFormat::GeoTiff => self.geotiffs().to_vec(),
+            FileFormat::GeoTiff => self.geotiffs(),
             FileFormat::Png => vec![self.png(), self.bare()],
             FileFormat::Zarr | FileFormat::NetCdf => Vec::new(),
         };
@@ -158,10 +158,9 @@ pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
             // Some file systems take `Nadir` and `nadir` for one name.
             let stem = format!("{}_{}", sanitise(&sensor.name), sanitise(&product.name));
             let stem = stems.take_ignoring_case(&stem);
-            let errors = match &product.image {
-                Some(_) => stems.take_ignoring_case(&format!("{stem}_se")),
-                None => String::new(),
-            };
+            let has_errors = product.image.as_ref().is_some_and(|image| image.has_errors);
+            let errors =
+                has_errors.then(|| stems.take_ignoring_case(&format!("{stem}_se")));
             ProductNames { key: keys.take(&product.name), stem, errors }
         });
         SensorNames {

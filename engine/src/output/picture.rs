@@ -7,9 +7,12 @@ use rayon::prelude::*;
 
 use super::colour::Mixture;
 use super::composite::{Composite, Stretch};
-use super::legend::Legend;
+use super::legend::{Entries, Legend};
 use super::picture_input::PictureInput;
 use crate::products::{Channels, Class, Rendering};
+
+/// Colour of a value of 0 on a map on which it has one of its own: no grey.
+const ZERO: [u8; 3] = [222, 196, 150];
 
 /// Exponent of the display.
 pub(super) const GAMMA: f32 = 2.2;
@@ -29,6 +32,8 @@ pub(super) struct Picture<'a> {
 enum Colours<'a> {
     /// A place among the bands that are read and a stretch for red, green and blue; no place without data.
     Composite([Option<usize>; 3], [Stretch; 3]),
+    /// A stretch for greys, and whether 0 has a colour of its own.
+    Map(Stretch, bool),
     Classes(&'a [Class]),
     Shares(&'a [Class]),
     Mixture(Mixture, f64),
@@ -44,6 +49,7 @@ impl<'a> Picture<'a> {
         let has_data = lit.with_data();
         match &image.rendering {
             Rendering::Quicklook => Self::composite(input, &Composite::new(wavelengths, &has_data)),
+            Rendering::Map { zero } => Self::map(input, zero.as_deref()),
             Rendering::Classes(classes) => {
                 let legend = Legend::classes(classes, "largest share of a pixel");
                 Ok(Self { input, colours: Colours::Classes(classes), bands: vec![0], legend })
@@ -74,6 +80,20 @@ impl<'a> Picture<'a> {
                 Ok(Self { input, colours: Colours::Mixture(mixture, gain), bands, legend })
             }
         }
+    }
+
+    /// Picture of the first band, stretched over the whole range of its values.
+    ///
+    /// - `zero`: meaning of 0, if it has a colour of its own
+    fn map(input: &'a PictureInput<'a>, zero: Option<&str>) -> io::Result<Self> {
+        let stretch = Stretch::over_all(input, 0, zero.is_some())?;
+        let legend = Legend {
+            entries: Entries::Bars(vec![stretch.bar(input.image.bands[0].clone())]),
+            dark: Vec::new(),
+            zero: zero.map(|name| Class { name: format!("0: {name}"), colour: ZERO }),
+        };
+        let colours = Colours::Map(stretch, zero.is_some());
+        Ok(Self { input, colours, bands: vec![0], legend })
     }
 
     /// Picture of one to three bands, stretched between the 1st and 99th percentiles. Opacity is the coverage.
@@ -129,6 +149,13 @@ impl<'a> Picture<'a> {
                 let channel = |at: usize| byte(stretches[at].apply(chosen[at]).powf(GAMMA.recip()));
                 Some([0, 1, 2].map(channel))
             }
+            Colours::Map(stretch, has_zero) => match all.next() {
+                Some(value) if *has_zero && value == 0.0 => Some(ZERO),
+                Some(value) if value.is_finite() => {
+                    Some([byte(stretch.apply(value).powf(GAMMA.recip())); 3])
+                }
+                _ => None,
+            },
             Colours::Classes(classes) => class_of(all.next(), classes).map(|class| class.colour),
             Colours::Shares(classes) => mixed(&all.collect::<Vec<f32>>(), classes),
             Colours::Mixture(mixture, gain) => {

@@ -110,6 +110,7 @@ pub(super) mod tests {
             height: 1,
             bands: bands.iter().map(|&band| band.to_owned()).collect(),
             pixels: PixelRows { width, values, standard_error, coverage }.into(),
+            has_errors: true,
             rendering: Rendering::Quicklook,
             georeference: None,
         }

@@ -30,7 +30,8 @@ pub fn leaf_area_products(
         grid,
         origin,
         (&map, names.len()),
-        &[(sum, kind.replace('_', " "))],
+        &[(sum, format!("{} index", kind.replace('_', " ")))],
+        Rendering::Map { zero: Some(format!("no {}", kind.replace('_', " "))) },
     )];
     if names.len() > 1 {
         let bands: Vec<(usize, String)> = names.iter().cloned().enumerate().take(sum).collect();
@@ -40,6 +41,7 @@ pub fn leaf_area_products(
             origin,
             (&map, names.len()),
             &bands,
+            Rendering::Quicklook,
         ));
     }
     let layers = columns.with_sum(&leaf_area.layers_total());
@@ -52,8 +54,8 @@ pub fn leaf_area_products(
         scaled(&layers, 1.0 / (ground * grid.thickness)),
     ));
     let index = scaled(&layers, 1.0 / ground);
-    products.push(profile(&format!("{kind}_index_of_layer"), "1", index.clone()));
-    products.push(profile(&format!("{kind}_index_above"), "1", from_above(&index, names.len())));
+    products.push(profile(&format!("{kind}_index_of_layer"), INDEX, index.clone()));
+    products.push(profile(&format!("{kind}_index_above"), INDEX, from_above(&index, names.len())));
     if with_cells {
         products.push(cells(&format!("{kind}_density_of_cells"), leaf_area, &columns));
     }
@@ -78,16 +80,23 @@ pub fn leaf_area_products(
 pub fn height_products(model: &HeightModel, origin: (f64, f64, f64)) -> Vec<Product> {
     let (x, y, z) = origin;
     let surface: Vec<f64> = model.surface.iter().map(|height| height + z).collect();
-    let maps = [("canopy_height", &model.canopy), ("surface_height", &surface)];
-    let product = |(name, heights): (&str, &Vec<f64>)| {
+    let maps = [
+        ("canopy_height", &model.canopy, Some("no plants".to_owned())),
+        ("surface_height", &surface, None),
+    ];
+    let product = |(name, heights, zero): (&str, &Vec<f64>, Option<String>)| {
         let band = [(0, name.replace('_', " "))];
+        let rendering = Rendering::Map { zero };
         Product {
             unit: "m".to_owned(),
-            ..map_product(name, &model.grid, (x, y), (heights, 1), &band)
+            ..map_product(name, &model.grid, (x, y), (heights, 1), &band, rendering)
         }
     };
     maps.into_iter().map(product).collect()
 }
+
+/// Unit of area of surfaces per area of ground.
+const INDEX: &str = "m2 m-2";
 
 /// Columns of tables: the classes, and their sum if there are several.
 struct Columns {
@@ -181,6 +190,7 @@ fn map_product(
     origin: (f64, f64),
     (values, stride): (&[f64], usize),
     bands: &[(usize, String)],
+    rendering: Rendering,
 ) -> Product {
     let mean = |column: usize| {
         let known = values.iter().skip(column).step_by(stride).filter(|value| !value.is_nan());
@@ -202,7 +212,7 @@ fn map_product(
         pixel_width: grid.size.x / grid.columns as f64,
         pixel_height: grid.size.y / grid.rows as f64,
     };
-    map_of(name, "1", raster, place, means)
+    map_of(name, INDEX, raster, place, (means, rendering))
 }
 
 /// Values of the cells of a map; NaN where there are none.
@@ -220,7 +230,7 @@ fn map_of(
     unit: &str,
     raster: MapRaster,
     place: Georeference,
-    means: Vec<f64>,
+    (means, rendering): (Vec<f64>, Rendering),
 ) -> Product {
     let MapRaster { columns, rows, values, bands } = raster;
     let is_known = |pixel: &[f32]| f32::from(u8::from(pixel.iter().any(|value| !value.is_nan())));
@@ -232,7 +242,8 @@ fn map_of(
         height: rows,
         bands: bands.clone(),
         pixels: pixels.into(),
-        rendering: Rendering::Quicklook,
+        has_errors: false,
+        rendering,
         georeference: Some(place),
     };
     Product { image: Some(image), ..table(name, unit, vec![vec![labels("band", &bands)]], means) }

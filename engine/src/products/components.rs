@@ -39,6 +39,7 @@ pub fn image_components(
         height: sensor.size.y as usize,
         bands: names.iter().map(|&name| name.to_owned()).collect(),
         pixels,
+        has_errors: true,
         rendering,
         georeference: georeference(sensor, stage, context),
     };

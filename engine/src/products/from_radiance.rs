@@ -106,6 +106,7 @@ fn converted(
             height: radiance.height,
             bands: names,
             pixels: shown.into(),
+            has_errors: true,
             rendering: Rendering::Quicklook,
             georeference: radiance.georeference,
         }),

@@ -17,6 +17,8 @@ pub struct Image {
     pub bands: Vec<String>,
     /// Values and standard errors of the bands, and coverage: NaN where nothing was seen, or where there is no error.
     pub pixels: Pixels,
+    /// False if the values are exact: files hold no standard errors then.
+    pub has_errors: bool,
     /// Colours of its picture.
     pub rendering: Rendering,
     /// Position of the pixels on the ground, for nadir images with north up.
@@ -60,9 +62,10 @@ pub(super) fn bytes_of_block(width: u64, bands: u64) -> u64 {
 impl PartialEq for Image {
     /// Compares all pixels; they differ if they cannot be read.
     fn eq(&self, other: &Self) -> bool {
-        let Self { width, height, bands, rendering, georeference, .. } = self;
+        let Self { width, height, bands, has_errors, rendering, georeference, .. } = self;
         let is_alike = (*width, *height) == (other.width, other.height)
             && *bands == other.bands
+            && *has_errors == other.has_errors
             && *rendering == other.rendering
             && *georeference == other.georeference;
         let is_equal = |rows: Range<usize>| {
@@ -78,6 +81,11 @@ impl PartialEq for Image {
 pub enum Rendering {
     /// By wavelength, stretched.
     Quicklook,
+    /// The only band from black to white over the whole range of its values.
+    Map {
+        /// Meaning of a value of 0, if it has a colour of its own; the range begins there then.
+        zero: Option<String>,
+    },
     /// The only band holds numbers of classes, from 1.
     Classes(Vec<Class>),
     /// Bands hold the shares of classes.

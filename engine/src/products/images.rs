@@ -143,6 +143,7 @@ fn brightness_image(
             height: sensor.size.y as usize,
             bands: emitting,
             pixels,
+            has_errors: true,
             rendering: Rendering::Quicklook,
             georeference,
         }),
@@ -176,6 +177,7 @@ fn image(
         height: sensor.size.y as usize,
         bands: context.bands.clone(),
         pixels,
+        has_errors: true,
         rendering,
         georeference,
     };

@@ -188,6 +188,7 @@ pub fn fluxes(spread: &Spread, counter: &FluxCounter, context: &Context) -> Vec<
                     standard_error: per_pixel(&errors),
                     coverage: vec![1.0; pixels],
                 }),
+                has_errors: true,
                 rendering: super::Rendering::Quicklook,
                 georeference: Some(super::Georeference {
                     west: context.origin.0 + plane.corner.x,

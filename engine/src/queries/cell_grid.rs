@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Heights that layers are counted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,75 @@ impl CellCount {
     }
 }
 
+/// Consecutive numbers of columns, rows or layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::queries) struct CellNumbers {
+    pub(in crate::queries) first: i64,
+    pub(in crate::queries) last: i64,
+}
+
+impl CellNumbers {
+    /// Returns whether there is only one.
+    pub(in crate::queries) const fn is_one(self) -> bool {
+        self.first == self.last
+    }
+
+    /// Returns whether a number is one of them.
+    pub(in crate::queries) const fn contains(self, number: i64) -> bool {
+        self.first <= number && number <= self.last
+    }
+
+    /// Number of them.
+    pub(in crate::queries) const fn count(self) -> u64 {
+        self.last.abs_diff(self.first).saturating_add(1)
+    }
+
+    pub(in crate::queries) const fn range(self) -> RangeInclusive<i64> {
+        self.first..=self.last
+    }
+}
+
+/// Numbers of the columns, rows and layers that places lie in.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::queries) struct CellFinder {
+    corner: DVec3,
+    cells_per_m: DVec3,
+    last_layer: i64,
+}
+
+impl CellFinder {
+    /// Number of the column (axis 0) or row (axis 1) of a coordinate, m; those of other tiles go on without end.
+    pub(in crate::queries) fn along(&self, axis: usize, place: f64) -> i64 {
+        floor((place - self.corner[axis]) * self.cells_per_m[axis])
+    }
+
+    /// Numbers of the columns or rows that a range of coordinates touches.
+    pub(in crate::queries) fn touched(&self, axis: usize, low: f64, high: f64) -> CellNumbers {
+        CellNumbers { first: self.along(axis, low), last: self.along(axis, high) }
+    }
+
+    /// Numbers of the layers that a range of heights touches.
+    pub(in crate::queries) fn layers(&self, low: f64, high: f64) -> CellNumbers {
+        CellNumbers { first: self.layer(low), last: self.layer(high) }
+    }
+
+    /// Numbers of all layers, and of what is below the lowest.
+    pub(in crate::queries) const fn all_layers(&self) -> CellNumbers {
+        CellNumbers { first: -1, last: self.last_layer }
+    }
+
+    /// Number of the layer of a height, m; -1 below the lowest. The highest has no top.
+    pub(in crate::queries) fn layer(&self, height: f64) -> i64 {
+        floor((height - self.corner.z) * self.cells_per_m.z).clamp(-1, self.last_layer)
+    }
+}
+
+/// Largest whole number that is not above a value; much faster than `f64::floor`, which is a call without SSE 4.1.
+fn floor(value: f64) -> i64 {
+    let whole = value as i64;
+    whole - i64::from(whole as f64 > value)
+}
+
 /// Place that area is counted at.
 pub(in crate::queries) type Slot = usize;
 
@@ -110,6 +179,16 @@ impl CellGrid {
         if axis == 0 { self.columns } else { self.rows }
     }
 
+    /// Finder of cells by place.
+    pub(in crate::queries) fn finder(&self) -> CellFinder {
+        let counts = DVec2::new(self.columns as f64, self.rows as f64);
+        CellFinder {
+            corner: self.corner.extend(self.bottom),
+            cells_per_m: (counts / self.size).extend(1.0 / self.thickness),
+            last_layer: self.layers as i64 - 1,
+        }
+    }
+
     /// Numbers of the columns or rows that a range of coordinates touches; those of other tiles go on without end.
     pub(in crate::queries) fn touched(
         &self,
@@ -117,23 +196,13 @@ impl CellGrid {
         low: f64,
         high: f64,
     ) -> RangeInclusive<i64> {
-        let scale = self.along(axis) as f64 / self.size[axis];
-        let number = |place: f64| ((place - self.corner[axis]) * scale).floor() as i64;
-        number(low)..=number(high)
+        let finder = self.finder();
+        finder.along(axis, low)..=finder.along(axis, high)
     }
 
     /// Coordinate of the lower side of a column or row, m.
     pub(in crate::queries) fn side(&self, axis: usize, number: i64) -> f64 {
         self.corner[axis] + self.size[axis] * (number as f64 / self.along(axis) as f64)
-    }
-
-    /// Numbers of the layers that a range of heights touches; -1 below the lowest. The highest has no top.
-    pub(in crate::queries) fn layers_touched(&self, low: f64, high: f64) -> RangeInclusive<i64> {
-        let last = self.layers as i64 - 1;
-        let number = |height: f64| {
-            (((height - self.bottom) / self.thickness).floor() as i64).clamp(-1, last)
-        };
-        number(low)..=number(high)
     }
 
     /// Height of the bottom of a layer by its number, m.

@@ -13,11 +13,10 @@ use rayon::prelude::*;
 
 use super::cell_grid::{CellCount, CellGrid, HeightReference};
 use super::surfaces::{
-    FlatPatch, GroundHeights, MaterialTree, PlacedBox, PlacementTransform, SurfaceTree,
-    prototype_trees,
+    FlatPatch, GroundHeights, MaterialTree, PlacedBox, PlacementTransform, PlantedGround,
+    SurfaceTree, prototype_trees,
 };
-use crate::components::{Instance, InstanceCount, Mesh, PartMaterials, SceneId, TerrainPatch};
-use crate::terrain::Ground;
+use crate::components::{Instance, TerrainPatch};
 
 /// Heights of a scene by cell of the ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,8 +56,9 @@ const MOST_COMPARED: i64 = 64;
 /// Distance below known heights, relative to their size, from which a node is left out: rounding must not decide.
 const MARGIN: f64 = 1e-9;
 
-/// Highest surfaces of all plants and of the ground. Reads the components of instances, [`Mesh`], [`PartMaterials`],
-/// [`TerrainPatch`] and [`Ground`].
+/// Highest surfaces of all plants and of the ground. Reads the components of instances,
+/// [`Mesh`](crate::components::Mesh), [`PartMaterials`](crate::components::PartMaterials), [`TerrainPatch`] and
+/// [`Ground`](crate::terrain::Ground).
 ///
 /// The height of a plant above the ground is, for each part of a triangle or disc above a cell, that of its highest
 /// point above the ground below this point.
@@ -79,33 +79,30 @@ pub fn height_model(
     memory: u64,
     progress: &dyn Fn(f64),
 ) -> Result<HeightModel, TooManyCells> {
-    let mut terrains = world.query::<(&TerrainPatch, &Ground)>();
-    let (patch, ground) = terrains.iter().next().expect("a world has a terrain");
-    let grid = CellGrid::of_ground(cells, patch, is_periodic, memory)?;
+    PlantedGround::of_world(world, is_periodic, |planted| {
+        let grid = CellGrid::of_ground(cells, planted.patch, is_periodic, memory)?;
+        Ok(heights(&planted, grid, progress))
+    })
+}
+
+fn heights(planted: &PlantedGround<'_>, grid: CellGrid, progress: &dyn Fn(f64)) -> HeightModel {
+    let PlantedGround { patch, ground, meshes, instances } = planted;
     let heights = Heights::new(&grid);
-    let ground = GroundHeights::new(patch, ground, is_periodic);
     raise_ground(patch, &heights);
-    let mut query = world.query::<(&SceneId, &Mesh, &PartMaterials, &InstanceCount)>();
-    let meshes: Vec<_> = query
-        .iter()
-        .filter(|(.., count)| count.0 > 0)
-        .map(|(id, mesh, materials, _)| (id, mesh, materials))
-        .collect();
-    let trees = prototype_trees(&meshes, |_| Some(0));
-    let instances = Instance::in_order(world);
+    let trees = prototype_trees(meshes, |_| Some(0));
     let mut done = 0;
     for wave in instances.chunks(WAVE) {
         wave.par_iter().for_each(|Instance { placement, .. }| {
             let transform = PlacementTransform::new(placement);
             let trees = trees.get(&placement.prototype.0);
             for MaterialTree { tree, .. } in trees.into_iter().flatten() {
-                raise(tree, &transform, Some(&ground), &heights);
+                raise(tree, &transform, Some(ground), &heights);
             }
         });
         done += wave.len();
         progress(done as f64 / instances.len() as f64);
     }
-    Ok(heights.model())
+    heights.model()
 }
 
 /// Instances after which progress is shown.

@@ -4,6 +4,7 @@ mod cell_grid;
 mod height_model;
 mod leaf_area;
 mod statistics;
+mod stretched_area;
 mod surfaces;
 
 pub use cell_grid::{CellCount, CellGrid, HeightReference};

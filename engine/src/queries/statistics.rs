@@ -1,11 +1,15 @@
 //! Numbers of plants, their sizes and their leaf area, by mesh.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hecs::World;
 
 use super::cell_grid::round_number;
-use crate::components::{Instance, InstanceCount, LeafArea, Mesh, Name, SceneId};
+use super::stretched_area::StretchedArea;
+use crate::components::{
+    Instance, InstanceCount, LeafArea, Mesh, Name, PartMaterials, Placement, SceneId,
+};
+use crate::document::Material;
 
 /// Plants of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +33,7 @@ pub struct MeshStatistics {
     pub discs: u64,
     /// Heights of the instances.
     pub height: HeightSpan,
-    /// One-sided area of surfaces of `Leaf` materials of all instances, m². Where vertical and horizontal scale of an
-    /// instance differ, it holds for leaves of all directions.
+    /// One-sided area of surfaces of `Leaf` materials of all instances, m².
     pub leaf_area: f64,
 }
 
@@ -65,15 +68,35 @@ const CLASSES: f64 = 10.0;
 struct MeshSize {
     statistics: MeshStatistics,
     height: f64,
-    leaf_area: f64,
     heights: f64,
+    leaves: LeafAreas,
 }
 
-/// Statistics of all instances. Reads the components of instances, [`Mesh`], [`LeafArea`] and [`InstanceCount`].
+/// Leaf area of a mesh under the scales of its instances.
+enum LeafAreas {
+    /// Area under equal scales of 1, m², as no instance has others.
+    Uniform(f64),
+    /// Area by the ratio of the vertical scale to the horizontal one.
+    Stretched(StretchedArea),
+}
+
+impl LeafAreas {
+    /// Area of an instance, m².
+    fn of_instance(&self, placement: &Placement) -> f64 {
+        let area = match self {
+            Self::Uniform(area) => *area,
+            Self::Stretched(stretched) => stretched.at(placement.scale.ratio()),
+        };
+        area * f64::from(placement.scale.horizontal).powi(2)
+    }
+}
+
+/// Statistics of all instances. Reads the components of instances, [`Mesh`], [`PartMaterials`], [`LeafArea`],
+/// [`InstanceCount`] and [`Material`].
 #[must_use]
 pub fn plant_statistics(world: &World) -> PlantStatistics {
-    let mut sizes = mesh_sizes(world);
     let instances = Instance::in_order(world);
+    let mut sizes = mesh_sizes(world, &instances);
     let height_of = |size: &MeshSize, instance: &Instance| {
         size.height * f64::from(instance.placement.scale.vertical).abs()
     };
@@ -84,7 +107,7 @@ pub fn plant_statistics(world: &World) -> PlantStatistics {
         let MeshStatistics { instances, height: span, leaf_area, .. } = &mut size.statistics;
         *instances += 1;
         (span.least, span.most) = (span.least.min(height), span.most.max(height));
-        *leaf_area += size.leaf_area * instance.placement.area_factor();
+        *leaf_area += size.leaves.of_instance(&instance.placement);
     }
     let placed = || sizes.values().filter(|size| size.statistics.instances > 0);
     let count = placed().map(|size| size.statistics.instances).sum::<u64>();
@@ -112,10 +135,31 @@ pub fn plant_statistics(world: &World) -> PlantStatistics {
     PlantStatistics { meshes: meshes.collect(), heights }
 }
 
-fn mesh_sizes(world: &World) -> BTreeMap<u32, MeshSize> {
-    let mut query = world.query::<(&SceneId, &Name, &Mesh, &LeafArea, &InstanceCount)>();
-    let placed = query.iter().filter(|(.., count)| count.0 > 0);
-    let size = |(id, name, mesh, leaf_area, _): (&SceneId, &Name, &Mesh, &LeafArea, _)| {
+/// Components of a mesh that statistics need.
+type MeasuredMesh<'a> = (&'a SceneId, &'a Name, &'a Mesh, &'a PartMaterials, &'a LeafArea);
+
+fn mesh_sizes(world: &World, instances: &[Instance]) -> BTreeMap<u32, MeshSize> {
+    let mut ratios: BTreeMap<u32, (f64, f64)> = BTreeMap::new();
+    for Instance { placement, .. } in instances {
+        let (ratio, nothing) = (placement.scale.ratio(), (f64::INFINITY, 0.0));
+        let (low, high) = ratios.entry(placement.prototype.0).or_insert(nothing);
+        (*low, *high) = (low.min(ratio), high.max(ratio));
+    }
+    let mut materials = world.query::<(&SceneId, &Material)>();
+    let leaves: BTreeSet<u32> =
+        materials.iter().filter(|(_, material)| material.is_leaf()).map(|(id, _)| id.0).collect();
+    let mut query = world.query::<(MeasuredMesh<'_>, &InstanceCount)>();
+    let placed = query.iter().filter(|(.., count)| count.0 > 0).map(|(placed, _)| placed);
+    let size = |(id, name, mesh, materials, leaf_area): MeasuredMesh<'_>| {
+        let leaves = match ratios.get(&id.0) {
+            Some(&(low, high)) if low > 0.0 && (low, high) != (1.0, 1.0) => {
+                let parts = mesh.parts.iter().zip(&materials.0);
+                let parts = parts.filter(|(_, material)| leaves.contains(&material.0));
+                let vectors = parts.flat_map(|(part, _)| mesh.area_vectors(part));
+                LeafAreas::Stretched(StretchedArea::new(vectors, (low, high)))
+            }
+            _ => LeafAreas::Uniform(leaf_area.0),
+        };
         let statistics = MeshStatistics {
             name: name.0.clone(),
             instances: 0,
@@ -125,7 +169,7 @@ fn mesh_sizes(world: &World) -> BTreeMap<u32, MeshSize> {
             leaf_area: 0.0,
         };
         let height = mesh.bounds().map_or(0.0, |(low, high)| f64::from(high.z - low.z));
-        (id.0, MeshSize { statistics, height, leaf_area: leaf_area.0, heights: 0.0 })
+        (id.0, MeshSize { statistics, height, heights: 0.0, leaves })
     };
     placed.map(size).collect()
 }

@@ -81,6 +81,16 @@ pub trait Progress: Sync {
     fn stage(&self, name: &str);
     /// A part of a sensor's measurement is done.
     fn sensor(&self, state: &SensorProgress<'_>);
+    /// A fraction of something other than a measurement is done.
+    fn fraction(&self, name: &str, done: f64) {
+        self.sensor(&SensorProgress {
+            name,
+            done,
+            seconds_left: None,
+            rays_per_second: None,
+            relative_error: None,
+        });
+    }
     /// A sensor will run for long.
     fn forecast(&self, name: &str, forecast: &Forecast);
     /// The run goes on in spite of a problem.

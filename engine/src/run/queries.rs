@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::pool::in_pool;
 use super::provenance::{self, FileHashes};
 use super::{
-    Failure, LoadedScene, Options, Progress, SensorProgress, params, projection, scene_source,
+    Failure, LoadedScene, Options, Progress, params, projection, scene_source,
 };
 use crate::document::{Boundary, Sun};
 use crate::products::{
@@ -65,7 +65,7 @@ pub fn leaf_area_file(
         };
         progress.stage("counting leaf area");
         let counted =
-            leaf_area(&loaded.world.world, &request, &|done| show(progress, "lai", done))?;
+            leaf_area(&loaded.world.world, &request, &|done| progress.fraction("lai", done))?;
         let (x, y, _) = loaded.scene().frame.origin_m;
         Ok(Answer {
             name: "lai",
@@ -89,7 +89,7 @@ pub fn height_model_file(
     answered(path, options, progress, |loaded| {
         progress.stage("mapping heights");
         let is_periodic = loaded.scene().boundary == Boundary::Periodic;
-        let done = |done| show(progress, "chm", done);
+        let done = |done| progress.fraction("chm", done);
         let model =
             height_model(&loaded.world.world, cells, is_periodic, options.free_memory(), &done)?;
         Ok(Answer {
@@ -116,17 +116,6 @@ fn height_notes(HeightModel { grid, .. }: &HeightModel) -> Vec<String> {
             .to_owned(),
     );
     notes
-}
-
-/// Shows the fraction of an answer that is done.
-fn show(progress: &dyn Progress, name: &str, done: f64) {
-    progress.sensor(&SensorProgress {
-        name,
-        done,
-        seconds_left: None,
-        rays_per_second: None,
-        relative_error: None,
-    });
 }
 
 /// Loads a scene, asks it, and makes a report of the answer.

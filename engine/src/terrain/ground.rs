@@ -8,22 +8,22 @@ use crate::components::TerrainPatch;
 /// those of one cell.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    corner: DVec2,
-    size: DVec2,
+    pub(super) corner: DVec2,
+    pub(super) size: DVec2,
     /// Corners of triangles, m above `base`, x and y in units of `size`.
-    triangles: Box<[[DVec3; 3]]>,
-    base: f64,
-    cells: UVec2,
+    pub(super) triangles: Box<[[DVec3; 3]]>,
+    pub(super) base: f64,
+    pub(super) cells: UVec2,
     /// First entry of `held` for each cell, and the number of entries at the end.
-    starts: Box<[u32]>,
-    held: Box<[u32]>,
+    pub(super) starts: Box<[u32]>,
+    pub(super) held: Box<[u32]>,
 }
 
 /// Cells that hold a triangle, on average at most: one that lies like those of a raster is in four or so.
 const MOST_HELD: u64 = 32;
 
 /// Tolerance beside the edges of a triangle, in units of the rectangle: the corners are f32.
-const EDGE: f64 = 1e-7;
+pub(super) const EDGE: f64 = 1e-7;
 
 impl Ground {
     /// Creates the ground of a terrain.
@@ -154,7 +154,7 @@ fn height_in(corners: &[DVec3; 3], at: DVec2) -> Option<f64> {
     })
 }
 
-fn cell_of(at: DVec2, cells: UVec2) -> UVec2 {
+pub(super) fn cell_of(at: DVec2, cells: UVec2) -> UVec2 {
     let last = (cells - 1).as_dvec2();
     (at * cells.as_dvec2()).floor().clamp(DVec2::ZERO, last).as_uvec2()
 }

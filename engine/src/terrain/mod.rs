@@ -7,6 +7,7 @@ mod ground;
 mod mesh;
 mod plane;
 mod raster;
+mod relief;
 mod surface;
 mod tin;
 
@@ -15,6 +16,7 @@ pub use ground::Ground;
 pub use mesh::mesh;
 pub use plane::plane;
 pub use raster::raster;
+pub use relief::{GroundPlane, Relief};
 pub use surface::Parts;
 
 #[cfg(test)]

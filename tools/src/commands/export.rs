@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use sunfleck::export::{ExportFormat, ExportSettings, export};
-use sunfleck::run;
-use sunfleck::run::{LoadedScene, Progress as _};
+use sunfleck::run::{self, LoadedScene};
 
 use super::{print, warn};
 use crate::arguments::{Scene, memory};
@@ -98,7 +97,6 @@ pub(super) fn write(arguments: &Export) -> anyhow::Result<()> {
     let bars = Bars::new();
     let loaded = LoadedScene::from_file(&arguments.scene.file, &options, &bars);
     let exported = loaded.map(|loaded| {
-        bars.stage("writing");
         let settings = ExportSettings {
             format,
             disc_sides: arguments.disc_sides,
@@ -107,7 +105,7 @@ pub(super) fn write(arguments: &Export) -> anyhow::Result<()> {
             has_all_surfaces: arguments.all_surfaces,
             limit: arguments.limit,
         };
-        (loaded.warnings(), export(&loaded, &arguments.out, &settings))
+        (loaded.warnings(), export(&loaded, &arguments.out, &settings, &bars))
     });
     bars.clear();
     let (warnings, exported) = exported?;

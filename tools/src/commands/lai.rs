@@ -3,13 +3,11 @@
 use std::num::NonZeroUsize;
 
 use clap::{Args, ValueEnum};
-use sunfleck::output::Results;
 use sunfleck::queries::{CellCount, CountedSurfaces, HeightReference, LayerCount};
 use sunfleck::run::{self, LeafAreaSettings};
 
-use super::answer::write_answer;
-use crate::arguments::{Formats, Out, Scene, length};
-use crate::progress::Bars;
+use super::answer::Question;
+use crate::arguments::{Scene, length};
 
 #[derive(Args, Debug)]
 pub(crate) struct Lai {
@@ -52,15 +50,8 @@ pub(crate) struct Lai {
     #[arg(long)]
     volume: bool,
 
-    /// Number of threads [default: all]; results do not depend on it
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
-
     #[command(flatten)]
-    formats: Formats,
-
-    #[command(flatten)]
-    out: Out,
+    question: Question,
 }
 
 /// Heights that layers are counted by.
@@ -112,16 +103,7 @@ impl Lai {
 }
 
 pub(super) fn lai(arguments: &Lai) -> anyhow::Result<()> {
-    let file = &arguments.scene.file;
-    let folder = arguments.out.folder(&arguments.scene, "_lai");
-    let results = Results::open(&folder, "lai", file, arguments.out.force)?;
-    let options = run::Options {
-        document: arguments.formats.options(&arguments.scene),
-        threads: arguments.threads.map(Into::into),
-        ..run::Options::default()
-    };
-    let bars = Bars::new();
-    let report = run::leaf_area_file(file, &options, &arguments.settings(), &bars);
-    bars.clear();
-    write_answer(&results, &report?)
+    arguments.question.answer(&arguments.scene, "lai", |options, bars| {
+        run::leaf_area_file(&arguments.scene.file, options, &arguments.settings(), bars)
+    })
 }

@@ -130,7 +130,7 @@ impl<'a: 'v, 'v> ProductVariables<'a, 'v, '_, '_> {
             .map(|values| Values::Doubles(values.as_slice().into()));
         let name = in_words(&self.keys.values);
         let (one, other) = (self.keys.values.clone(), self.keys.errors.clone());
-        self.add_pair([one, other], &name, &along, [values, errors], "");
+        self.add_pair([one, other], &name, &along, (values, Some(errors)), "");
     }
 
     /// Adds the pixels of an image, their errors and coverage, and the mean over the image.
@@ -146,7 +146,8 @@ impl<'a: 'v, 'v> ProductVariables<'a, 'v, '_, '_> {
         let first = self.variables.len();
         let name = in_words(&self.keys.values);
         let names = [self.keys.values.clone(), self.keys.errors.clone()];
-        let values = [rasters.values(image)?, rasters.errors()?];
+        let errors = image.has_errors.then(|| rasters.errors()).transpose()?;
+        let values = (rasters.values(image)?, errors);
         self.add_pair(names, &name, &along, values, &self.keys.coverage.clone());
         let mut attributes = Attributes::default();
         attributes.text("long_name", "fraction of the pixel that shows the scene");
@@ -174,7 +175,7 @@ impl<'a: 'v, 'v> ProductVariables<'a, 'v, '_, '_> {
             names,
             &format!("mean of {name} over the image"),
             &of_mean,
-            [values, errors],
+            (values, image.has_errors.then_some(errors)),
             "",
         );
         Ok(())
@@ -182,7 +183,7 @@ impl<'a: 'v, 'v> ProductVariables<'a, 'v, '_, '_> {
 }
 
 impl<'v> ProductVariables<'_, 'v, '_, '_> {
-    /// Adds values and their standard errors.
+    /// Adds values and their standard errors, if they have some.
     ///
     /// - `more`: name of a further ancillary variable, or none
     pub(super) fn add_pair(
@@ -190,15 +191,17 @@ impl<'v> ProductVariables<'_, 'v, '_, '_> {
         [name, error]: [String; 2],
         long_name: &str,
         along: &[AlongDimension],
-        [values, errors]: [Values<'v>; 2],
+        (values, errors): (Values<'v>, Option<Values<'v>>),
         more: &str,
     ) {
         let Product { name: quantity, unit, .. } = self.product;
         let unit = if unit.is_empty() { "1" } else { unit };
         let mut attributes = Attributes::default();
         describe(&mut attributes, quantity, long_name, unit);
-        attributes.text("ancillary_variables", format!("{error} {more}").trim_end());
+        let ancillary = if errors.is_some() { format!("{error} {more}") } else { more.to_owned() };
+        attributes.text("ancillary_variables", ancillary.trim_end());
         self.add(name, along, attributes, values);
+        let Some(errors) = errors else { return };
         let mut attributes = Attributes::default();
         let standard = standard_name(quantity);
         if !standard.is_empty() {

@@ -52,7 +52,7 @@ pub(in crate::output) fn of_sweep(
             let form = StoredForm::Doubles;
             Ok(Values::Stored(StoredValues { file: file.try_clone()?, start, form }))
         };
-        let values = [stored(starts[0])?, stored(starts[1])?];
+        let values = (stored(starts[0])?, Some(stored(starts[1])?));
         let mut of_product =
             ProductVariables { product, keys, axes: &mut axes, variables: &mut variables };
         let along: Vec<_> = swept.iter().cloned().chain(of_product.along()).collect();

@@ -57,6 +57,7 @@ pub(in crate::output) fn image() -> Product {
             height: 2,
             bands: vec!["red".to_owned(), "nir, wide".to_owned()],
             pixels: pixels.into(),
+            has_errors: true,
             rendering: Rendering::Quicklook,
             georeference: Some(Georeference {
                 west: 679_000.5,

@@ -17,6 +17,7 @@ fn product(width: usize, height: usize, pixels: PixelRows) -> Product {
             height,
             bands: (0..bands).map(|band| format!("b{band}")).collect(),
             pixels: pixels.into(),
+            has_errors: true,
             rendering: Rendering::Quicklook,
             georeference: None,
         }),

@@ -1,20 +1,27 @@
 //! Areas of placed meshes, added up in the cells that they lie in.
 
-use std::ops::RangeInclusive;
+use std::ops::Range;
 
-use super::height_table::HeightTable;
-use super::shape::ScaledAreas;
+use super::areas::ScaledAreas;
+use super::layer_profiles::{LayerProfiles, UprightLayers};
+use super::window::{CellExtent, CellPlace, CellWindow};
 use crate::components::{Lean, Placement};
-use crate::queries::cell_grid::{CellGrid, Elsewhere};
+use crate::queries::cell_grid::{CellFinder, CellGrid};
 use crate::queries::surfaces::{
-    FlatPatch, GroundHeights, MaterialTree, PatchPiece, PlacedBox, PlacementTransform,
+    CoordinateSpan, FlatPatch, GroundHeights, PatchPiece, PlacedBox, PlacementTransform,
+    SurfaceTree,
 };
 use crate::statistics::Sums;
+use crate::terrain::{GroundPlane, Relief};
+
+/// Surfaces of a node from which the ground below it is looked up; smaller ones have that of their parent.
+const SMALL: usize = 8;
 
 /// Grid and ground that areas are counted by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CountingSpace<'a> {
     pub(super) grid: &'a CellGrid,
+    pub(super) finder: CellFinder,
     /// Ground that heights are counted from; `None` if they are absolute.
     pub(super) ground: Option<&'a GroundHeights<'a>>,
 }
@@ -22,32 +29,40 @@ pub(super) struct CountingSpace<'a> {
 /// Surfaces of one class of a mesh with their areas under a scale.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScaledTree<'a> {
-    pub(super) surfaces: &'a MaterialTree<'a>,
+    pub(super) tree: &'a SurfaceTree<'a>,
+    pub(super) class: usize,
     pub(super) areas: &'a ScaledAreas,
-    /// Table of areas by height, for upright instances.
-    pub(super) table: Option<&'a HeightTable>,
+    /// Areas by height, if the tree is one of columns for upright instances.
+    pub(super) profiles: Option<&'a LayerProfiles>,
+}
+
+/// Sums that areas are added to.
+#[derive(Debug)]
+pub(super) struct AreaSums {
+    pub(super) sums: Sums,
+    window: CellWindow,
 }
 
 /// Adds the areas of an instance to sums.
 pub(super) struct Collector<'a, 'b> {
     space: CountingSpace<'a>,
     scaled: ScaledTree<'a>,
-    placement: Placement,
     transform: PlacementTransform,
+    /// Tables by height with the layers around an upright instance.
+    profiles: Option<(&'a LayerProfiles, UprightLayers<'a>)>,
     /// Factor of the areas.
     factor: f64,
-    sums: &'b mut Sums,
+    to: &'b mut AreaSums,
 }
 
-/// Columns, rows and layers that a box touches; the layers are unknown over uneven ground and holes.
-struct TouchedCells {
-    columns: RangeInclusive<i64>,
-    rows: RangeInclusive<i64>,
-    layers: Option<RangeInclusive<i64>>,
-}
-
-fn single(range: &RangeInclusive<i64>) -> Option<i64> {
-    (range.start() == range.end()).then_some(*range.start())
+/// A surface that is added.
+struct AddedSurface {
+    patch: FlatPatch,
+    /// Area before the factor of the instance, m².
+    area: f64,
+    /// Height of the ground below its middle, m; `None` over a hole.
+    ground: Option<f64>,
+    extent: CellExtent,
 }
 
 impl CountingSpace<'_> {
@@ -55,166 +70,229 @@ impl CountingSpace<'_> {
     pub(super) fn level(&self) -> Option<f64> {
         self.ground.map_or(Some(0.0), GroundHeights::level)
     }
+}
 
-    fn touched(&self, PlacedBox { low, high }: &PlacedBox) -> TouchedCells {
-        let ground = match self.ground {
-            None => Some((0.0, 0.0)),
-            Some(ground) => ground.range(low.truncate(), high.truncate()),
-        };
-        TouchedCells {
-            columns: self.grid.touched(0, low.x, high.x),
-            rows: self.grid.touched(1, low.y, high.y),
-            layers: ground.map(|(lowest, highest)| {
-                self.grid.layers_touched(low.z - highest, high.z - lowest)
-            }),
-        }
+impl AreaSums {
+    pub(super) fn new(sums: Sums) -> Self {
+        Self { sums, window: CellWindow::new() }
     }
+}
+
+/// Returns whether heights of the object are heights of the world but for scale and offset.
+pub(super) fn is_upright(placement: &Placement) -> bool {
+    placement.lean.tilt == Lean::UPRIGHT.tilt && placement.scale.vertical > 0.0
 }
 
 impl<'a, 'b> Collector<'a, 'b> {
     pub(super) fn new(
         space: CountingSpace<'a>,
         scaled: ScaledTree<'a>,
-        placement: Placement,
-        sums: &'b mut Sums,
+        placement: &Placement,
+        to: &'b mut AreaSums,
     ) -> Self {
-        let transform = PlacementTransform::new(&placement);
+        let transform = PlacementTransform::new(placement);
         let factor = f64::from(placement.scale.horizontal).powi(2);
-        Self { space, scaled, placement, transform, factor, sums }
+        let level = space.level().filter(|_| is_upright(placement));
+        let CountingSpace { grid, finder, .. } = space;
+        let layers = level.map(|level| UprightLayers::new(grid, finder, placement, level));
+        let profiles = scaled.profiles.zip(layers);
+        Self { space, scaled, transform, profiles, factor, to }
     }
 
     /// Adds all surfaces of the tree.
     pub(super) fn collect(&mut self) {
-        let ScaledTree { surfaces, areas, .. } = self.scaled;
+        let ScaledTree { tree, areas, class, .. } = self.scaled;
         let grid = self.space.grid;
+        let ground = self.space.level().map(|level| Relief::Plane(GroundPlane::level(level)));
+        let all = self.bounds(0);
+        let all = CellExtent::below(&self.space.finder, &all);
+        self.to.window.open(all, grid, tree.len());
         // Depth of the tree: it is halved until few surfaces are left.
         let mut stack = Vec::with_capacity(64);
-        stack.push(0_u32);
-        while let Some(index) = stack.pop() {
-            let node = surfaces.tree.nodes()[index as usize];
-            let bounds = self.transform.bounds(node.middle_and_half());
-            let touched = self.space.touched(&bounds);
+        stack.push((0_u32, ground));
+        while let Some((index, mut ground)) = stack.pop() {
+            let node = &tree.nodes()[index as usize];
+            let extent = self.extent(index, &mut ground);
             let area = areas.nodes[index as usize];
-            if grid.is_outside([&touched.columns, &touched.rows]) {
-                self.add(grid.elsewhere(Elsewhere::Outside), area);
+            if extent.is_outside(grid) {
+                self.to.window.add_outside(area);
                 continue;
             }
-            let ground_cell = single(&touched.columns).zip(single(&touched.rows));
-            if let Some((column, row)) = ground_cell {
-                let cell = grid.ground_cell(column, row);
-                // A single column that is not inside is outside, which was looked at.
-                let Some(cell) = cell else { continue };
-                match &touched.layers {
-                    Some(layers) if let Some(layer) = single(layers) => {
-                        self.add(grid.slot(cell, layer), area);
-                        continue;
-                    }
-                    Some(layers)
-                        if index == 0 && self.scaled.table.is_some() && self.is_upright() =>
-                    {
-                        self.add_layers(cell, layers.clone());
-                        continue;
-                    }
-                    _ => {}
+            if extent.is_one_column() {
+                if extent.layers.is_one() {
+                    self.add(extent.first(), area);
+                    continue;
+                }
+                if let Some((profiles, layers)) = self.profiles
+                    && profiles.has_node(node, index)
+                {
+                    let first = extent.first();
+                    profiles.add_node(node, index, &layers, |layer, area| {
+                        self.add(CellPlace { layer, ..first }, area);
+                    });
+                    continue;
                 }
             }
             match node.children(index) {
-                Some(children) => stack.extend(children),
-                None => node.places().for_each(|place| self.add_surface(place)),
+                Some([left, right]) => stack.extend([(left, ground), (right, ground)]),
+                None => self.add_surfaces(node.places(), ground),
+            }
+        }
+        self.to.window.close(grid, class, self.factor, &mut self.to.sums);
+    }
+
+    /// Box around a node in the world.
+    fn bounds(&self, index: u32) -> PlacedBox {
+        self.transform.bounds(self.scaled.tree.nodes()[index as usize].middle_and_half())
+    }
+
+    /// Cells that a node touches; all layers if its height above the ground is unknown.
+    ///
+    /// - `ground`: ground below the node's parent; becomes that below the node
+    fn extent(&self, index: u32, ground: &mut Option<Relief>) -> CellExtent {
+        let bounds = self.bounds(index);
+        let finder = &self.space.finder;
+        let mut extent = CellExtent::below(finder, &bounds);
+        let (low, high) = (bounds.low.truncate(), bounds.high.truncate());
+        // Ranges of small nodes are hardly wider than those of their parts.
+        let is_small = || self.scaled.tree.nodes()[index as usize].places().len() <= SMALL;
+        let is_known = match ground {
+            Some(Relief::Plane(_)) => true,
+            Some(Relief::Range { .. }) => is_small(),
+            None => false,
+        };
+        if !is_known {
+            *ground = self.space.ground.and_then(|ground| ground.relief(low, high));
+        }
+        let (lowest, highest) = match ground {
+            None => return extent,
+            Some(Relief::Range { lowest, highest }) => (*lowest, *highest),
+            Some(Relief::Plane(plane)) => plane.range(low, high),
+        };
+        extent.layers = finder.layers(bounds.low.z - highest, bounds.high.z - lowest);
+        extent
+    }
+
+    /// Adds area to a cell.
+    fn add(&mut self, place: CellPlace, area: f64) {
+        if self.to.window.has_cells() {
+            self.to.window.add(place, area);
+            return;
+        }
+        let grid = self.space.grid;
+        match grid.ground_cell(place.column, place.row) {
+            None => self.to.window.add_outside(area),
+            Some(cell) => {
+                let slot = grid.slot(cell, place.layer);
+                self.to.sums.add_at(slot, self.scaled.class, area * self.factor);
             }
         }
     }
 
-    /// Returns whether heights of the object are heights of the world but for scale and offset.
-    fn is_upright(&self) -> bool {
-        self.placement.lean.tilt == Lean::UPRIGHT.tilt
-            && self.placement.scale.vertical > 0.0
-            && self.space.level().is_some()
-    }
-
-    fn add(&mut self, slot: usize, area: f64) {
-        self.sums.add_at(slot, self.scaled.surfaces.class, area * self.factor);
-    }
-
-    /// Adds the whole tree, which stands upright above one cell of the ground, layer by layer.
-    fn add_layers(&mut self, cell: usize, layers: RangeInclusive<i64>) {
-        let (Some(table), Some(level)) = (self.scaled.table, self.space.level()) else { return };
-        let ScaledAreas { surfaces, below, nodes } = self.scaled.areas;
-        let grid = self.space.grid;
-        let base = level - self.placement.position.z;
-        let mut counted = 0.0;
-        for layer in layers.clone() {
-            let up_to = if layer == *layers.end() {
-                nodes[0]
-            } else {
-                let top = grid.layer_side(layer + 1) + base;
-                let height = top / f64::from(self.placement.scale.vertical);
-                table.area_below(height, surfaces, below)
-            };
-            self.add(grid.slot(cell, layer), up_to - counted);
-            counted = up_to;
+    /// Adds surfaces of a node that has no children.
+    fn add_surfaces(&mut self, places: Range<usize>, ground: Option<Relief>) {
+        let plane = match ground {
+            Some(Relief::Plane(plane)) => Some(plane),
+            _ => None,
+        };
+        for place in places {
+            if let Some((profiles, layers)) = self.profiles {
+                let finder = &self.space.finder;
+                let footprint = self.transform.footprint(profiles.footprint(place));
+                let first = CellExtent::below(finder, &footprint);
+                if first.is_one_column() {
+                    let first = first.first();
+                    profiles.add_surface(place, &layers, |layer, area| {
+                        self.add(CellPlace { layer, ..first }, area);
+                    });
+                    continue;
+                }
+            }
+            self.add_surface(place, plane);
         }
     }
 
     /// Adds one surface, cut into cells.
-    fn add_surface(&mut self, place: usize) {
-        let patch = self.transform.patch(&self.scaled.surfaces.tree.patch(place));
+    fn add_surface(&mut self, place: usize, plane: Option<GroundPlane>) {
+        let patch = self.transform.patch(&self.scaled.tree.patch(place));
         let area = self.scaled.areas.surfaces[place];
         let (low, high) = patch.bounds();
-        let grid = self.space.grid;
-        let ground = self.space.ground.map_or(Some(0.0), |ground| {
-            ground.level().or_else(|| ground.below(patch.middle().truncate()))
-        });
-        let layers = ground.map(|ground| grid.layers_touched(low.z - ground, high.z - ground));
-        let columns = grid.touched(0, low.x, high.x);
-        let rows = grid.touched(1, low.y, high.y);
-        let cut = CutSurface { patch, area, ground: ground.unwrap_or(0.0), layers };
-        let is_one = single(&columns).and(single(&rows)).is_some()
-            && cut.layers.as_ref().is_none_or(|layers| single(layers).is_some());
-        if is_one {
-            self.add_piece(&cut, None, *columns.start(), *rows.start());
-            return;
+        let middle = patch.middle().truncate();
+        let ground = match (plane, self.space.ground) {
+            (Some(plane), _) => Some(plane.at(middle)),
+            (None, Some(ground)) => ground.below(middle),
+            (None, None) => Some(0.0),
+        };
+        let finder = &self.space.finder;
+        let layers = |ground: f64| finder.layers(low.z - ground, high.z - ground);
+        let extent = CellExtent {
+            columns: finder.touched(0, low.x, high.x),
+            rows: finder.touched(1, low.y, high.y),
+            // Over a hole there are no layers.
+            layers: ground.map_or_else(|| finder.layers(0.0, 0.0), layers),
+        };
+        let surface = AddedSurface { patch, area, ground, extent };
+        let CellExtent { columns, rows, layers } = extent;
+        match (columns.is_one(), rows.is_one(), layers.is_one()) {
+            (true, true, true) => self.add_part(&surface, extent.first(), area),
+            (false, true, true) => self.add_slices(&surface, 0),
+            (true, false, true) => self.add_slices(&surface, 1),
+            (true, true, false) => self.add_slices(&surface, 2),
+            _ => self.add_pieces(&surface),
         }
-        let by_column = patch.slices(patch.whole(), 0, columns, |column| grid.side(0, column));
+    }
+
+    /// Adds a surface that lies in several cells along one axis.
+    fn add_slices(&mut self, surface: &AddedSurface, axis: usize) {
+        let AddedSurface { patch, area, ground, extent } = surface;
+        let grid = self.space.grid;
+        let span = CoordinateSpan::new(patch, axis);
+        let numbers = [extent.columns, extent.rows, extent.layers][axis];
+        let mut below = 0.0;
+        for number in numbers.range() {
+            let up_to = match axis {
+                _ if number == numbers.last => 1.0,
+                2 => span.fraction_below(grid.layer_side(number + 1) + ground.unwrap_or(0.0)),
+                _ => span.fraction_below(grid.side(axis, number + 1)),
+            };
+            let mut place = extent.first();
+            match axis {
+                0 => place.column = number,
+                1 => place.row = number,
+                _ => place.layer = number,
+            }
+            self.add_part(surface, place, area * (up_to - below));
+            below = up_to;
+        }
+    }
+
+    /// Adds a surface that lies in several cells along more than one axis.
+    fn add_pieces(&mut self, surface: &AddedSurface) {
+        let AddedSurface { patch, area, ground, extent } = surface;
+        let grid = self.space.grid;
+        let CellExtent { columns, rows, layers } = extent;
+        let by_column =
+            patch.slices(patch.whole(), 0, columns.range(), |column| grid.side(0, column));
         for (column, piece) in by_column {
-            let by_row = patch.slices(piece, 1, rows.clone(), |row| grid.side(1, row));
+            let by_row = patch.slices(piece, 1, rows.range(), |row| grid.side(1, row));
             for (row, piece) in by_row {
-                self.add_piece(&cut, Some(piece), column, row);
+                let side = |layer| grid.layer_side(layer) + ground.unwrap_or(0.0);
+                let by_layer = patch.slices(piece, 2, layers.range(), side);
+                for (layer, piece) in by_layer {
+                    let area = area * PatchPiece::fraction(&piece);
+                    self.add_part(surface, CellPlace { column, row, layer }, area);
+                }
             }
         }
     }
 
-    /// Adds the part of a surface above a cell of the ground; the whole surface if there is no piece.
-    fn add_piece(&mut self, cut: &CutSurface, piece: Option<PatchPiece>, column: i64, row: i64) {
-        let grid = self.space.grid;
-        let area =
-            |piece: Option<PatchPiece>| cut.area * piece.map_or(1.0, |piece| piece.fraction());
-        let Some(cell) = grid.ground_cell(column, row) else {
-            self.add(grid.elsewhere(Elsewhere::Outside), area(piece));
-            return;
-        };
-        let Some(layers) = cut.layers.clone() else {
-            self.add(grid.elsewhere(Elsewhere::OverHole), area(piece));
-            return;
-        };
-        let Some(piece) = piece else {
-            self.add(grid.slot(cell, *layers.start()), area(None));
-            return;
-        };
-        let side = |layer| grid.layer_side(layer) + cut.ground;
-        for (layer, piece) in cut.patch.slices(piece, 2, layers, side) {
-            self.add(grid.slot(cell, layer), area(Some(piece)));
+    /// Adds a part of a surface to a cell, or to what lies over holes.
+    fn add_part(&mut self, surface: &AddedSurface, place: CellPlace, area: f64) {
+        let is_inside = || self.space.grid.ground_cell(place.column, place.row).is_some();
+        if surface.ground.is_none() && is_inside() {
+            self.to.window.add_over_hole(area);
+        } else {
+            self.add(place, area);
         }
     }
-}
-
-/// A surface that is being cut into cells.
-struct CutSurface {
-    patch: FlatPatch,
-    /// Area before the factor of the instance, m².
-    area: f64,
-    /// Height of the ground below its middle, m.
-    ground: f64,
-    /// Layers that it touches; `None` over a hole.
-    layers: Option<RangeInclusive<i64>>,
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, UVec2, Vec3};
 
 use crate::components::TerrainPatch;
-use crate::terrain::Ground;
+use crate::terrain::{Ground, GroundPlane, Relief};
 
 /// Height of the ground below any place of a scene, also beside the terrain's rectangle.
 #[derive(Debug)]
@@ -12,6 +12,7 @@ pub(in crate::queries) struct GroundHeights<'a> {
     is_periodic: bool,
     /// Height, m, if it is the same everywhere.
     level: Option<f64>,
+    has_holes: bool,
     cells: UVec2,
     /// Lowest and highest ground of each cell, m.
     ranges: Vec<(f64, f64)>,
@@ -52,7 +53,7 @@ impl<'a> GroundHeights<'a> {
                 }
             }
         }
-        Self { ground, is_periodic, level, cells, ranges }
+        Self { ground, is_periodic, level, has_holes, cells, ranges }
     }
 
     /// Height of the ground, m, if it is the same everywhere.
@@ -72,21 +73,43 @@ impl<'a> GroundHeights<'a> {
         self.level.or_else(|| self.ground.height(place.clamp(corner, corner + size)))
     }
 
-    /// Lowest and highest ground below a rectangle, m, or wider bounds; `None` if it is too wide to tell, or there are
-    /// holes.
-    pub(in crate::queries) fn range(&self, low: DVec2, high: DVec2) -> Option<(f64, f64)> {
+    /// Heights of the ground below a rectangle, m; `None` if it is too wide to tell, or there may be a hole.
+    pub(in crate::queries) fn relief(&self, low: DVec2, high: DVec2) -> Option<Relief> {
         if let Some(level) = self.level {
-            return Some((level, level));
+            return Some(Relief::Plane(GroundPlane::level(level)));
         }
         let (corner, size) = (self.ground.corner(), self.ground.size());
-        let (mut low, mut high) = ((low - corner) / size, (high - corner) / size);
-        if self.is_periodic {
-            let tile = low.floor();
-            (low, high) = (low - tile, high - tile);
-            if high.max_element() > 1.0 {
-                return None;
-            }
+        let tile = if self.is_periodic { ((low - corner) / size).floor() } else { DVec2::ZERO };
+        let offset = tile * size;
+        let (inner_low, inner_high) = (low - offset, high - offset);
+        let is_inside = inner_low.cmpge(corner).all() && inner_high.cmple(corner + size).all();
+        if is_inside
+            && let Some(relief) = self.ground.relief(inner_low, inner_high, self.has_holes)
+        {
+            return Some(match relief {
+                Relief::Plane(GroundPlane { height, anchor, slope }) => {
+                    Relief::Plane(GroundPlane { height, anchor: anchor + offset, slope })
+                }
+                range @ Relief::Range { .. } => range,
+            });
         }
+        if self.is_periodic && !is_inside {
+            return None;
+        }
+        self.wide_range((low - corner - offset) / size, (high - corner - offset) / size)
+    }
+
+    /// Lowest and highest ground below a rectangle, m, or wider bounds; `None` if it is too wide to tell, or there may
+    /// be a hole.
+    pub(in crate::queries) fn range(&self, low: DVec2, high: DVec2) -> Option<(f64, f64)> {
+        Some(match self.relief(low, high)? {
+            Relief::Range { lowest, highest } => (lowest, highest),
+            Relief::Plane(plane) => plane.range(low, high),
+        })
+    }
+
+    /// Bounds of the heights below a rectangle, in units of that of the ground, from the grid of ranges.
+    fn wide_range(&self, low: DVec2, high: DVec2) -> Option<Relief> {
         // Rounding of a place must not lead out of its cell.
         let (first, last) = (cell(low - 1e-9, self.cells), cell(high + 1e-9, self.cells));
         if self.ranges.is_empty() || (last - first + 1).element_product() > MOST_LOOKED_AT {
@@ -94,7 +117,8 @@ impl<'a> GroundHeights<'a> {
         }
         let ranges = places(first, last)
             .map(|place| self.ranges[(place.y * self.cells.x + place.x) as usize]);
-        ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).filter(|range| range.0 <= range.1)
+        let (lowest, highest) = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        (lowest <= highest).then_some(Relief::Range { lowest, highest })
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::planted::Prototype;
 use super::{FlatPatch, SurfaceTree};
-use crate::components::{MaterialId, Mesh, PartMaterials, Placement, SceneId};
+use crate::components::{MaterialId, Placement};
 
 /// Surfaces of a mesh that belong to one class.
 #[derive(Debug)]
@@ -18,10 +19,10 @@ pub(in crate::queries) struct MaterialTree<'a> {
 
 /// Trees of each mesh prototype, by its id, over the surfaces that have a class.
 pub(in crate::queries) fn prototype_trees<'a>(
-    meshes: &[(&SceneId, &'a Mesh, &'a PartMaterials)],
+    meshes: &[Prototype<'a>],
     class_of: impl Fn(MaterialId) -> Option<usize> + Sync,
 ) -> BTreeMap<u32, Vec<MaterialTree<'a>>> {
-    let trees = |&(id, mesh, materials): &(&SceneId, &'a Mesh, &'a PartMaterials)| {
+    let trees = |&(id, mesh, materials): &Prototype<'a>| {
         let parts = || mesh.parts.iter().zip(&materials.0);
         let mut classes: Vec<usize> = parts().filter_map(|part| class_of(*part.1)).collect();
         classes.sort_unstable();
@@ -65,6 +66,12 @@ impl PlacementTransform {
     pub(in crate::queries) fn bounds(&self, (middle, half): (DVec3, DVec3)) -> PlacedBox {
         let (middle, half) = (self.linear * middle + self.position, self.absolute * half);
         PlacedBox { low: middle - half, high: middle + half }
+    }
+
+    /// Box around what an upright instance has above a rectangle in object space, given by its middle and half its
+    /// extent; its heights are left out.
+    pub(in crate::queries) fn footprint(&self, (middle, half): (DVec2, DVec2)) -> PlacedBox {
+        self.bounds((middle.extend(0.0), half.extend(0.0)))
     }
 
     /// A surface at its place.

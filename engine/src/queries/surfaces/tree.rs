@@ -8,10 +8,20 @@ use super::FlatPatch;
 use crate::components::{Disc, Mesh, MeshPart};
 use crate::geometry::{basis, round_down, round_up};
 
+/// Axes that surfaces are divided along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TreeAxes {
+    /// All three: nodes are compact.
+    All,
+    /// Those of the ground: nodes are columns, as high as the mesh.
+    Horizontal,
+}
+
 /// Surfaces of a mesh that share a material, in an order in which each node of a binary tree holds a range.
 #[derive(Debug)]
 pub(in crate::queries) struct SurfaceTree<'a> {
     mesh: &'a Mesh,
+    axes: TreeAxes,
     /// Numbers of triangles, and behind them those of discs.
     order: Vec<u32>,
     /// Nodes in depth-first order; the left child of a node follows it.
@@ -47,15 +57,27 @@ impl<'a> SurfaceTree<'a> {
         let numbers = parts.flat_map(|part| {
             part.triangles.clone().chain(part.discs.start + triangles..part.discs.end + triangles)
         });
-        let mut tree = Self { mesh, order: Vec::new(), nodes: Vec::new() };
+        let mut tree = Self { mesh, axes: TreeAxes::All, order: Vec::new(), nodes: Vec::new() };
+        tree.divide(numbers.collect());
+        (!tree.order.is_empty()).then_some(tree)
+    }
+
+    /// Tree over the same surfaces whose nodes are columns.
+    pub(in crate::queries) fn in_columns(&self) -> Self {
+        let axes = TreeAxes::Horizontal;
+        let mut tree = Self { mesh: self.mesh, axes, order: Vec::new(), nodes: Vec::new() };
+        tree.divide(self.order.clone());
+        tree
+    }
+
+    /// Makes the nodes over surfaces.
+    fn divide(&mut self, numbers: Vec<u32>) {
         let mut middles: Vec<Middle> =
-            numbers.map(|number| (tree.middle(number), number)).collect();
-        if middles.is_empty() {
-            return None;
+            numbers.into_iter().map(|number| (self.middle(number), number)).collect();
+        if !middles.is_empty() {
+            self.add_node(&mut middles, 0);
         }
-        tree.add_node(&mut middles, 0);
-        tree.order = middles.into_iter().map(|(_, number)| number).collect();
-        Some(tree)
+        self.order = middles.into_iter().map(|(_, number)| number).collect();
     }
 
     fn middle(&self, number: u32) -> Vec3 {
@@ -86,7 +108,10 @@ impl<'a> SurfaceTree<'a> {
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), (middle, _)| {
                 (low.min(*middle), high.max(*middle))
             });
-        let axis = (most - least).max_position();
+        let axis = match self.axes {
+            TreeAxes::All => (most - least).max_position(),
+            TreeAxes::Horizontal => (most - least).truncate().max_position(),
+        };
         let half = middles.len() / 2;
         middles.select_nth_unstable_by(half, |a, b| {
             a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1))

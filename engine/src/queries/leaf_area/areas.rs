@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::height_table::HeightTable;
 use crate::queries::surfaces::SurfaceTree;
 
 /// Areas of the surfaces of a tree whose heights are scaled by a ratio, and whose widths are not; m².
@@ -12,15 +11,13 @@ pub(super) struct ScaledAreas {
     pub(super) surfaces: Vec<f64>,
     /// Area of all surfaces of each node.
     pub(super) nodes: Vec<f64>,
-    /// Area below each slice of the table; empty without one.
-    pub(super) below: Vec<f64>,
 }
 
 impl ScaledAreas {
     /// Areas under a ratio of the vertical scale to the horizontal one.
     ///
     /// A scale `diag(1, 1, r)` turns the vector `a` of an area into `(r a_x, r a_y, a_z)`.
-    pub(super) fn new(tree: &SurfaceTree<'_>, ratio: f64, table: Option<&HeightTable>) -> Self {
+    pub(super) fn new(tree: &SurfaceTree<'_>, ratio: f64) -> Self {
         let scale = DVec3::new(ratio, ratio, 1.0);
         let area = |place: usize| (tree.area_vector(place) * scale).length();
         let surfaces: Vec<f64> = (0..tree.len()).map(area).collect();
@@ -32,7 +29,6 @@ impl ScaledAreas {
                 None => surfaces[node.places()].iter().sum(),
             };
         }
-        let below = table.map(|table| table.areas_below(&surfaces)).unwrap_or_default();
-        Self { surfaces, nodes, below }
+        Self { surfaces, nodes }
     }
 }
