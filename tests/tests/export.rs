@@ -201,7 +201,8 @@ fn compare(found: &Value, known: &Sums, place: DVec3, what: &str) {
 }
 
 fn written(loaded: &LoadedScene, file: &Path, settings: ExportSettings) -> PathBuf {
-    let exported = export(loaded, file, &settings, &Unwatched).unwrap_or_else(|error| panic!("{error}"));
+    let exported =
+        export(loaded, file, &settings, &Unwatched).unwrap_or_else(|error| panic!("{error}"));
     exported.files[0].clone()
 }
 
@@ -328,7 +329,8 @@ fn files_that_are_too_large_are_refused() {
     ] {
         let file = folder.path().join("out").with_extension(ending);
         let settings = ExportSettings { format, limit: 1000, ..ExportSettings::default() };
-        let error = export(&loaded, &file, &settings, &Unwatched).expect_err("a limit of 1000 bytes");
+        let error =
+            export(&loaded, &file, &settings, &Unwatched).expect_err("a limit of 1000 bytes");
         assert!(matches!(error, ExportError::TooLarge { .. }), "{error}");
         assert!(error.to_string().contains(help), "{error}");
         assert!(!file.exists());
@@ -337,6 +339,7 @@ fn files_that_are_too_large_are_refused() {
         [("of: \"slab\"", "of: \"crown\""), ("leaf_material: \"leaf\"", "leaf_material: \"bark\"")];
     let (folder, loaded) = load(&bare);
     let settings = ExportSettings { format: ExportFormat::Laz, ..ExportSettings::default() };
-    let error = export(&loaded, &folder.path().join("a.laz"), &settings, &Unwatched).expect_err("no leaves");
+    let error = export(&loaded, &folder.path().join("a.laz"), &settings, &Unwatched)
+        .expect_err("no leaves");
     assert!(matches!(error, ExportError::NoLeaves), "{error}");
 }

@@ -194,12 +194,14 @@ fn leaf_area_is_that_of_all_triangles_and_discs() {
 fn all_surfaces_are_counted_by_material() {
     let folder = folder();
     let arguments = ["lai", "shrubs.ron", "--surfaces", "all", "--by-material", "--layers", "2"];
-    insta::assert_snapshot!(printed(folder.path(), &[&arguments[..], &["--columns", "2"]].concat()));
+    insta::assert_snapshot!(printed(
+        folder.path(),
+        &[&arguments[..], &["--columns", "2"]].concat()
+    ));
     let bark: f64 = STEMS.iter().map(|stem| stem.area(BARK)).sum();
     let table = fs::read_to_string(folder.path().join("shrubs_lai/lai_plant_area.csv")).unwrap();
     let rows = table.lines().filter(|line| line.contains("bark"));
-    let sum: f64 =
-        rows.map(|line| line.split(',').nth(2).unwrap().parse::<f64>().unwrap()).sum();
+    let sum: f64 = rows.map(|line| line.split(',').nth(2).unwrap().parse::<f64>().unwrap()).sum();
     assert!((sum / bark - 1.0).abs() < 1e-6, "{sum} for {bark}");
 }
 

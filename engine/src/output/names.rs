@@ -159,8 +159,7 @@ pub(super) fn plan(report: &Report) -> Vec<SensorNames> {
             let stem = format!("{}_{}", sanitise(&sensor.name), sanitise(&product.name));
             let stem = stems.take_ignoring_case(&stem);
             let has_errors = product.image.as_ref().is_some_and(|image| image.has_errors);
-            let errors =
-                has_errors.then(|| stems.take_ignoring_case(&format!("{stem}_se")));
+            let errors = has_errors.then(|| stems.take_ignoring_case(&format!("{stem}_se")));
             ProductNames { key: keys.take(&product.name), stem, errors }
         });
         SensorNames {

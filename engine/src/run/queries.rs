@@ -5,9 +5,7 @@ use std::time::Instant;
 
 use super::pool::in_pool;
 use super::provenance::{self, FileHashes};
-use super::{
-    Failure, LoadedScene, Options, Progress, params, projection, scene_source,
-};
+use super::{Failure, LoadedScene, Options, Progress, params, projection, scene_source};
 use crate::document::{Boundary, Sun};
 use crate::products::{
     Forecast, Product, Report, SensorReport, height_products, leaf_area_products,

@@ -71,7 +71,8 @@ impl Ground {
         let rectangle = Rectangle { low, high };
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut only = None;
-        for cell in (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| UVec2::new(x, y)))
+        for cell in
+            (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| UVec2::new(x, y)))
         {
             let cell = (cell.y * self.cells.x + cell.x) as usize;
             let held = self.starts[cell] as usize..self.starts[cell + 1] as usize;
@@ -100,10 +101,9 @@ impl Ground {
                     slope: plane.slope / self.size,
                 }))
             }
-            Some(_) if !has_holes => Some(Relief::Range {
-                lowest: self.base + lowest,
-                highest: self.base + highest,
-            }),
+            Some(_) if !has_holes => {
+                Some(Relief::Range { lowest: self.base + lowest, highest: self.base + highest })
+            }
             _ => None,
         }
     }
@@ -199,9 +199,7 @@ mod tests {
             .collect();
         patch.mesh.triangles = (0..64)
             .map(|cell| cell / 8 * 9 + cell % 8)
-            .flat_map(|first| {
-                [[first, first + 1, first + 10], [first, first + 10, first + 9]]
-            })
+            .flat_map(|first| [[first, first + 1, first + 10], [first, first + 10, first + 9]])
             .collect();
         patch
     }
@@ -234,7 +232,9 @@ mod tests {
                 Relief::Range { lowest, highest } => {
                     ranges += 1;
                     // The slope is 20 / m in units of the rectangle, at most.
-                    assert!(highest - lowest < 9.0 * ((high - low) / ground.size()).length() + 1e-3);
+                    assert!(
+                        highest - lowest < 9.0 * ((high - low) / ground.size()).length() + 1e-3
+                    );
                 }
             }
         }

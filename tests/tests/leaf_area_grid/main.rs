@@ -12,8 +12,8 @@ use rayon::ThreadPoolBuilder;
 use stand::{HILLS, LEVEL, Numbers, hills, scene};
 use sunfleck::components::TerrainPatch;
 use sunfleck::queries::{
-    CellCount, CountedSurfaces, HeightReference, LayerCount, LeafAreaGrid,
-    LeafAreaRequest, leaf_area,
+    CellCount, CountedSurfaces, HeightReference, LayerCount, LeafAreaGrid, LeafAreaRequest,
+    leaf_area,
 };
 use sunfleck::run::SceneWorld;
 use sunfleck_tests::SceneText;

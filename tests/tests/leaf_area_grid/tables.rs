@@ -55,11 +55,20 @@ fn bushes(instances: std::ops::Range<usize>, boundary: &str) -> SceneText {
     SceneText::bare(0.2, "size_m: (6.0, 5.0)")
         .with("terrain", LEVEL)
         .with_leaf(0.1, 0.1)
-        .with_more("materials", r#""red leaf": Leaf(reflectance: Constant(0.3), transmittance: Constant(0.1))"#)
+        .with_more(
+            "materials",
+            r#""red leaf": Leaf(reflectance: Constant(0.3), transmittance: Constant(0.1))"#,
+        )
         .with_discs("discs", "leaf", &discs)
-        .with_more("meshes", r#""bush": Obj(file: "bush.obj", up: Z, unit_m: 1.0, parts: { "green": "red leaf" })"#)
+        .with_more(
+            "meshes",
+            r#""bush": Obj(file: "bush.obj", up: Z, unit_m: 1.0, parts: { "green": "red leaf" })"#,
+        )
         .with_file("bush.obj", &obj)
-        .with("instances", r#"Table(file: "stems.csv", of: "discs"), Table(file: "stems.csv", of: "bush")"#)
+        .with(
+            "instances",
+            r#"Table(file: "stems.csv", of: "discs"), Table(file: "stems.csv", of: "bush")"#,
+        )
         .with_file("stems.csv", &stems)
         .with("boundary", boundary)
 }

@@ -59,30 +59,31 @@ impl LeafAreaGrid {
 
     /// Result from the sums of all instances; layers above the highest surface are left out.
     pub(super) fn from_sums(
-    mut grid: CellGrid,
-    classes: Classes,
-    sums: &Sums,
-    layers: LayerCount,
-) -> Self {
-    let count = classes.names.len();
-    let ordered = sums.ordered();
-    let read = |cells| ordered.values(cells, &mut Vec::new()).to_vec();
-    let elsewhere = |place: Elsewhere| {
-        let slot = grid.elsewhere(place);
-        read(slot..slot + 1)
-    };
-    let [outside, below, over_holes] =
-        [Elsewhere::Outside, Elsewhere::Below, Elsewhere::OverHole].map(elsewhere);
-    let mut areas = read(0..grid.cells());
-    let layer = grid.columns * grid.rows * count;
-    let is_empty = |layer: &[f64]| layer.iter().all(|&area| area == 0.0);
-    let filled = areas.chunks(layer).rposition(|layer| !is_empty(layer)).map_or(1, |last| last + 1);
-    // Boxes around leaning instances reach higher than they do.
-    if !matches!(layers, LayerCount::Count(_)) {
-        grid.layers = filled;
-        areas.truncate(filled * layer);
+        mut grid: CellGrid,
+        classes: Classes,
+        sums: &Sums,
+        layers: LayerCount,
+    ) -> Self {
+        let count = classes.names.len();
+        let ordered = sums.ordered();
+        let read = |cells| ordered.values(cells, &mut Vec::new()).to_vec();
+        let elsewhere = |place: Elsewhere| {
+            let slot = grid.elsewhere(place);
+            read(slot..slot + 1)
+        };
+        let [outside, below, over_holes] =
+            [Elsewhere::Outside, Elsewhere::Below, Elsewhere::OverHole].map(elsewhere);
+        let mut areas = read(0..grid.cells());
+        let layer = grid.columns * grid.rows * count;
+        let is_empty = |layer: &[f64]| layer.iter().all(|&area| area == 0.0);
+        let filled =
+            areas.chunks(layer).rposition(|layer| !is_empty(layer)).map_or(1, |last| last + 1);
+        // Boxes around leaning instances reach higher than they do.
+        if !matches!(layers, LayerCount::Count(_)) {
+            grid.layers = filled;
+            areas.truncate(filled * layer);
+        }
+        let Classes { names, is_leaf, .. } = classes;
+        Self { grid, classes: names, is_leaf, areas, outside, below, over_holes }
     }
-    let Classes { names, is_leaf, .. } = classes;
-    Self { grid, classes: names, is_leaf, areas, outside, below, over_holes }
-}
 }

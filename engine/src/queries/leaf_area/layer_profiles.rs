@@ -162,8 +162,7 @@ impl LayerProfiles {
     ///
     /// - `areas`: of each surface, m², in the order of the tree
     pub(super) fn new(tree: &SurfaceTree<'_>, areas: &[f64]) -> Self {
-        let span =
-            |(place, &area): (usize, &f64)| SurfaceSpan::new(&tree.patch(place), area);
+        let span = |(place, &area): (usize, &f64)| SurfaceSpan::new(&tree.patch(place), area);
         let mut profiles = Self {
             surfaces: areas.iter().enumerate().map(span).collect(),
             table_of_node: vec![NONE; tree.nodes().len()],
@@ -182,7 +181,9 @@ impl LayerProfiles {
                 profiles.table_of_node[index as usize] = profiles.tables.len() as u32;
                 profiles.add_table(node.places());
             }
-            stack.extend(node.children(index).into_iter().flatten().map(|child| (child, !has_table)));
+            stack.extend(
+                node.children(index).into_iter().flatten().map(|child| (child, !has_table)),
+            );
         }
         profiles
     }
@@ -210,7 +211,8 @@ impl LayerProfiles {
         let mut counted = 0.0_f64;
         for layer in touched.range() {
             let is_last = layer == touched.last;
-            let up_to = if is_last { table.area } else { self.area_below(table, layers.top(layer)) };
+            let up_to =
+                if is_last { table.area } else { self.area_below(table, layers.top(layer)) };
             // Rounding must not make an area negative.
             add(layer, (up_to - counted).max(0.0));
             counted = counted.max(up_to);
@@ -245,10 +247,11 @@ impl LayerProfiles {
         let number = (at as usize).min(table.slices - 1);
         let t = at - number as f64;
         let [slice, next] = [0, 1].map(|offset| self.slices[table.first_slice + number + offset]);
-        let cut = self.entries[slice.entries as usize..next.entries as usize].iter().map(|&place| {
-            let SurfaceSpan { heights, area, .. } = &self.surfaces[place as usize];
-            area * heights.fraction_below(height)
-        });
+        let cut =
+            self.entries[slice.entries as usize..next.entries as usize].iter().map(|&place| {
+                let SurfaceSpan { heights, area, .. } = &self.surfaces[place as usize];
+                area * heights.fraction_below(height)
+            });
         slice.constant + t * (slice.linear + t * slice.quadratic) + cut.sum::<f64>()
     }
 

@@ -80,49 +80,57 @@ impl LeafAreaRequest {
         (lowest, highest): (f64, f64),
         classes: usize,
     ) -> Result<CellGrid, LeafAreaError> {
-    let TerrainPatch { corner, size, .. } = *patch;
-    let (columns, rows) = self.cells.over(size);
-    let from_ground = self.heights == HeightReference::Ground;
-    let thickness_of = |bottom: f64| match self.layers {
-        // Where nothing stands above the ground, layers are of any height.
-        LayerCount::Count(_) if highest <= bottom => 1.0,
-        LayerCount::Count(count) => (highest - bottom) / count as f64,
-        LayerCount::Thickness(thickness) => thickness,
-        LayerCount::Automatic => match highest - bottom {
-            8.0..=100.0 => 1.0,
-            height => round_number(height / 10.0),
-        },
-    };
-    let (bottom, thickness) = match self.layers {
-        _ if from_ground => (0.0, thickness_of(0.0)),
-        LayerCount::Count(_) => (lowest, thickness_of(lowest)),
-        _ => {
-            let thickness = thickness_of(lowest);
-            ((lowest / thickness).floor() * thickness, thickness)
+        let TerrainPatch { corner, size, .. } = *patch;
+        let (columns, rows) = self.cells.over(size);
+        let from_ground = self.heights == HeightReference::Ground;
+        let thickness_of = |bottom: f64| match self.layers {
+            // Where nothing stands above the ground, layers are of any height.
+            LayerCount::Count(_) if highest <= bottom => 1.0,
+            LayerCount::Count(count) => (highest - bottom) / count as f64,
+            LayerCount::Thickness(thickness) => thickness,
+            LayerCount::Automatic => match highest - bottom {
+                8.0..=100.0 => 1.0,
+                height => round_number(height / 10.0),
+            },
+        };
+        let (bottom, thickness) = match self.layers {
+            _ if from_ground => (0.0, thickness_of(0.0)),
+            LayerCount::Count(_) => (lowest, thickness_of(lowest)),
+            _ => {
+                let thickness = thickness_of(lowest);
+                ((lowest / thickness).floor() * thickness, thickness)
+            }
+        };
+        let layers = match self.layers {
+            LayerCount::Count(count) => count as f64,
+            // Rounding of a height must not make a layer.
+            _ => ((highest - bottom) / thickness - 1e-9).ceil().max(1.0),
+        };
+        let layers = layers as u128;
+        let slots =
+            columns.saturating_mul(rows).saturating_mul(layers).saturating_mul(classes as u128);
+        let needed = slots.saturating_mul(COPIES * size_of::<f64>() as u128);
+        if needed > u128::from(self.memory) || layers > u128::from(u32::MAX) {
+            let free = self.memory;
+            return Err(LeafAreaError::TooManyCells {
+                columns,
+                rows,
+                layers,
+                classes,
+                needed,
+                free,
+            });
         }
-    };
-    let layers = match self.layers {
-        LayerCount::Count(count) => count as f64,
-        // Rounding of a height must not make a layer.
-        _ => ((highest - bottom) / thickness - 1e-9).ceil().max(1.0),
-    };
-    let layers = layers as u128;
-    let slots = columns.saturating_mul(rows).saturating_mul(layers).saturating_mul(classes as u128);
-    let needed = slots.saturating_mul(COPIES * size_of::<f64>() as u128);
-    if needed > u128::from(self.memory) || layers > u128::from(u32::MAX) {
-        let free = self.memory;
-        return Err(LeafAreaError::TooManyCells { columns, rows, layers, classes, needed, free });
+        Ok(CellGrid {
+            corner,
+            size,
+            columns: columns as usize,
+            rows: rows as usize,
+            layers: layers as usize,
+            bottom,
+            thickness,
+            heights: self.heights,
+            is_periodic: self.is_periodic,
+        })
     }
-    Ok(CellGrid {
-        corner,
-        size,
-        columns: columns as usize,
-        rows: rows as usize,
-        layers: layers as usize,
-        bottom,
-        thickness,
-        heights: self.heights,
-        is_periodic: self.is_periodic,
-    })
-}
 }

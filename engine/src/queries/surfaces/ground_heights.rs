@@ -83,8 +83,7 @@ impl<'a> GroundHeights<'a> {
         let offset = tile * size;
         let (inner_low, inner_high) = (low - offset, high - offset);
         let is_inside = inner_low.cmpge(corner).all() && inner_high.cmple(corner + size).all();
-        if is_inside
-            && let Some(relief) = self.ground.relief(inner_low, inner_high, self.has_holes)
+        if is_inside && let Some(relief) = self.ground.relief(inner_low, inner_high, self.has_holes)
         {
             return Some(match relief {
                 Relief::Plane(GroundPlane { height, anchor, slope }) => {
