@@ -81,13 +81,13 @@ pub fn height_model(
 ) -> Result<HeightModel, TooManyCells> {
     PlantedGround::of_world(world, is_periodic, |planted| {
         let grid = CellGrid::of_ground(cells, planted.patch, is_periodic, memory)?;
-        Ok(heights(&planted, grid, progress))
+        Ok(heights(&planted, &grid, progress))
     })
 }
 
-fn heights(planted: &PlantedGround<'_>, grid: CellGrid, progress: &dyn Fn(f64)) -> HeightModel {
+fn heights(planted: &PlantedGround<'_>, grid: &CellGrid, progress: &dyn Fn(f64)) -> HeightModel {
     let PlantedGround { patch, ground, meshes, instances } = planted;
-    let heights = Heights::new(&grid);
+    let heights = Heights::new(grid);
     raise_ground(patch, &heights);
     let trees = prototype_trees(meshes, |_| Some(0));
     let mut done = 0;

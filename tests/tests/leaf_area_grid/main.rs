@@ -83,14 +83,13 @@ fn all_cells_together_hold_the_area_of_all_surfaces() {
     }
 }
 
-/// *Scene*: as above, on level ground and on hills. *Expected*: each cell holds what brute force finds, which quarters all
+/// *Scene*: as above, on level ground, and on hills that repeat or end. *Expected*: each cell holds what brute force finds, which quarters all
 /// triangles until they lie in one cell, and says how much area it could not decide on.
 #[test]
 fn each_cell_holds_what_brute_force_finds() {
     let hills = scene(HILLS, "Isolated").with_file("hills.asc", &hills());
     let scenes = [
         (scene(LEVEL, "Periodic"), true),
-        (scene(LEVEL, "Isolated"), false),
         (hills.clone(), false),
         (hills.with("boundary", "Periodic"), true),
     ];

@@ -203,8 +203,9 @@ impl LayerProfiles {
     ) {
         let table = self.tables.get(self.table_of_node[index as usize] as usize);
         let Some(table) = table else {
-            let surfaces = &self.surfaces[node.places()];
-            surfaces.iter().for_each(|surface| surface.add(layers, &mut add));
+            for surface in &self.surfaces[node.places()] {
+                surface.add(layers, &mut add);
+            }
             return;
         };
         let touched = layers.touched((table.low, table.high));
@@ -300,9 +301,10 @@ impl HeightTable {
     ) -> (Vec<HeightSlice>, Vec<u32>) {
         let mut slices = vec![HeightSlice::default(); self.slices + 1];
         for surface in surfaces {
-            self.for_each_slice(&surface.heights, |slice, part| match part {
-                SlicePart::Entry => slices[slice].entries += 1,
-                _ => {
+            self.for_each_slice(&surface.heights, |slice, part| {
+                if part == SlicePart::Entry {
+                    slices[slice].entries += 1;
+                } else {
                     let is_lower = part == SlicePart::LowerHalf;
                     let bottom = self.low + slice as f64 / self.slices_per_m;
                     slices[slice].add(surface, is_lower, bottom, 1.0 / self.slices_per_m);

@@ -179,9 +179,10 @@ impl<'a> BatchTrees<'a> {
             Vec::new()
         };
         let all: usize = batch.iter().map(surfaces).sum();
-        let block = match columns.is_empty() {
-            true => (BLOCK_SURFACES / (all / batch.len()).max(1)).clamp(1, BLOCK),
-            false => BLOCK,
+        let block = if columns.is_empty() {
+            (BLOCK_SURFACES / (all / batch.len()).max(1)).clamp(1, BLOCK)
+        } else {
+            BLOCK
         };
         Self { trees, columns, block }
     }
