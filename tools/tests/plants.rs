@@ -161,9 +161,10 @@ impl Stem {
     }
 }
 
-/// Values of the rows of a table by their first column.
-fn column(csv: &str, name: &str) -> Vec<(String, f64)> {
-    let mut lines = csv.lines();
+/// Values of a column of a table, by the first column.
+fn column(folder: &Path, file: &str, name: &str) -> Vec<(String, f64)> {
+    let csv = fs::read_to_string(folder.join("out/shrubs_lai").join(file)).unwrap();
+    let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     let at = header.iter().position(|&other| other == name).unwrap();
     lines
@@ -177,12 +178,11 @@ fn leaf_area_is_that_of_all_triangles_and_discs() {
     let folder = folder();
     insta::assert_snapshot!(printed(folder.path(), &["lai", "shrubs.ron", "--cell", "1"]));
     let expected: f64 = STEMS.iter().map(Stem::leaf_area).sum();
-    let table = fs::read_to_string(folder.path().join("shrubs_lai/lai_leaf_area.csv")).unwrap();
-    let areas = column(&table, "value");
+    let areas = column(folder.path(), "lai_leaf_area.csv", "leaf");
     let all: f64 = areas.iter().map(|(_, area)| area).sum();
     assert!((all / expected - 1.0).abs() < 1e-6, "{all} for {expected}");
     assert!(areas[0].1 < 0.95 * expected, "some lies beside the rectangle: {areas:?}");
-    let mut files: Vec<String> = fs::read_dir(folder.path().join("shrubs_lai"))
+    let mut files: Vec<String> = fs::read_dir(folder.path().join("out/shrubs_lai"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
@@ -199,9 +199,8 @@ fn all_surfaces_are_counted_by_material() {
         &[&arguments[..], &["--columns", "2"]].concat()
     ));
     let bark: f64 = STEMS.iter().map(|stem| stem.area(BARK)).sum();
-    let table = fs::read_to_string(folder.path().join("shrubs_lai/lai_plant_area.csv")).unwrap();
-    let rows = table.lines().filter(|line| line.contains("bark"));
-    let sum: f64 = rows.map(|line| line.split(',').nth(2).unwrap().parse::<f64>().unwrap()).sum();
+    let areas = column(folder.path(), "lai_plant_area.csv", "bark");
+    let sum: f64 = areas.iter().map(|(_, area)| area).sum();
     assert!((sum / bark - 1.0).abs() < 1e-6, "{sum} for {bark}");
 }
 

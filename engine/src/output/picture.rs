@@ -335,6 +335,24 @@ mod tests {
         assert_eq!(rgba, [186, 186, 186, 255, 0, 0, 0, 0, 186, 186, 186, 128]);
     }
 
+    #[test]
+    fn maps_show_zero_in_its_own_colour_and_the_whole_range() {
+        let painted_map = |zero: Option<&str>, values: Vec<f32>| {
+            let rendering = Rendering::Map { zero: zero.map(str::to_owned) };
+            painted(&Image { rendering, ..image(&["x"], values) }, &[]).0
+        };
+        let quarter = byte(0.25_f32.powf(GAMMA.recip()));
+        let rgba = painted_map(Some("nothing"), vec![0.0, f32::NAN, 1.0, 4.0]);
+        let expected = [ZERO, [0; 3], [quarter; 3], [255; 3]];
+        let found: Vec<[u8; 3]> =
+            rgba.chunks_exact(4).map(|one| [one[0], one[1], one[2]]).collect();
+        assert_eq!(found, expected);
+        let opacity: Vec<u8> = rgba.iter().skip(3).step_by(4).copied().collect();
+        assert_eq!(opacity, [255, 0, 255, 255]);
+        let rgba = painted_map(None, vec![-2.0, 0.0, 6.0]);
+        assert_eq!(rgba, [0, 0, 0, 255, quarter, quarter, quarter, 255, 255, 255, 255, 255]);
+    }
+
     /// An image that shows nothing of the scene is not dark.
     #[test]
     fn only_bands_with_data_are_dark() {

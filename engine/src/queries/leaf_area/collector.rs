@@ -104,9 +104,15 @@ impl<'a, 'b> Collector<'a, 'b> {
         let ScaledTree { tree, areas, class, .. } = self.scaled;
         let grid = self.space.grid;
         let ground = self.space.level().map(|level| Relief::Plane(GroundPlane::level(level)));
-        let all = self.bounds(0);
-        let all = CellExtent::below(&self.space.finder, &all);
+        let bounds = self.bounds(0);
+        let all = CellExtent::below(&self.space.finder, &bounds);
         self.to.window.open(all, grid, tree.len());
+        if self.profiles.is_some_and(|(profiles, _)| profiles.has_node(&tree.nodes()[0], 0)) {
+            let middle = 0.5 * (bounds.low + bounds.high);
+            let finder = &self.space.finder;
+            let (column, row) = (finder.along(0, middle.x), finder.along(1, middle.y));
+            self.to.window.leave_out(CellPlace { column, row, layer: 0 }, &all);
+        }
         // Depth of the tree: it is halved until few surfaces are left.
         let mut stack = Vec::with_capacity(64);
         stack.push((0_u32, ground));
@@ -119,6 +125,10 @@ impl<'a, 'b> Collector<'a, 'b> {
                 continue;
             }
             if extent.is_one_column() {
+                let CellPlace { column, row, .. } = extent.first();
+                if self.to.window.is_left_out(column, row) {
+                    continue;
+                }
                 if extent.layers.is_one() {
                     self.add(extent.first(), area);
                     continue;
@@ -137,6 +147,10 @@ impl<'a, 'b> Collector<'a, 'b> {
                 Some([left, right]) => stack.extend([(left, ground), (right, ground)]),
                 None => self.add_surfaces(node.places(), ground),
             }
+        }
+        if let Some((profiles, layers)) = self.profiles {
+            let root = &tree.nodes()[0];
+            self.to.window.add_rest(|add| profiles.add_node(root, 0, &layers, add));
         }
         self.to.window.close(grid, class, self.factor, &mut self.to.sums);
     }
@@ -202,6 +216,9 @@ impl<'a, 'b> Collector<'a, 'b> {
                 let first = CellExtent::below(finder, &footprint);
                 if first.is_one_column() {
                     let first = first.first();
+                    if self.to.window.is_left_out(first.column, first.row) {
+                        continue;
+                    }
                     profiles.add_surface(place, &layers, |layer, area| {
                         self.add(CellPlace { layer, ..first }, area);
                     });

@@ -41,8 +41,9 @@ const BLOCK_SURFACES: usize = 1 << 21;
 /// Blocks that are held at a time.
 const BLOCKS: usize = 64;
 
-/// Upright instances that are scaled alike from which tables by height are made for them.
-const TABLES_FROM: usize = 64;
+/// Instances that are scaled alike from which they share areas, and tables by height if they stand upright above level
+/// ground.
+const SHARED_FROM: usize = 64;
 
 /// Leaf area of all instances. Reads the components of instances, [`Mesh`](crate::components::Mesh),
 /// [`PartMaterials`](crate::components::PartMaterials), `document::Material`,
@@ -88,7 +89,7 @@ fn counted(
     instances.par_sort_unstable_by_key(|one| (alike(&one.placement), one.id));
     let mut sums = Sums::new_sparse(grid.cells() + Elsewhere::COUNT, classes.names.len());
     let mut done = 0;
-    for batch in batches(&instances, space) {
+    for batch in batches(&instances) {
         let trees = BatchTrees::new(batch, &trees, space, request.memory);
         for wave in batch.chunks(trees.block * BLOCKS) {
             let blocks: Vec<Sums> =
@@ -109,19 +110,12 @@ fn alike(placement: &Placement) -> (u32, u64) {
 }
 
 /// Divides instances into those that are scaled alike if they are many, and the others between them.
-fn batches<'a>(
-    instances: &'a [Instance],
-    space: CountingSpace<'a>,
-) -> impl Iterator<Item = &'a [Instance]> {
-    let is_large = move |group: &[Instance]| {
-        let upright = group.iter().filter(|one| is_upright(&one.placement));
-        space.level().is_some() && upright.take(TABLES_FROM).count() == TABLES_FROM
-    };
+fn batches(instances: &[Instance]) -> impl Iterator<Item = &[Instance]> {
     let mut rest = instances;
     std::iter::from_fn(move || {
         let mut count = 0;
         for group in rest.chunk_by(|a, b| alike(&a.placement) == alike(&b.placement)) {
-            if !is_large(group) {
+            if group.len() < SHARED_FROM {
                 count += group.len();
                 continue;
             }
@@ -139,7 +133,9 @@ fn batches<'a>(
 /// Trees of the instances of a batch.
 struct BatchTrees<'a> {
     trees: &'a BTreeMap<u32, Vec<MaterialTree<'a>>>,
-    /// Trees of columns with tables for its upright instances; none if they share none.
+    /// Areas that all instances share; none if they are not scaled alike.
+    areas: Vec<ScaledAreas>,
+    /// Trees of columns with tables that its upright instances share, or none.
     columns: Vec<ColumnTree<'a>>,
     /// Instances of a block.
     block: usize,
@@ -150,6 +146,15 @@ struct ColumnTree<'a> {
     tree: SurfaceTree<'a>,
     areas: ScaledAreas,
     profiles: LayerProfiles,
+}
+
+impl<'a> ColumnTree<'a> {
+    fn new(tree: &SurfaceTree<'a>, ratio: f64) -> Self {
+        let tree = tree.in_columns();
+        let areas = ScaledAreas::new(&tree, ratio);
+        let profiles = LayerProfiles::new(&tree, &areas.surfaces);
+        Self { tree, areas, profiles }
+    }
 }
 
 impl<'a> BatchTrees<'a> {
@@ -163,28 +168,30 @@ impl<'a> BatchTrees<'a> {
         let surfaces = |one: &Instance| {
             trees[&one.placement.prototype.0].iter().map(|tree| tree.tree.len()).sum::<usize>()
         };
-        let is_shared = space.level().is_some()
-            && batch.len() >= TABLES_FROM
-            && LayerProfiles::bytes(surfaces(&batch[0])) < memory / 2
-            && batch.iter().all(|one| alike(&one.placement) == alike(first));
-        let columns = if is_shared {
-            let tree = |tree: &MaterialTree<'a>| {
-                let tree = tree.tree.in_columns();
-                let areas = ScaledAreas::new(&tree, first.scale.ratio());
-                let profiles = LayerProfiles::new(&tree, &areas.surfaces);
-                ColumnTree { tree, areas, profiles }
-            };
-            trees[&first.prototype.0].par_iter().map(tree).collect()
-        } else {
-            Vec::new()
-        };
+        let last = &batch[batch.len() - 1].placement;
+        let is_shared = batch.len() >= SHARED_FROM && alike(first) == alike(last);
+        let (mut areas, mut columns) = (Vec::new(), Vec::new());
+        if is_shared {
+            let (trees, ratio) = (&trees[&first.prototype.0], first.scale.ratio());
+            let upright = batch.iter().filter(|one| is_upright(&one.placement)).count();
+            let has_columns = space.level().is_some()
+                && upright >= SHARED_FROM
+                && LayerProfiles::bytes(surfaces(&batch[0])) < memory / 2;
+            if has_columns {
+                columns = trees.par_iter().map(|tree| ColumnTree::new(&tree.tree, ratio)).collect();
+            }
+            if !has_columns || upright < batch.len() {
+                let of_tree = |tree: &MaterialTree<'a>| ScaledAreas::new(&tree.tree, ratio);
+                areas = trees.par_iter().map(of_tree).collect();
+            }
+        }
         let all: usize = batch.iter().map(surfaces).sum();
         let block = if columns.is_empty() {
             (BLOCK_SURFACES / (all / batch.len()).max(1)).clamp(1, BLOCK)
         } else {
             BLOCK
         };
-        Self { trees, columns, block }
+        Self { trees, areas, columns, block }
     }
 
     /// Sums of the areas of some instances, of which those that are scaled alike stand together.
@@ -195,25 +202,27 @@ impl<'a> BatchTrees<'a> {
         for group in instances.chunk_by(|a, b| alike(&a.placement) == alike(&b.placement)) {
             let first = &group[0].placement;
             let trees = &self.trees[&first.prototype.0];
-            let mut areas: Vec<ScaledAreas> = Vec::new();
+            let mut own = Vec::new();
+            if self.areas.is_empty() && self.columns.is_empty() {
+                let ratio = first.scale.ratio();
+                own.extend(trees.iter().map(|tree| ScaledAreas::new(&tree.tree, ratio)));
+            }
+            let areas = if own.is_empty() { &self.areas } else { &own };
             for Instance { placement, .. } in group {
+                let mut collect = |scaled| {
+                    Collector::new(space, scaled, placement, &mut sums).collect();
+                };
                 if !self.columns.is_empty() && is_upright(placement) {
                     for (ColumnTree { tree, areas, profiles }, MaterialTree { class, .. }) in
                         self.columns.iter().zip(trees)
                     {
                         let profiles = Some(profiles);
-                        let scaled = ScaledTree { tree, class: *class, areas, profiles };
-                        Collector::new(space, scaled, placement, &mut sums).collect();
+                        collect(ScaledTree { tree, class: *class, areas, profiles });
                     }
                     continue;
                 }
-                if areas.is_empty() {
-                    let ratio = first.scale.ratio();
-                    areas.extend(trees.iter().map(|tree| ScaledAreas::new(&tree.tree, ratio)));
-                }
-                for (MaterialTree { tree, class }, areas) in trees.iter().zip(&areas) {
-                    let scaled = ScaledTree { tree, class: *class, areas, profiles: None };
-                    Collector::new(space, scaled, placement, &mut sums).collect();
+                for (MaterialTree { tree, class }, areas) in trees.iter().zip(areas) {
+                    collect(ScaledTree { tree, class: *class, areas, profiles: None });
                 }
             }
         }

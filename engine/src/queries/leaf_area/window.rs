@@ -15,6 +15,8 @@ pub(super) struct CellWindow {
     areas: Vec<f64>,
     outside: f64,
     over_holes: f64,
+    /// Cell of the ground whose areas follow from those of all others.
+    rest: Option<CellPlace>,
 }
 
 /// Columns, rows and layers that an instance touches.
@@ -90,21 +92,65 @@ const MOST_CELLS: u64 = 1 << 16;
 /// Cells of a window for each surface of the instance, at most.
 const MOST_CELLS_PER_SURFACE: u64 = 64;
 
+/// Cells of the ground of which one may be left out, at most.
+const MOST_CELLS_WITH_REST: u64 = 4;
+
+/// Areas of this part of a layer are rounding.
+const ROUNDING: f64 = 1e-13;
+
 impl CellWindow {
     pub(super) const fn new() -> Self {
         let none = CellNumbers { first: 0, last: 0 };
         let extent = CellExtent { columns: none, rows: none, layers: none };
-        Self { extent, areas: Vec::new(), outside: 0.0, over_holes: 0.0 }
+        Self { extent, areas: Vec::new(), outside: 0.0, over_holes: 0.0, rest: None }
     }
 
     /// Begins an instance.
     pub(super) fn open(&mut self, extent: CellExtent, grid: &CellGrid, surfaces: usize) {
         self.extent = extent.inside(grid);
-        (self.outside, self.over_holes) = (0.0, 0.0);
+        (self.outside, self.over_holes, self.rest) = (0.0, 0.0, None);
         self.areas.clear();
         let cells = self.extent.count();
         if cells <= MOST_CELLS.min(MOST_CELLS_PER_SURFACE.saturating_mul(surfaces as u64)) {
             self.areas.resize(cells as usize, 0.0);
+        }
+    }
+
+    /// Leaves out a cell of the ground, whose areas [`Self::add_rest`] is to add, if the instance lies in few cells and
+    /// in the rectangle.
+    pub(super) fn leave_out(&mut self, place: CellPlace, all: &CellExtent) {
+        let CellExtent { columns, rows, .. } = self.extent;
+        let count = columns.count() * rows.count();
+        let is_inside = columns == all.columns && rows == all.rows;
+        if self.has_cells() && is_inside && (2..=MOST_CELLS_WITH_REST).contains(&count) {
+            self.rest = Some(place);
+        }
+    }
+
+    /// Returns whether a column is left out.
+    pub(super) fn is_left_out(&self, column: i64, row: i64) -> bool {
+        self.rest.is_some_and(|rest| rest.column == column && rest.row == row)
+    }
+
+    /// Gives the cell that was left out what all others lack of these areas.
+    ///
+    /// - `areas`: layer and area of the whole instance
+    pub(super) fn add_rest(&mut self, areas: impl Fn(&mut dyn FnMut(i64, f64))) {
+        let Some(rest) = self.rest.take() else { return };
+        let CellExtent { columns, rows, layers } = self.extent;
+        let (start, count) = (self.column_start(rest.column, rest.row), layers.count() as usize);
+        areas(&mut |layer, area| self.areas[start + (layer - layers.first) as usize] += area);
+        for layer in start..start + count {
+            let whole = self.areas[layer];
+            let others =
+                columns.range().flat_map(|column| rows.range().map(move |row| (column, row)));
+            let others = others.filter(|&place| place != (rest.column, rest.row));
+            let sum: f64 = others
+                .map(|place| self.areas[self.column_start(place.0, place.1) + layer - start])
+                .sum();
+            let left = whole - sum;
+            // Rounding is no area.
+            self.areas[layer] = if left > ROUNDING * whole { left } else { 0.0 };
         }
     }
 
@@ -124,6 +170,9 @@ impl CellWindow {
     /// Adds area to a cell that the instance touches.
     pub(super) fn add(&mut self, place: CellPlace, area: f64) {
         let CellExtent { columns, rows, layers } = &self.extent;
+        if self.is_left_out(place.column, place.row) {
+            return;
+        }
         // The extent holds all that the instance touches in the rectangle.
         if columns.contains(place.column) && rows.contains(place.row) {
             let start = self.column_start(place.column, place.row);
