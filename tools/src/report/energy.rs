@@ -55,7 +55,8 @@ fn balance(context: &Context<'_>, quantity: &Quantity) -> Figure {
         .collect();
     // Roulette is noise about zero, and cannot be drawn as a part.
     terms.retain(|term| term.name != "roulette");
-    let others = terms.split_off(terms.len().min(COLOURS - 1));
+    // The last colour stands for one term, or for several.
+    let others = if terms.len() > COLOURS { terms.split_off(COLOURS - 1) } else { Vec::new() };
     let bar = |&band: &usize| {
         let mut segments: Vec<Segment> = terms
             .iter()
