@@ -24,8 +24,18 @@ pub(in crate::queries) struct SurfaceTree<'a> {
     axes: TreeAxes,
     /// Numbers of triangles, and behind them those of discs.
     order: Vec<u32>,
+    /// Copies of the surfaces in this order: those of a node lie side by side in memory, which is what visits of nodes
+    /// take most of their time for.
+    surfaces: Vec<TreeSurface>,
     /// Nodes in depth-first order; the left child of a node follows it.
     nodes: Vec<TreeNode>,
+}
+
+/// A surface in object space, m.
+#[derive(Clone, Copy, Debug)]
+enum TreeSurface {
+    Triangle([Vec3; 3]),
+    Disc(Disc),
 }
 
 /// A node of the tree.
@@ -57,27 +67,33 @@ impl<'a> SurfaceTree<'a> {
         let numbers = parts.flat_map(|part| {
             part.triangles.clone().chain(part.discs.start + triangles..part.discs.end + triangles)
         });
-        let mut tree = Self { mesh, axes: TreeAxes::All, order: Vec::new(), nodes: Vec::new() };
-        tree.divide(numbers.collect());
+        let tree = Self::divided(mesh, TreeAxes::All, numbers.collect());
         (!tree.order.is_empty()).then_some(tree)
     }
 
     /// Tree over the same surfaces whose nodes are columns.
     pub(in crate::queries) fn in_columns(&self) -> Self {
-        let axes = TreeAxes::Horizontal;
-        let mut tree = Self { mesh: self.mesh, axes, order: Vec::new(), nodes: Vec::new() };
-        tree.divide(self.order.clone());
+        Self::divided(self.mesh, TreeAxes::Horizontal, self.order.clone())
+    }
+
+    /// Tree over surfaces with these numbers.
+    fn divided(mesh: &'a Mesh, axes: TreeAxes, order: Vec<u32>) -> Self {
+        let mut tree = Self { mesh, axes, order, surfaces: Vec::new(), nodes: Vec::new() };
+        let middle = |&number: &u32| (tree.middle(number), number);
+        let mut middles: Vec<Middle> = tree.order.iter().map(middle).collect();
+        if !middles.is_empty() {
+            tree.add_node(&mut middles, 0);
+        }
+        tree.order = middles.into_iter().map(|(_, number)| number).collect();
+        tree.surfaces = tree.order.iter().map(|&number| tree.surface(number)).collect();
         tree
     }
 
-    /// Makes the nodes over surfaces.
-    fn divide(&mut self, numbers: Vec<u32>) {
-        let mut middles: Vec<Middle> =
-            numbers.into_iter().map(|number| (self.middle(number), number)).collect();
-        if !middles.is_empty() {
-            self.add_node(&mut middles, 0);
-        }
-        self.order = middles.into_iter().map(|(_, number)| number).collect();
+    fn surface(&self, number: u32) -> TreeSurface {
+        self.disc(number).map_or_else(
+            || TreeSurface::Triangle(self.mesh.corners(number as usize)),
+            |&disc| TreeSurface::Disc(disc),
+        )
     }
 
     fn middle(&self, number: u32) -> Vec3 {
@@ -124,7 +140,7 @@ impl<'a> SurfaceTree<'a> {
 
     /// Box around a surface, m, object space.
     fn object_bounds(&self, number: u32) -> (Vec3, Vec3) {
-        let (low, high) = self.numbered_patch(number).bounds();
+        let (low, high) = self.surface(number).patch().bounds();
         (Vec3::from(low.to_array().map(round_down)), Vec3::from(high.to_array().map(round_up)))
     }
 
@@ -140,28 +156,37 @@ impl<'a> SurfaceTree<'a> {
 
     /// A surface in object space, m, by its place in the order.
     pub(in crate::queries) fn patch(&self, place: usize) -> FlatPatch {
-        self.numbered_patch(self.order[place])
-    }
-
-    fn numbered_patch(&self, number: u32) -> FlatPatch {
-        if let Some(disc) = self.disc(number) {
-            let (u, v) = basis(disc.normal.as_dvec3().normalize_or_zero());
-            let (u, v) = (u * f64::from(disc.radius), v * f64::from(disc.radius));
-            return FlatPatch { origin: disc.center.as_dvec3(), u, v, is_ellipse: true };
-        }
-        let [a, b, c] = self.mesh.corners(number as usize).map(Vec3::as_dvec3);
-        FlatPatch { origin: a, u: b - a, v: c - a, is_ellipse: false }
+        self.surfaces[place].patch()
     }
 
     /// Vector of a surface's area, m², object space; it is perpendicular to it and as long as it is large.
     pub(in crate::queries) fn area_vector(&self, place: usize) -> DVec3 {
-        let number = self.order[place];
-        if let Some(disc) = self.disc(number) {
-            let normal = disc.normal.as_dvec3().normalize_or_zero();
-            return normal * (PI * f64::from(disc.radius).powi(2));
+        match &self.surfaces[place] {
+            TreeSurface::Triangle(corners) => {
+                let [a, b, c] = corners.map(Vec3::as_dvec3);
+                0.5 * (b - a).cross(c - a)
+            }
+            TreeSurface::Disc(disc) => {
+                let normal = disc.normal.as_dvec3().normalize_or_zero();
+                normal * (PI * f64::from(disc.radius).powi(2))
+            }
         }
-        let [a, b, c] = self.mesh.corners(number as usize).map(Vec3::as_dvec3);
-        0.5 * (b - a).cross(c - a)
+    }
+}
+
+impl TreeSurface {
+    fn patch(&self) -> FlatPatch {
+        match self {
+            Self::Triangle(corners) => {
+                let [a, b, c] = corners.map(Vec3::as_dvec3);
+                FlatPatch { origin: a, u: b - a, v: c - a, is_ellipse: false }
+            }
+            Self::Disc(disc) => {
+                let (u, v) = basis(disc.normal.as_dvec3().normalize_or_zero());
+                let (u, v) = (u * f64::from(disc.radius), v * f64::from(disc.radius));
+                FlatPatch { origin: disc.center.as_dvec3(), u, v, is_ellipse: true }
+            }
+        }
     }
 }
 
