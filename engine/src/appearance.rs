@@ -102,6 +102,7 @@ impl Fractions {
         match optics {
             SurfaceOptics::Rpv(model) => opaque(middle(&model.dhr)),
             SurfaceOptics::Soilspect(model) => opaque(middle(&model.dhr)),
+            SurfaceOptics::Mapped(map) => opaque(map.mean()),
             SurfaceOptics::BiLambertian(body) => Self {
                 front: wide(body.front()),
                 back: wide(body.back()),

@@ -84,12 +84,13 @@ fn changed_leaf_spectrum_runs_what_reads_spectra() {
     let named = [
         "resolve_weights",
         "resolve_optics",
+        "map_reflectance",
         "resolve_light",
         "warn_dark_bands",
         "resolve_sky_emission",
     ];
     assert_eq!(ran((r#"{ "green": Bands([0.05, "#, r#"{ "green": Bands([0.06, "#)), named);
-    let own = ["resolve_optics", "resolve_temperatures"];
+    let own = ["resolve_optics", "map_reflectance", "resolve_temperatures"];
     assert_eq!(ran(("transmittance: Bands([0.02", "transmittance: Bands([0.03")), own);
 }
 

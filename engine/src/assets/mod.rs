@@ -9,6 +9,7 @@
 //! | [`read_instances`] | a text table | [`StemTable`] |
 //! | [`read_geojson`], [`read_polygons`] | GeoJSON, a text table | [`Polygon`](crate::geometry::Polygon)s |
 //! | [`read_raster`] | ESRI ASCII grid, ENVI, GeoTIFF | [`Raster`] |
+//! | [`RasterFile`] | bands of ESRI ASCII grids, ENVI, GeoTIFF | [`RasterLayers`] |
 //! | [`read_bands`] | ENVI, GeoTIFF, EXR | [`BandRaster`] |
 //! | [`read_spectrum`] | text tables, ENVI, ECOSTRESS and USGS libraries, ASD files | [`SpectrumTable`] |
 
@@ -46,8 +47,8 @@ pub use obj::read_obj;
 pub use ply::{PlyError, read_ply};
 pub(crate) use raster::companions;
 pub use raster::{
-    Assumed, BandRaster, Projection, Raster, RasterBand, RasterError, RasterExtent,
-    RasterGeoreference, read_bands, read_raster,
+    Assumed, BandDescription, BandRaster, LayerTerm, Projection, Raster, RasterBand, RasterError,
+    RasterExtent, RasterFile, RasterGeoreference, RasterLayers, Scaling, read_bands, read_raster,
 };
 pub use spectrum::{
     SpectrumColumns, SpectrumFormat, SpectrumPoint, SpectrumProblem, SpectrumTable, read_spectrum,

@@ -22,6 +22,7 @@ mod mesh;
 mod optics;
 mod placement;
 mod planting;
+mod reflectance_map;
 mod sensor;
 mod terrain;
 mod thermal;
@@ -40,6 +41,7 @@ pub use optics::{
 };
 pub use placement::{Instance, InstanceQuery, Lean, Placement, Position, Scale, Yaw};
 pub use planting::{InstanceRange, PlantingAreas, ShownMeshes};
+pub use reflectance_map::{CellLayout, MappedReflectance, ReflectanceCells};
 pub use sensor::{
     Cone, CountingPlane, DirectionSensor, ImageMeasure, ImageSamples, ImageSensor, Layers, Per,
     PhotonMeasure, PhotonProduct, PhotonSensor, ResolvedSensor, StopCriterion, System, View,

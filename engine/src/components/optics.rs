@@ -1,3 +1,5 @@
+use super::MappedReflectance;
+
 /// Parameters of the surface model of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceOptics {
@@ -9,6 +11,8 @@ pub enum SurfaceOptics {
     Rpv(DirectionalOptics<RpvParameters>),
     /// SOILSPECT.
     Soilspect(DirectionalOptics<SoilspectParameters>),
+    /// Diffuse reflection of the ground, by cells.
+    Mapped(MappedReflectance),
 }
 
 /// Parameters of an opaque model whose reflection depends on both directions, and the light that it reflects in
@@ -35,8 +39,13 @@ impl SurfaceOptics {
             }
             (Self::Rpv(optics), Self::Rpv(next)) => optics.join(next),
             (Self::Soilspect(optics), Self::Soilspect(next)) => optics.join(next),
+            (Self::Mapped(optics), Self::Mapped(next)) => optics.join(next),
             (
-                Self::BiLambertian(_) | Self::GlossyLeaf(_) | Self::Rpv(_) | Self::Soilspect(_),
+                Self::BiLambertian(_)
+                | Self::GlossyLeaf(_)
+                | Self::Rpv(_)
+                | Self::Soilspect(_)
+                | Self::Mapped(_),
                 _,
             ) => {
                 panic!("surfaces that are joined have the same model")
@@ -50,7 +59,7 @@ impl SurfaceOptics {
         match self {
             Self::BiLambertian(optics) => Some(optics),
             Self::GlossyLeaf(optics) => Some(&optics.body),
-            Self::Rpv(_) | Self::Soilspect(_) => None,
+            Self::Rpv(_) | Self::Soilspect(_) | Self::Mapped(_) => None,
         }
     }
 }

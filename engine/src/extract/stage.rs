@@ -79,8 +79,8 @@ impl Stage {
 
     /// The surface at a hit, seen from the direction `wo`.
     #[must_use]
-    pub const fn interaction(&self, hit: &accel::Hit, wo: DVec3) -> Interaction<'_> {
-        self.models.at(SurfaceId(hit.surface), hit.normal, wo)
+    pub fn interaction(&self, hit: &accel::Hit, wo: DVec3) -> Interaction<'_> {
+        self.models.at(SurfaceId(hit.surface), hit.normal, wo).at_place(hit.point.truncate())
     }
 
     /// Returns whether a hit lies on the ground: the first instance of every stage.

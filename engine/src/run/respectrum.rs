@@ -87,8 +87,8 @@ pub(super) fn without_coefficients(report: &Report, store: &CheckpointStore) -> 
     let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "{} kept no coefficients: photons, and directions by packets, have some where all surfaces are diffuse and \
-             no light is emitted",
+            "{} kept no coefficients: photons, and directions by packets, have some where all surfaces are diffuse, \
+             none is a `ReflectanceMap`, and no light is emitted",
             names.join(", ")
         )
     })

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{RepresentativeBands, SpectrumId, SurfaceModels};
+use super::{CellFraction, RepresentativeBands, SpectrumId, SurfaceModels};
 
 /// Identifies a surface: the id that hits carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,6 +31,8 @@ pub enum LobeSpectrum {
     Sum([(SpectrumId, f32); 2]),
     /// `π f` of the model of a surface for a pair of directions; of models that `Bsdf::evaluate` knows alone.
     Model(SurfaceId, Angles),
+    /// Fraction of the light on a surface that is reflected or absorbed in a cell of its map.
+    Cell(SurfaceId, CellFraction),
 }
 
 impl Lobe {
@@ -122,6 +124,11 @@ impl SurfaceModels {
                 self.bsdf(surface).evaluate(&angles, lanes, buffer);
                 buffer
             }
+            LobeSpectrum::Cell(surface, cell) => {
+                let buffer = &mut buffer[..lanes.len()];
+                self.map(surface).evaluate(cell, lanes, buffer);
+                buffer
+            }
         }
     }
 
@@ -153,6 +160,9 @@ impl SurfaceModels {
             LobeSpectrum::Model(surface, angles) => {
                 self.bsdf(surface).evaluate_representatives(&angles, buffer);
             }
+            LobeSpectrum::Cell(surface, cell) => {
+                self.map(surface).evaluate_representatives(cell, buffer);
+            }
         }
         buffer
     }
@@ -161,7 +171,7 @@ impl SurfaceModels {
     pub(crate) fn normalisation(&self, spectrum: &LobeSpectrum) -> f32 {
         match *spectrum {
             LobeSpectrum::Table(id) => self.spectra.largest(id),
-            LobeSpectrum::Sum(_) | LobeSpectrum::Model(..) => 1.0,
+            LobeSpectrum::Sum(_) | LobeSpectrum::Model(..) | LobeSpectrum::Cell(..) => 1.0,
         }
     }
 

@@ -10,6 +10,7 @@ mod directional;
 mod glossy_leaf;
 mod lanes;
 mod lobe;
+mod mapped;
 mod path_spectra;
 mod representatives;
 mod rpv;
@@ -18,13 +19,14 @@ mod spectrum;
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 pub use bilambertian::BiLambertian;
 pub use directional::{BandModel, Directional, ModelFault};
 pub use glossy_leaf::GlossyLeaf;
 pub(crate) use lanes::{add_lit, add_seen, dot, largest, largest_product, multiply, with_simd};
 pub use lobe::{Angles, Lobe, LobeSpectrum, SurfaceId};
+pub use mapped::{CellFraction, MappedLambertian};
 pub use path_spectra::{PathMisfit, PathSpectra};
 pub use representatives::RepresentativeBands;
 pub use spectrum::{SceneSpectra, SpectrumId};
@@ -45,6 +47,8 @@ pub enum Bsdf {
     Rpv(Directional<RpvParameters>),
     /// Jacquemoud, Baret and Hanocq's reflection of soil.
     Soilspect(Directional<SoilspectParameters>),
+    /// Diffuse reflection of the ground, by cells.
+    Mapped(MappedLambertian),
 }
 
 /// Surface models of a scene, by the ids that hits carry, and the spectra that they refer to.
@@ -62,6 +66,8 @@ pub struct Interaction<'m> {
     surface: SurfaceId,
     normal: DVec3,
     wo: DVec3,
+    /// Horizontal position, m, which maps depend on.
+    place: DVec2,
 }
 
 /// A sampled direction.
@@ -99,6 +105,7 @@ impl SurfaceModels {
             SurfaceOptics::GlossyLeaf(optics) => Bsdf::GlossyLeaf(GlossyLeaf::new(optics, spectra)),
             SurfaceOptics::Rpv(optics) => Bsdf::Rpv(Directional::new(optics, spectra)),
             SurfaceOptics::Soilspect(optics) => Bsdf::Soilspect(Directional::new(optics, spectra)),
+            SurfaceOptics::Mapped(optics) => Bsdf::Mapped(MappedLambertian::new(optics, spectra)),
         });
         SurfaceId(self.bsdfs.len() as u32 - 1)
     }
@@ -109,6 +116,7 @@ impl SurfaceModels {
             Bsdf::BiLambertian(_) | Bsdf::GlossyLeaf(_) => Vec::new(),
             Bsdf::Rpv(model) => model.shapes(),
             Bsdf::Soilspect(model) => model.shapes(),
+            Bsdf::Mapped(model) => model.shapes(),
         });
         self.spectra.choose_representatives(&shapes.collect::<Vec<_>>());
         for bsdf in &mut self.bsdfs {
@@ -116,16 +124,18 @@ impl SurfaceModels {
                 Bsdf::BiLambertian(_) | Bsdf::GlossyLeaf(_) => {}
                 Bsdf::Rpv(model) => model.choose_representatives(&self.spectra),
                 Bsdf::Soilspect(model) => model.choose_representatives(&self.spectra),
+                Bsdf::Mapped(model) => model.choose_representatives(&self.spectra),
             }
         }
     }
 
-    /// Returns whether all surfaces are diffuse: paths are then multiplied by spectra of the table alone.
+    /// Returns whether all surfaces are diffuse and alike everywhere: paths are then multiplied by spectra of the table
+    /// alone.
     #[must_use]
     pub fn are_diffuse(&self) -> bool {
         self.bsdfs.iter().all(|bsdf| match bsdf {
             Bsdf::BiLambertian(_) => true,
-            Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) => false,
+            Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) | Bsdf::Mapped(_) => false,
         })
     }
 
@@ -142,7 +152,14 @@ impl SurfaceModels {
     /// A point of a surface with a unit normal, seen from the direction `wo`.
     #[must_use]
     pub const fn at(&self, surface: SurfaceId, normal: DVec3, wo: DVec3) -> Interaction<'_> {
-        Interaction { models: self, surface, normal, wo }
+        Interaction { models: self, surface, normal, wo, place: DVec2::ZERO }
+    }
+
+    fn map(&self, surface: SurfaceId) -> &MappedLambertian {
+        match self.bsdf(surface) {
+            Bsdf::Mapped(map) => map,
+            _ => unreachable!("lobes of cells are those of maps"),
+        }
     }
 
     /// Power of a spectrum of the scene in the bands that importance names.
@@ -170,6 +187,12 @@ impl SurfaceModels {
 }
 
 impl<'m> Interaction<'m> {
+    /// The same at a horizontal position, m: without it, maps are taken at the origin.
+    #[must_use]
+    pub const fn at_place(self, place: DVec2) -> Self {
+        Self { place, ..self }
+    }
+
     /// Models and spectra of the scene.
     pub(crate) const fn models(&self) -> &'m SurfaceModels {
         self.models
@@ -192,6 +215,7 @@ impl<'m> Interaction<'m> {
             Bsdf::BiLambertian(model) => model.f(self, wi),
             Bsdf::GlossyLeaf(model) => model.f(self, wi),
             Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::f(self, wi),
+            Bsdf::Mapped(model) => model.f(self, wi),
         }
     }
 
@@ -204,6 +228,7 @@ impl<'m> Interaction<'m> {
             Bsdf::BiLambertian(model) => model.sample_f(self, importance, u),
             Bsdf::GlossyLeaf(model) => model.sample_f(self, importance, u),
             Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::sample_f(self, u),
+            Bsdf::Mapped(model) => model.sample_f(self, importance, u),
         }
     }
 
@@ -215,6 +240,7 @@ impl<'m> Interaction<'m> {
             Bsdf::BiLambertian(model) => model.pdf(self, importance, wi),
             Bsdf::GlossyLeaf(model) => model.pdf(self, importance, wi),
             Bsdf::Rpv(_) | Bsdf::Soilspect(_) => directional::pdf(self, wi),
+            Bsdf::Mapped(model) => model.pdf(self, wi),
         }
     }
 
@@ -226,6 +252,7 @@ impl<'m> Interaction<'m> {
             Bsdf::GlossyLeaf(model) => model.scattered_fraction(self),
             Bsdf::Rpv(model) => model.scattered_fraction(self),
             Bsdf::Soilspect(model) => model.scattered_fraction(self),
+            Bsdf::Mapped(model) => model.reflected_fraction(self),
         }
     }
 
@@ -237,6 +264,7 @@ impl<'m> Interaction<'m> {
             Bsdf::GlossyLeaf(model) => model.absorbed_fraction(self),
             Bsdf::Rpv(model) => model.absorbed_fraction(self),
             Bsdf::Soilspect(model) => model.absorbed_fraction(self),
+            Bsdf::Mapped(model) => model.absorbed_fraction(self),
         }
     }
 
@@ -248,6 +276,7 @@ impl<'m> Interaction<'m> {
             Bsdf::GlossyLeaf(model) => model.reflected_fraction(self),
             Bsdf::Rpv(model) => model.scattered_fraction(self),
             Bsdf::Soilspect(model) => model.scattered_fraction(self),
+            Bsdf::Mapped(model) => model.reflected_fraction(self),
         }
     }
 
@@ -255,7 +284,7 @@ impl<'m> Interaction<'m> {
     #[must_use]
     pub fn is_diffuse(&self) -> bool {
         match self.bsdf() {
-            Bsdf::BiLambertian(_) => true,
+            Bsdf::BiLambertian(_) | Bsdf::Mapped(_) => true,
             Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) => false,
         }
     }
@@ -283,7 +312,9 @@ impl Bsdf {
         match self {
             Self::Rpv(model) => model.evaluate(angles, lanes, values),
             Self::Soilspect(model) => model.evaluate(angles, lanes, values),
-            Self::BiLambertian(_) | Self::GlossyLeaf(_) => unreachable!("{NO_MODEL_LOBE}"),
+            Self::BiLambertian(_) | Self::GlossyLeaf(_) | Self::Mapped(_) => {
+                unreachable!("{NO_MODEL_LOBE}")
+            }
         }
     }
 
@@ -292,12 +323,14 @@ impl Bsdf {
         match self {
             Self::Rpv(model) => model.evaluate_representatives(angles, values),
             Self::Soilspect(model) => model.evaluate_representatives(angles, values),
-            Self::BiLambertian(_) | Self::GlossyLeaf(_) => unreachable!("{NO_MODEL_LOBE}"),
+            Self::BiLambertian(_) | Self::GlossyLeaf(_) | Self::Mapped(_) => {
+                unreachable!("{NO_MODEL_LOBE}")
+            }
         }
     }
 }
 
-const NO_MODEL_LOBE: &str = "lobes of these models are spectra of the table or sums of two";
+const NO_MODEL_LOBE: &str = "lobes of these models are spectra of the table, sums of two, or cells";
 
 /// A spectrum padded with zeros to whole groups of [`LANES`].
 #[must_use]

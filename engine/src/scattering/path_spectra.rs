@@ -124,7 +124,7 @@ impl PathSpectra {
 fn surfaces(models: &SurfaceModels) -> Option<Vec<[u32; 3]>> {
     let spectra = |bsdf: &Bsdf| match bsdf {
         Bsdf::BiLambertian(model) => Some(model.scattering_spectra().map(SpectrumId::number)),
-        Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) => None,
+        Bsdf::GlossyLeaf(_) | Bsdf::Rpv(_) | Bsdf::Soilspect(_) | Bsdf::Mapped(_) => None,
     };
     models.bsdfs.iter().map(spectra).collect()
 }

@@ -32,6 +32,7 @@ mod count_instances;
 mod find_used_materials;
 mod hide_and_select;
 mod load_meshes;
+mod map_reflectance;
 mod measure_bounds;
 mod measure_extents;
 mod measure_leaf_area;

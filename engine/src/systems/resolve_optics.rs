@@ -14,7 +14,8 @@ use crate::document::{
 use crate::scattering::{BandModel, ModelFault};
 
 /// Resolves the spectra of used materials to bands, and checks the others as far as that takes no file. Reads
-/// `document::Material` and the resources `spectra`, `bands` and `used_materials`; writes [`SurfaceOptics`].
+/// `document::Material` and the resources `spectra`, `bands` and `used_materials`; writes [`SurfaceOptics`] of all materials
+/// but maps.
 pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
     let materials: Vec<_> =
         resources.materials.iter().map(|(name, &entity)| (name.clone(), entity)).collect();
@@ -27,6 +28,9 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
         let optics = {
             let material = world.get::<&Material>(entity);
             let material = material.expect("`spawn` gives materials their source");
+            if matches!(&*material, Material::ReflectanceMap(_)) {
+                continue;
+            }
             let reads_file =
                 material.spectra().iter().any(|(_, spectrum, _)| reads_file(spectrum, resources));
             if is_used || !reads_file { optics(&material, &path, resources) } else { None }
@@ -35,7 +39,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
     }
 }
 
-/// Optics of a material; `None` after an error.
+/// Optics of a material; `None` after an error, and of maps, which `map_reflectance` reads.
 pub(super) fn optics(
     material: &Material,
     path: &ScenePath,
@@ -69,6 +73,7 @@ pub(super) fn optics(
             let help = "lower `albedo`, or bring `b`, `c`, `b_prime` and `c_prime` nearer to 0";
             directional(bands, help, path, resources).map(SurfaceOptics::Soilspect)
         }
+        Material::ReflectanceMap(_) => None,
     }
 }
 

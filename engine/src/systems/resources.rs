@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use hecs::Entity;
 
 use super::georeference::CoordinateSystem;
+use super::map_reflectance::ReadMap;
 use super::resolve_bands::BandResponses;
 use super::spectra::LastLeaf;
 use super::{Changes, Messages};
@@ -64,6 +65,8 @@ pub struct Resources {
     pub messages: Messages,
     /// The leaf that PROSPECT has computed last: its reflectance and transmittance are asked for one after the other.
     pub(super) last_leaf: Option<LastLeaf>,
+    /// Maps of reflectance that have been read.
+    pub(super) reflectance_maps: Vec<ReadMap>,
 }
 
 impl Resources {
@@ -94,6 +97,7 @@ impl Resources {
             changes: Changes::NONE,
             messages: Messages::default(),
             last_leaf: None,
+            reflectance_maps: Vec::new(),
         }
     }
 

@@ -8,6 +8,7 @@ use super::count_instances::count_instances;
 use super::find_used_materials::find_used_materials;
 use super::hide_and_select::{check_patterns, hide_and_select};
 use super::load_meshes::load_meshes;
+use super::map_reflectance::map_reflectance;
 use super::measure_bounds::measure_bounds;
 use super::measure_extents::measure_extents;
 use super::measure_leaf_area::measure_leaf_area;
@@ -92,6 +93,7 @@ const SCHEDULE: &[ScheduledSystem] = schedule! {
     resolve_weights: RESPONSES | SUN | SPECTRA;
     find_used_materials: INSTANCES | LOADED_MESHES | GROUND;
     resolve_optics: MATERIALS | SPECTRA | RESPONSES | USED_MATERIALS;
+    map_reflectance: MATERIALS | SPECTRA | RESPONSES | USED_MATERIALS | GROUND;
     resolve_temperatures: MATERIALS | RESPONSES | USED_MATERIALS | MEASURES_EMISSION;
     resolve_light: SUN | SKY | SPECTRA | RESPONSES => LIGHT;
     warn_dark_bands: LIGHT | SENSORS;

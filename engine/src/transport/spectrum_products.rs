@@ -281,7 +281,7 @@ impl ProductIndex {
             LobeSpectrum::Table(spectrum) => {
                 *next.entry((product, Factor::Complement(spectrum))).or_insert(new)
             }
-            LobeSpectrum::Sum(_) | LobeSpectrum::Model(..) => new,
+            LobeSpectrum::Sum(_) | LobeSpectrum::Model(..) | LobeSpectrum::Cell(..) => new,
         };
         if id == new {
             powers.push(Powers::default());

@@ -7,11 +7,11 @@ use sunfleck::document::{
     Distribution, Ends, FileFormat, Fisheye, FisheyeProjection, Frame, Gltf, ImageMeasure,
     ImageOptions, InstanceList, InstanceTable, Instances, Lambertian, Layers, Leaf, Look, Map,
     Material, Obj, Origin, Orthographic, Param, PartsBy, Per, Perspective, PhotonMeasure, Photons,
-    Picture, Ply, Prospect, Prototype, ReadOptions, Response, Roulette, Rpv, Rule, Scatter, Scene,
-    Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes, Spectrum, SpectrumFile, Stems,
-    StopCriterion, Sun, SunPosition, Sweep, System, TableCoordinates, TabulatedSpectrum,
-    Temperature, Terrain, TerrainPlane, ThermalSky, Transport, ValueUnit, Views, VirtualPlane,
-    WavelengthUnit, read_file, read_text,
+    Picture, Ply, Prospect, Prototype, RasterBands, ReadOptions, ReflectanceMap, Response,
+    Roulette, Rpv, Rule, Scatter, Scene, Sensor, Sky, SoilMixture, Soilspect, Spa, SpeciesMeshes,
+    Spectrum, SpectrumFile, Stems, StopCriterion, Sun, SunPosition, Sweep, System,
+    TableCoordinates, TabulatedSpectrum, Temperature, Terrain, TerrainPlane, ThermalSky, Transport,
+    ValueUnit, Views, VirtualPlane, WavelengthUnit, read_file, read_text,
 };
 
 use crate::crowns::crown;
@@ -133,6 +133,29 @@ fn material() -> BoxedStrategy<Material> {
                     })
                 }
             ),
+        (
+            (text(), raster_bands(), option(number()), number()),
+            (option(spectrum()), option(temperature()))
+        )
+            .prop_map(|((file, bands, scale, offset), (elsewhere, temperature))| {
+                Material::ReflectanceMap(ReflectanceMap {
+                    file,
+                    bands,
+                    scale,
+                    offset,
+                    elsewhere,
+                    temperature,
+                })
+            }),
+    ]
+    .boxed()
+}
+
+fn raster_bands() -> BoxedStrategy<RasterBands> {
+    prop_oneof![
+        param().prop_map(RasterBands::All),
+        map(param()).prop_map(RasterBands::Each),
+        Just(RasterBands::Wavelengths),
     ]
     .boxed()
 }

@@ -10,7 +10,7 @@ use super::super::AssetError;
 use super::super::crs::Crs;
 use super::super::error::excerpt;
 use super::super::text::open;
-use super::metadata::BandMetadata;
+use super::metadata::{BandMetadata, Scaling};
 use super::window::CellWindow;
 use super::{
     MOST_CELLS, Raster, RasterError, RasterExtent, RasterGeoreference, length, parse_no_data,
@@ -196,8 +196,12 @@ fn read_values(
     Ok(values)
 }
 
-/// Reads an ESRI ASCII grid, or the part of it that an extent reaches.
-pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster, AssetError> {
+/// Reads an ESRI ASCII grid, or the part of it that an extent reaches; with a scaling in place of that of the file beside it.
+pub(super) fn read(
+    path: &Path,
+    extent: Option<&RasterExtent>,
+    scaling: Option<Scaling>,
+) -> Result<Raster, AssetError> {
     let file = open(path)?;
     let bytes = length(&file);
     let mut words =
@@ -209,7 +213,7 @@ pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster,
     let cell = header.cell().map_err(wrong)?;
     let corner = |axis| header.corner(axis, cell[axis]);
     let corner = DVec2::new(corner(0).map_err(wrong)?, corner(1).map_err(wrong)?);
-    let (auxiliary, of_auxiliary) = sidecar::auxiliary(path).map_err(wrong)?;
+    let (auxiliary, of_auxiliary) = sidecar::auxiliary(path, 0).map_err(wrong)?;
     let crs = sidecar::projection(path).map_err(wrong)?.or(of_auxiliary);
     let crs = crs.unwrap_or_else(|| Crs::named(""));
     let place = RasterGeoreference { corner, cell, crs, projection: None };
@@ -227,7 +231,7 @@ pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster,
     let no_data = header.get("nodata_value");
     let band = BandMetadata { no_data, ..BandMetadata::default() }.or(auxiliary);
     let no_data = band.no_data.or(Some(DEFAULT_NO_DATA));
-    let band = BandMetadata { no_data, ..band };
+    let band = BandMetadata { no_data, ..band }.scaled(scaling);
     let size = (columns as usize, rows as usize);
     let mut values = read_values(&mut words, first, size, &window, path)?;
     let assumed = band.apply(&mut values);

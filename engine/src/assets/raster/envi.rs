@@ -7,9 +7,10 @@ use glam::DVec2;
 
 use super::super::crs::{Axes, Crs, Length, UtmZone, from_wkt};
 use super::super::error::excerpt;
+use super::layers::BandDescription;
 use super::metadata::BandMetadata;
 use super::names::{headers, values};
-use super::raw::{Interleave, SampleLayout, SampleType};
+use super::raw::{Interleave, RawReader, SampleLayout, SampleType};
 use super::window::CellWindow;
 use super::{
     BandRaster, Projection, Raster, RasterBand, RasterError, RasterExtent, RasterGeoreference,
@@ -201,12 +202,12 @@ pub(super) fn read(
     let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
     let layout = header.layout()?;
     let place = header.place(layout.rows)?;
-    let (auxiliary, crs) = sidecar::auxiliary(&file)?;
+    let (auxiliary, crs) = sidecar::auxiliary(&file, 0)?;
     let place = place.map(|place| match crs {
         Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
         _ => place,
     });
-    let band = header.band()?.or(auxiliary);
+    let band = header.band(0)?.or(auxiliary);
     let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
     let mut values = layout.read(&file, &window, 0)?;
     let assumed = band.apply(&mut values);
@@ -225,34 +226,39 @@ pub(super) fn read_bands(named: &Path, header_path: &Path) -> Result<BandRaster,
     let layout = header.layout()?;
     let place = header.place(layout.rows)?;
     let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), None)?;
-    let metadata = header.band()?;
-    let list = |key: &str| -> Vec<&str> {
-        header.get(key).map_or_else(Vec::new, |text| text.split(',').map(str::trim).collect())
-    };
-    let (names, wavelengths) = (list("band names"), list("wavelength"));
-    let nm = match header.get("wavelength units").map(str::to_lowercase).as_deref() {
-        Some("micrometers" | "um") => 1000.0,
-        // Programs that write no unit write nanometres.
-        None | Some("nanometers" | "nm" | "unknown") => 1.0,
-        Some(_) => f64::NAN,
-    };
     let mut bands = Vec::new();
-    for band in 0..layout.bands {
-        let mut values = layout.read(&file, &window, band)?;
-        metadata.apply(&mut values);
-        let index = band as usize;
-        let wavelength = wavelengths.get(index).and_then(|text| text.parse::<f64>().ok());
+    for (index, band) in header.bands(&layout)?.into_iter().enumerate() {
+        let mut values = layout.read(&file, &window, index as u64)?;
+        band.metadata.apply(&mut values);
         bands.push(RasterBand {
-            name: names
-                .get(index)
-                .map_or_else(|| format!("band {}", band + 1), |&name| name.to_owned()),
-            wavelength_nm: wavelength.map(|wavelength| wavelength * nm).filter(|nm| nm.is_finite()),
+            name: band.name.unwrap_or_else(|| format!("band {}", index + 1)),
+            wavelength_nm: band.wavelength_nm,
             values: values.into_iter().map(|value| value as f32).collect(),
         });
     }
     let description = header.get("description").unwrap_or_default().to_owned();
     let (columns, rows) = (window.columns.len(), window.rows.len());
     Ok(BandRaster { columns, rows, bands, description, place })
+}
+
+/// Opens a raster whose values are read strip by strip.
+pub(super) fn reader(named: &Path, header_path: &Path) -> Result<RawReader, RasterError> {
+    let header = EnviHeader::read(header_path)?;
+    let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
+    let layout = header.layout()?;
+    layout.open(&file)?;
+    let (_, crs) = sidecar::auxiliary(&file, 0)?;
+    let place = header.place(layout.rows)?.map(|place| match crs {
+        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
+        _ => place,
+    });
+    let mut bands = header.bands(&layout)?;
+    for (index, band) in bands.iter_mut().enumerate() {
+        let metadata = std::mem::take(&mut band.metadata).or(sidecar::auxiliary(&file, index)?.0);
+        band.metadata =
+            BandMetadata { scale: metadata.scale.or(header.reflectance_scale()?), ..metadata };
+    }
+    Ok(RawReader { file, layout, place, bands })
 }
 
 impl EnviHeader {
@@ -307,8 +313,40 @@ impl EnviHeader {
         })
     }
 
-    /// Scale, offset and value for no data of the first band.
-    fn band(&self) -> Result<BandMetadata, RasterError> {
+    /// Names, wavelengths and metadata of all bands.
+    fn bands(&self, layout: &SampleLayout) -> Result<Vec<BandDescription>, RasterError> {
+        let list = |key: &str| -> Vec<&str> {
+            self.get(key).map_or_else(Vec::new, |text| text.split(',').map(str::trim).collect())
+        };
+        let (names, wavelengths) = (list("band names"), list("wavelength"));
+        let nm = match self.get("wavelength units").map(str::to_lowercase).as_deref() {
+            Some("micrometers" | "um") => 1000.0,
+            // Programs that write no unit write nanometres.
+            None | Some("nanometers" | "nm" | "unknown") => 1.0,
+            Some(_) => f64::NAN,
+        };
+        let describe = |index: usize| {
+            let wavelength = wavelengths.get(index).and_then(|text| text.parse::<f64>().ok());
+            Ok(BandDescription {
+                name: names.get(index).map(|&name| name.to_owned()),
+                wavelength_nm: wavelength.map(|one| one * nm).filter(|nm| nm.is_finite()),
+                metadata: self.band(index)?,
+            })
+        };
+        (0..layout.bands as usize).map(describe).collect()
+    }
+
+    /// Factor that makes fractions of the values, 1 / `reflectance scale factor`.
+    fn reflectance_scale(&self) -> Result<Option<f64>, RasterError> {
+        let Some(text) = self.get("reflectance scale factor") else { return Ok(None) };
+        let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
+        let found = excerpt(text);
+        let problem = format!("says `reflectance scale factor = {found}`; write a number above 0");
+        factor.map(|factor| Some(1.0 / factor)).ok_or_else(|| self.error(problem))
+    }
+
+    /// Scale, offset and value for no data of a band, which is counted from 0.
+    fn band(&self, index: usize) -> Result<BandMetadata, RasterError> {
         let wrong = |key: &str, text: &str| {
             let found = excerpt(text);
             self.error(format!("says `{key} = {found}`; write a number"))
@@ -320,13 +358,17 @@ impl EnviHeader {
                 Some(value.ok_or_else(|| wrong("data ignore value", text))?)
             }
         };
-        let first = |key: &str| {
+        let item_of = |key: &str| {
             let Some(text) = self.get(key) else { return Ok(None) };
-            let item = text.split(',').next().unwrap_or_default().trim();
+            // One number holds for all bands.
+            let items: Vec<&str> = text.split(',').map(str::trim).collect();
+            let Some(item) = items.get(if items.len() == 1 { 0 } else { index }) else {
+                return Ok(None);
+            };
             let number: Option<f64> = item.parse().ok().filter(|number: &f64| number.is_finite());
             number.map(Some).ok_or_else(|| wrong(key, text))
         };
-        let (scale, offset) = (first("data gain values")?, first("data offset values")?);
+        let (scale, offset) = (item_of("data gain values")?, item_of("data offset values")?);
         let unit = self.get("data units").or_else(|| self.get("z units")).map(str::to_owned);
         Ok(BandMetadata { no_data, scale, offset, unit })
     }

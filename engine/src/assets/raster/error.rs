@@ -36,6 +36,11 @@ pub enum RasterError {
     )]
     TooMany { columns: u64, rows: u64, most: u64 },
     #[error(
+        "its {columns} x {rows} cells of {layers} bands take {lack}; cut it to the scene, or resample it \
+         to larger cells (gdal_translate -outsize)"
+    )]
+    Memory { columns: usize, rows: usize, layers: usize, lack: crate::memory::Lack },
+    #[error(
         "says {columns} x {rows} cells, which take {needed} bytes, but the file has {found}; it is cut off, or its header is wrong"
     )]
     TooShort { columns: u64, rows: u64, needed: u64, found: u64 },

@@ -9,9 +9,10 @@ use glam::DVec2;
 use super::super::crs::Crs;
 use super::super::error::excerpt;
 use super::envi::values_of;
+use super::layers::BandDescription;
 use super::metadata::BandMetadata;
 use super::names::{headers, split, without};
-use super::raw::{Interleave, SampleLayout, SampleType};
+use super::raw::{Interleave, RawReader, SampleLayout, SampleType};
 use super::window::CellWindow;
 use super::{Raster, RasterError, RasterExtent, RasterGeoreference, parse_no_data, sidecar};
 use crate::files;
@@ -169,23 +170,36 @@ pub(super) fn read(
     header_path: &Path,
     extent: Option<&RasterExtent>,
 ) -> Result<Raster, RasterError> {
-    let file = if path == header_path { values_of(header_path)? } else { path.to_owned() };
-    let unreadable = || RasterError::NoHeader(split(header_path).1);
-    let header = EsriHeader::read(header_path).ok_or_else(unreadable)?;
-    let layout = header.layout(&file)?;
-    let (auxiliary, crs) = sidecar::auxiliary(&file)?;
-    let crs = sidecar::projection(&file)?.or(crs);
-    let no_data = header
-        .get("nodata")
-        .or_else(|| header.get("nodata_value"))
-        .map(|text| parse_no_data(text).ok_or_else(|| header.wrong("nodata", text, "a number")));
-    let band =
-        BandMetadata { no_data: no_data.transpose()?, ..BandMetadata::default() }.or(auxiliary);
-    let place = header.place(layout.rows, crs)?;
+    let RawReader { file, layout, place, bands } = reader(path, header_path)?;
+    let band = &bands[0].metadata;
     let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
     let mut values = layout.read(&file, &window, 0)?;
     let assumed = band.apply(&mut values);
     let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
     let (columns, rows) = (window.columns.len(), window.rows.len());
     Ok(Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed })
+}
+
+/// Opens a raster whose values are read strip by strip.
+pub(super) fn reader(path: &Path, header_path: &Path) -> Result<RawReader, RasterError> {
+    let file = if path == header_path { values_of(header_path)? } else { path.to_owned() };
+    let unreadable = || RasterError::NoHeader(split(header_path).1);
+    let header = EsriHeader::read(header_path).ok_or_else(unreadable)?;
+    let layout = header.layout(&file)?;
+    layout.open(&file)?;
+    let (_, crs) = sidecar::auxiliary(&file, 0)?;
+    let crs = sidecar::projection(&file)?.or(crs);
+    let no_data = header
+        .get("nodata")
+        .or_else(|| header.get("nodata_value"))
+        .map(|text| parse_no_data(text).ok_or_else(|| header.wrong("nodata", text, "a number")));
+    let no_data = no_data.transpose()?;
+    let describe = |index: usize| {
+        let own = BandMetadata { no_data, ..BandMetadata::default() };
+        let metadata = own.or(sidecar::auxiliary(&file, index)?.0);
+        Ok(BandDescription { name: None, wavelength_nm: None, metadata })
+    };
+    let bands = (0..layout.bands as usize).map(describe).collect::<Result<_, RasterError>>()?;
+    let place = header.place(layout.rows, crs)?;
+    Ok(RawReader { file, layout, place, bands })
 }

@@ -6,12 +6,14 @@ use std::path::Path;
 
 use glam::DVec2;
 use tiff::TiffError;
-use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::tags::{PlanarConfiguration, Tag};
+use tiff::decoder::{Decoder, Limits};
+use tiff::tags::Tag;
 
 use super::directory::{self, PhotometricPatch};
 use super::geokeys::GeoKeys;
+use super::layers::{BandDescription, SampleReader};
 use super::metadata::{BandItems, BandMetadata};
+use super::tiff_picture::TiffPicture;
 use super::window::CellWindow;
 use super::{
     BandRaster, MOST_CELLS, Raster, RasterBand, RasterError, RasterExtent, RasterGeoreference,
@@ -19,12 +21,9 @@ use super::{
 };
 use crate::files;
 
-type Tiff = Decoder<BufReader<PhotometricPatch<File>>>;
+pub(super) type Tiff = Decoder<BufReader<PhotometricPatch<File>>>;
 
-/// Samples beside those that are shown: 1 and 2 are opacities.
-const EXTRA_SAMPLES: Tag = Tag::ExtraSamples;
-
-fn wrong(error: TiffError) -> RasterError {
+pub(super) fn wrong(error: TiffError) -> RasterError {
     match error {
         TiffError::UnsupportedError(problem) => RasterError::Unsupported(problem.to_string()),
         error => RasterError::Tiff(error.to_string()),
@@ -63,16 +62,8 @@ pub(super) fn read(
     let picture = TiffPicture::new(&mut tiff)?;
     let is_masked = picture.check()?;
     claimed_bytes(&mut tiff, columns, rows, length)?;
-    let place = match place(&mut tiff, columns as f64, rows as f64)? {
-        None => sidecar::world(path, rows as f64)?,
-        place => place,
-    };
-    let (auxiliary, crs) = sidecar::auxiliary(path)?;
-    let place = place.map(|place| match crs {
-        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
-        _ => place,
-    });
-    let band = band(&mut tiff)?.or(auxiliary);
+    let place = place_or_beside(&mut tiff, path)?;
+    let band = band(&mut tiff, 0)?.or(sidecar::auxiliary(path, 0)?.0);
     let (window, place) = CellWindow::new(columns, rows, place.as_ref(), extent)?;
     let mut values = picture.read(&mut tiff, &window, 0)?;
     let assumed = band.apply(&mut values);
@@ -108,14 +99,13 @@ pub(super) fn read_bands(file: File) -> Result<BandRaster, RasterError> {
     }
     claimed_bytes(&mut tiff, columns, rows, length)?;
     let place = place(&mut tiff, columns as f64, rows as f64)?;
-    let metadata = band(&mut tiff)?;
     let items = BandItems::from_tag(&text_of(&mut tiff, METADATA)?.unwrap_or_default());
     let description = text_of(&mut tiff, Tag::ImageDescription)?.unwrap_or_default();
     let (window, place) = CellWindow::new(columns, rows, place.as_ref(), None)?;
     let mut bands = Vec::new();
     for sample in 0..usize::from(picture.samples) {
         let mut values = picture.read(&mut tiff, &window, sample)?;
-        metadata.apply(&mut values);
+        band(&mut tiff, sample)?.apply(&mut values);
         bands.push(RasterBand {
             name: items.name(sample).unwrap_or_else(|| format!("band {}", sample + 1)),
             wavelength_nm: items.wavelength_nm(sample),
@@ -124,6 +114,107 @@ pub(super) fn read_bands(file: File) -> Result<BandRaster, RasterError> {
     }
     let (columns, rows) = (window.columns.len(), window.rows.len());
     Ok(BandRaster { columns, rows, bands, description, place })
+}
+
+/// Georeference of a file, or of those beside it.
+fn place_or_beside(
+    tiff: &mut Tiff,
+    path: &Path,
+) -> Result<Option<RasterGeoreference>, RasterError> {
+    let (columns, rows) = tiff.dimensions().map_err(wrong)?;
+    let place = match place(tiff, columns.into(), rows.into())? {
+        None => sidecar::world(path, rows.into())?,
+        place => place,
+    };
+    let (_, crs) = sidecar::auxiliary(path, 0)?;
+    Ok(place.map(|place| match crs {
+        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
+        _ => place,
+    }))
+}
+
+/// A file whose samples are read strip by strip.
+pub(super) struct TiffReader {
+    picture: (Tiff, TiffPicture),
+    /// Pictures whose cells of 0 have no data.
+    masks: Vec<(Tiff, TiffPicture)>,
+    pub(super) columns: u64,
+    pub(super) rows: u64,
+    pub(super) place: Option<RasterGeoreference>,
+    pub(super) bands: Vec<BandDescription>,
+}
+
+impl TiffReader {
+    /// Opens a file of any number of bands, with its masks.
+    pub(super) fn new(path: &Path) -> Result<Self, RasterError> {
+        let unreadable = |cause: std::io::Error| RasterError::Tiff(cause.to_string());
+        let opened = || open(files::open(path).map_err(unreadable)?);
+        let Opened { mut tiff, length, mask } = opened()?;
+        let (columns, rows) = tiff.dimensions().map_err(wrong)?;
+        let picture = TiffPicture::new(&mut tiff)?;
+        if picture.bits < 8 {
+            return Err(RasterError::Bits(picture.bits));
+        }
+        claimed_bytes(&mut tiff, columns.into(), rows.into(), length)?;
+        let mut masks = Vec::new();
+        if let Some(index) = mask {
+            let mut tiff = opened()?.tiff;
+            tiff.seek_to_image(index).map_err(wrong)?;
+            let picture = TiffPicture::new(&mut tiff)?;
+            masks.push((tiff, picture));
+        }
+        if let Some(file) = sidecar::mask(path) {
+            let bad = || RasterError::BadMask { columns: columns.into(), rows: rows.into() };
+            let Opened { mut tiff, .. } = open(files::open(&file).map_err(|_unreadable| bad())?)?;
+            if tiff.dimensions().map_err(wrong)? != (columns, rows) {
+                return Err(bad());
+            }
+            let picture = TiffPicture::new(&mut tiff)?;
+            masks.push((tiff, picture));
+        }
+        let items = BandItems::from_tag(&text_of(&mut tiff, METADATA)?.unwrap_or_default());
+        let describe = |sample: usize| {
+            Ok(BandDescription {
+                name: items.name(sample),
+                wavelength_nm: items.wavelength_nm(sample),
+                metadata: band(&mut tiff, sample)?.or(sidecar::auxiliary(path, sample)?.0),
+            })
+        };
+        let samples = usize::from(picture.samples) - usize::from(picture.has_mask);
+        let bands = (0..samples).map(describe).collect::<Result<_, RasterError>>()?;
+        let place = place_or_beside(&mut tiff, path)?;
+        let (columns, rows) = (columns.into(), rows.into());
+        Ok(Self { picture: (tiff, picture), masks, columns, rows, place, bands })
+    }
+}
+
+impl SampleReader for TiffReader {
+    fn rows_at_once(&self) -> usize {
+        self.picture.1.chunk.1
+    }
+
+    fn read(
+        &mut self,
+        strip: &CellWindow,
+        bands: &[usize],
+        values: &mut [Vec<f64>],
+    ) -> Result<(), RasterError> {
+        let (tiff, picture) = &mut self.picture;
+        picture.read_samples(tiff, strip, bands, values)?;
+        let mut masks = Vec::new();
+        if picture.has_mask {
+            masks.push(picture.read(tiff, strip, usize::from(picture.samples) - 1)?);
+        }
+        for (tiff, picture) in &mut self.masks {
+            masks.push(picture.read(tiff, strip, 0)?);
+        }
+        for values in values {
+            for mask in &masks {
+                hide(values, mask);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Tag of GDAL's own description of bands.
@@ -143,123 +234,15 @@ fn hide(values: &mut [f64], mask: &[f64]) {
     }
 }
 
-/// Reads the metadata of the first band.
-fn band(tiff: &mut Tiff) -> Result<BandMetadata, RasterError> {
-    let band = BandMetadata::from_tag(&text_of(tiff, METADATA)?.unwrap_or_default())?;
+/// Reads the metadata of a band, which is counted from 0.
+fn band(tiff: &mut Tiff, sample: usize) -> Result<BandMetadata, RasterError> {
+    let band = BandMetadata::from_tag(&text_of(tiff, METADATA)?.unwrap_or_default(), sample)?;
     let no_data =
         text_of(tiff, Tag::GdalNodata)?.filter(|text| !text.trim_matches(['\0', ' ']).is_empty());
     let no_data = no_data.map(|text| {
         parse_no_data(&text).ok_or(RasterError::BadMetadata { what: "NODATA", found: text })
     });
     Ok(BandMetadata { no_data: no_data.transpose()?, ..band })
-}
-
-/// Layout of the samples of a picture in its strips or tiles.
-struct TiffPicture {
-    bits: u16,
-    samples: u16,
-    is_planar: bool,
-    /// True if the last sample is a mask.
-    has_mask: bool,
-    /// Cells from strip to strip or tile to tile.
-    chunk: (usize, usize),
-    columns: usize,
-}
-
-impl TiffPicture {
-    fn new(tiff: &mut Tiff) -> Result<Self, RasterError> {
-        let mut number = |tag: Tag, default: u16| {
-            let value = tiff.find_tag_unsigned_vec::<u16>(tag).map_err(wrong)?;
-            Ok::<_, RasterError>(value.and_then(|all| all.last().copied()).unwrap_or(default))
-        };
-        let samples = number(Tag::SamplesPerPixel, 1)?;
-        let bits = number(Tag::BitsPerSample, 1)?;
-        let planar = number(Tag::PlanarConfiguration, 1)?;
-        let has_mask = matches!(number(EXTRA_SAMPLES, 0)?, 1 | 2) && samples > 1;
-        let (columns, _) = tiff.dimensions().map_err(wrong)?;
-        let (width, height) = tiff.chunk_dimensions();
-        Ok(Self {
-            bits,
-            samples,
-            is_planar: planar == PlanarConfiguration::Planar.to_u16(),
-            has_mask,
-            chunk: (width as usize, height as usize),
-            columns: columns as usize,
-        })
-    }
-
-    /// Refuses what holds no one band; returns whether its second sample is a mask.
-    fn check(&self) -> Result<bool, RasterError> {
-        match (self.samples, self.has_mask) {
-            (1, _) | (2, true) => {}
-            (samples, true) => return Err(RasterError::BandsWithMask(samples)),
-            (samples, false) => return Err(RasterError::Bands(samples)),
-        }
-        if self.bits < 8 {
-            return Err(RasterError::Bits(self.bits));
-        }
-        Ok(self.samples == 2)
-    }
-
-    /// One sample of the cells of a window; only the strips and tiles that it reaches are decoded.
-    fn read(
-        &self,
-        tiff: &mut Tiff,
-        window: &CellWindow,
-        sample: usize,
-    ) -> Result<Vec<f64>, RasterError> {
-        let (width, height) = self.chunk;
-        let across = self.columns.div_ceil(width.max(1));
-        let down = tiff.dimensions().map_err(wrong)?.1 as usize;
-        let down = down.div_ceil(height.max(1));
-        let (first, step) = if self.is_planar {
-            (sample * across * down, 1)
-        } else {
-            (0, usize::from(self.samples))
-        };
-        let offset = if self.is_planar { 0 } else { sample };
-        let mut values = vec![f64::NAN; window.len()];
-        for chunk_row in window.rows.start / height..=(window.rows.end - 1) / height {
-            for chunk_column in window.columns.start / width..=(window.columns.end - 1) / width {
-                let index = (first + chunk_row * across + chunk_column) as u32;
-                let chunk = tiff.read_chunk(index).map_err(wrong)?;
-                let (held, _) = tiff.chunk_data_dimensions(index);
-                let held = held as usize;
-                let chunk = self.numbers(chunk, held * step);
-                let rows = chunk_row * height..((chunk_row + 1) * height).min(window.rows.end);
-                for row in rows.filter(|row| window.rows.contains(row)) {
-                    let start = (chunk_column * width).max(window.columns.start);
-                    let end = (chunk_column * width + held).min(window.columns.end);
-                    let line = (row - window.rows.start) * window.columns.len();
-                    for column in start..end {
-                        let inside =
-                            (row - chunk_row * height) * held + column - chunk_column * width;
-                        let to = line + column - window.columns.start;
-                        values[to] = chunk.get(inside * step + offset).copied().unwrap_or(f64::NAN);
-                    }
-                }
-            }
-        }
-        Ok(values)
-    }
-
-    /// Numbers of a chunk whose rows hold so many; those of less than a byte are unpacked.
-    fn numbers(&self, chunk: DecodingResult, in_row: usize) -> Vec<f64> {
-        let DecodingResult::U8(bytes) = chunk else { return numbers(chunk) };
-        if self.bits >= 8 {
-            return bytes.into_iter().map(f64::from).collect();
-        }
-        let bits = usize::from(self.bits);
-        let stride = (in_row * bits).div_ceil(8).max(1);
-        let most = (1_u16 << bits) - 1;
-        let number = |row: &[u8], index: usize| {
-            let (byte, bit) = (index * bits / 8, index * bits % 8);
-            // The first value stands in the highest bits.
-            f64::from(u16::from(row[byte]) >> (8 - bits - bit) & most)
-        };
-        let rows = bytes.chunks_exact(stride);
-        rows.flat_map(|row| (0..in_row).map(move |index| number(row, index))).collect()
-    }
 }
 
 /// Refuses a file that is shorter than its own strips or tiles before any memory is asked for.
@@ -279,25 +262,6 @@ fn claimed_bytes(tiff: &mut Tiff, columns: u64, rows: u64, found: u64) -> Result
         }
     }
     Ok(())
-}
-
-fn numbers(image: DecodingResult) -> Vec<f64> {
-    fn of<T: Into<f64>>(values: Vec<T>) -> Vec<f64> {
-        values.into_iter().map(Into::into).collect()
-    }
-    match image {
-        DecodingResult::U8(values) => of(values),
-        DecodingResult::U16(values) => of(values),
-        DecodingResult::U32(values) => of(values),
-        DecodingResult::U64(values) => values.into_iter().map(|value| value as f64).collect(),
-        DecodingResult::I8(values) => of(values),
-        DecodingResult::I16(values) => of(values),
-        DecodingResult::I32(values) => of(values),
-        DecodingResult::I64(values) => values.into_iter().map(|value| value as f64).collect(),
-        DecodingResult::F16(values) => values.into_iter().map(f64::from).collect(),
-        DecodingResult::F32(values) => of(values),
-        DecodingResult::F64(values) => values,
-    }
 }
 
 fn reals(tiff: &mut Tiff, tag: Tag) -> Result<Option<Vec<f64>>, RasterError> {

@@ -4,7 +4,7 @@
 use super::super::crs::{Crs, Heights, Length, from_wkt};
 use super::{Assumed, RasterError, is_no_data, is_usual_no_data, parse_no_data};
 
-/// Metadata of the first band.
+/// Metadata of a band.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct BandMetadata {
     pub(super) no_data: Option<f64>,
@@ -14,15 +14,35 @@ pub(super) struct BandMetadata {
     pub(super) unit: Option<String>,
 }
 
+/// Transformation of the numbers in a file to values: `scale number + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scaling {
+    /// Factor on the numbers.
+    pub scale: f64,
+    /// Summand in the unit of the values.
+    pub offset: f64,
+}
+
 impl BandMetadata {
-    /// Reads the text of tag 42112.
-    pub(super) fn from_tag(text: &str) -> Result<Self, RasterError> {
+    /// The same with another scaling, if there is one.
+    pub(super) fn scaled(self, scaling: Option<Scaling>) -> Self {
+        match scaling {
+            Some(Scaling { scale, offset }) => {
+                Self { scale: Some(scale), offset: Some(offset), ..self }
+            }
+            None => self,
+        }
+    }
+
+    /// Reads what the text of tag 42112 says of a band, which is counted from 0.
+    pub(super) fn from_tag(text: &str, sample: usize) -> Result<Self, RasterError> {
         let mut band = Self::default();
         for item in text.split("<Item ").skip(1) {
             let Some((attributes, rest)) = item.split_once('>') else { continue };
             let value = unescaped(rest.split('<').next().unwrap_or_default());
             let attribute = |name: &str| attribute(attributes, name);
-            if attribute("sample").is_some_and(|sample| sample != "0") {
+            // Items without a band are those of the file, which the first band has.
+            if attribute("sample").map_or(sample != 0, |text| text != sample.to_string()) {
                 continue;
             }
             match attribute("role").as_deref() {
@@ -35,11 +55,16 @@ impl BandMetadata {
         Ok(band)
     }
 
-    /// Reads the text of an `.aux.xml`, with the coordinate reference system that it names.
-    pub(super) fn from_auxiliary(text: &str) -> Result<(Self, Option<Crs>), RasterError> {
+    /// Reads what the text of an `.aux.xml` says of a band, which is counted from 0, with the coordinate reference system
+    /// that it names.
+    pub(super) fn from_auxiliary(
+        text: &str,
+        index: usize,
+    ) -> Result<(Self, Option<Crs>), RasterError> {
         let first = text.split("<PAMRasterBand").skip(1).find(|band| {
             let attributes = band.split('>').next().unwrap_or_default();
-            attribute(attributes, "band").is_none_or(|number| number == "1")
+            let number = attribute(attributes, "band");
+            number.map_or(index == 0, |number| number == (index + 1).to_string())
         });
         let band = first.and_then(|band| band.split("</PAMRasterBand>").next()).unwrap_or_default();
         let element = |name: &str| element(band, name);

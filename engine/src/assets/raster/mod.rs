@@ -9,11 +9,13 @@ mod error;
 mod esri;
 mod geokeys;
 mod geotiff;
+mod layers;
 mod metadata;
 mod names;
 mod raw;
 mod sidecar;
 mod strange;
+mod tiff_picture;
 mod window;
 
 use std::fs::File;
@@ -30,6 +32,8 @@ use super::text::open;
 pub use bands::{BandRaster, RasterBand, read_bands};
 pub(super) use envi_library::{EnviLibrary, is_spectral_library};
 pub use error::RasterError;
+pub use layers::{BandDescription, LayerTerm, RasterFile, RasterLayers};
+pub use metadata::Scaling;
 pub(crate) use sidecar::companions;
 pub use window::RasterExtent;
 
@@ -155,7 +159,7 @@ pub fn read_raster(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster,
     } else {
         format::check(path, FileReader::Raster)?;
         if !strange::is_binary(&start) {
-            return ascii::read(path, extent);
+            return ascii::read(path, extent, None);
         }
         Err(RasterError::Binary)
     };

@@ -2,10 +2,11 @@
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::layers::{BandDescription, SampleReader};
 use super::window::CellWindow;
-use super::{RasterError, length};
+use super::{RasterError, RasterGeoreference, length};
 use crate::files;
 
 /// Order of values of several bands.
@@ -36,6 +37,32 @@ pub(super) struct SampleLayout {
     /// Bytes of a value.
     pub(super) size: u64,
     pub(super) is_big: bool,
+}
+
+/// Values beside a header that are read strip by strip.
+pub(super) struct RawReader {
+    pub(super) file: PathBuf,
+    pub(super) layout: SampleLayout,
+    pub(super) place: Option<RasterGeoreference>,
+    pub(super) bands: Vec<BandDescription>,
+}
+
+impl SampleReader for RawReader {
+    fn rows_at_once(&self) -> usize {
+        1
+    }
+
+    fn read(
+        &mut self,
+        strip: &CellWindow,
+        bands: &[usize],
+        values: &mut [Vec<f64>],
+    ) -> Result<(), RasterError> {
+        for (&band, values) in bands.iter().zip(values) {
+            *values = self.layout.read(&self.file, strip, band as u64)?;
+        }
+        Ok(())
+    }
 }
 
 impl SampleLayout {

@@ -79,10 +79,13 @@ fn arc_info(content: &str) -> Option<Crs> {
     Some(crs)
 }
 
-/// Reads the `.aux.xml` beside a file.
-pub(super) fn auxiliary(path: &Path) -> Result<(BandMetadata, Option<Crs>), RasterError> {
+/// Reads what the `.aux.xml` beside a file says of a band, which is counted from 0, and of the file.
+pub(super) fn auxiliary(
+    path: &Path,
+    band: usize,
+) -> Result<(BandMetadata, Option<Crs>), RasterError> {
     match appended(path, "aux.xml").and_then(|file| text(&file)) {
-        Some(text) => BandMetadata::from_auxiliary(&text),
+        Some(text) => BandMetadata::from_auxiliary(&text, band),
         None => Ok((BandMetadata::default(), None)),
     }
 }

@@ -30,8 +30,19 @@ impl CellWindow {
         place: Option<&RasterGeoreference>,
         extent: Option<&RasterExtent>,
     ) -> Result<(Self, Option<RasterGeoreference>), RasterError> {
+        let (window, place) = Self::of_any_size(columns, rows, place, extent)?;
+        cells(window.columns.len() as u64, window.rows.len() as u64)?;
+        Ok((window, place))
+    }
+
+    /// The same of any number of cells, for values that are read in parts.
+    pub(super) fn of_any_size(
+        columns: u64,
+        rows: u64,
+        place: Option<&RasterGeoreference>,
+        extent: Option<&RasterExtent>,
+    ) -> Result<(Self, Option<RasterGeoreference>), RasterError> {
         let Some(extent) = extent else {
-            cells(columns, rows)?;
             let window = Self { columns: 0..columns as usize, rows: 0..rows as usize };
             return Ok((window, place.cloned()));
         };
@@ -49,7 +60,6 @@ impl CellWindow {
             return Err(RasterError::WindowBeside { window: *extent, min, max });
         }
         let (first, end) = (low.as_u64vec2(), high.as_u64vec2());
-        cells(end.x - first.x, end.y - first.y)?;
         let window = Self {
             columns: first.x as usize..end.x as usize,
             rows: (rows - end.y) as usize..(rows - first.y) as usize,

@@ -10,6 +10,7 @@ mod pixels;
 mod plane;
 mod program;
 mod range;
+mod reflectance_map;
 mod sensor;
 mod spectrum;
 mod system;

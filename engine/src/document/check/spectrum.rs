@@ -7,6 +7,7 @@ use super::super::scene::{
     Band, Coating, Leaf, Material, Prospect, Response, Scene, SoilMixture, Spectrum,
     SurfaceQuantity,
 };
+use super::reflectance_map::check_reflectance_map;
 use super::{Report, ScenePath, count};
 use crate::spectral::{library_names, library_spectrum};
 
@@ -118,6 +119,9 @@ pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
         }
         if let Material::Leaf(Leaf { coating: Some(coating), .. }) = material {
             check_coating(&ScenePath::from("materials").name(name).key("coating"), coating, report);
+        }
+        if let Material::ReflectanceMap(map) = material {
+            check_reflectance_map(&ScenePath::from("materials").name(name), map, scene, report);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Materials: surface models with their spectra.
 
-use super::{Spectrum, Temperature};
+use super::{FilePath, Map, Param, Spectrum, Temperature};
 
 choice! {
     /// A surface.
@@ -18,6 +18,9 @@ choice! {
         ///
         /// Source: Jacquemoud, Baret & Hanocq (1992), Remote Sens. Environ. 41, 123–132.
         Soilspect(..Soilspect),
+        /// Reflects diffusely on both sides, in each cell of a raster as much as its values say; opaque. For the
+        /// terrain alone.
+        ReflectanceMap(..ReflectanceMap),
     }
 }
 
@@ -97,13 +100,49 @@ record! {
     }
 }
 
+record! {
+    /// Ground whose reflectance comes from a raster, cell by cell: a place has the reflectance of the cell that it lies
+    /// in, without interpolation. The raster lies where its file says, less the frame's origin.
+    pub struct ReflectanceMap ("a map of reflectance") {
+        /// Raster: `GeoTIFF`, ENVI, Esri's `.bil` and `.flt`, or an ESRI ASCII grid; relative to the scene file.
+        file: FilePath => r#""albedo.tif""#,
+        /// Bands of the raster that the bands of the scene have their reflectance from.
+        bands: RasterBands => "All(1)",
+        /// Factor that makes fractions of the numbers in the file, in place of the file's own: 1.0 for fractions,
+        /// 0.01 for percent, 0.0001 for reflectances that are kept as 0 to 10000. A file that says neither scale
+        /// nor offset is refused without it.
+        scale: Option<f64> => "0.0001" = None,
+        /// Number that is added to `scale` times the number in the file: -0.1 for products of Sentinel-2 since 2022.
+        offset: f64 = 0.0,
+        /// Reflectance of cells without data and of ground beside the raster; both are errors without it.
+        elsewhere: Option<Spectrum> = None,
+        /// Temperature; needed where a sensor measures its emission.
+        temperature: Option<Temperature> = None,
+    }
+}
+
+choice! {
+    /// Bands of a raster that the bands of the scene have their values from.
+    pub enum RasterBands ("bands of a raster") {
+        /// One band for all bands of the scene, by its number from 1 or its name.
+        All(Param => "1"),
+        /// A band for each band of the scene, by its number from 1 or its name.
+        Each(Map<Param> => r#"{ "red": 3, "nir": "B8" }"#),
+        /// All bands, by the wavelengths that the file gives them: joined by straight lines and averaged over each band
+        /// of the scene.
+        Wavelengths,
+    }
+}
+
 impl Material {
     /// Returns whether it is a leaf: its area counts as leaf area.
     #[must_use]
     pub const fn is_leaf(&self) -> bool {
         match self {
             Self::Leaf(_) => true,
-            Self::Lambertian(_) | Self::Rpv(_) | Self::Soilspect(_) => false,
+            Self::Lambertian(_) | Self::Rpv(_) | Self::Soilspect(_) | Self::ReflectanceMap(_) => {
+                false
+            }
         }
     }
 
@@ -119,6 +158,10 @@ impl Material {
             }
             Self::Rpv(_) => Self::Rpv(Rpv::new(zero(), zero(), zero())),
             Self::Soilspect(_) => Self::Soilspect(Soilspect::new(zero(), zero())),
+            // Its values are read from a file once for all paths that are shared.
+            Self::ReflectanceMap(map) => {
+                Self::ReflectanceMap(ReflectanceMap { temperature: None, ..map.clone() })
+            }
         }
     }
 
@@ -130,6 +173,7 @@ impl Material {
             Self::Leaf(leaf) => leaf.temperature.as_ref(),
             Self::Rpv(surface) => surface.temperature.as_ref(),
             Self::Soilspect(soil) => soil.temperature.as_ref(),
+            Self::ReflectanceMap(map) => map.temperature.as_ref(),
         }
     }
 
@@ -172,6 +216,9 @@ impl Material {
                 ("b_prime", &soil.b_prime, signed),
                 ("c_prime", &soil.c_prime, signed),
             ],
+            Self::ReflectanceMap(map) => {
+                map.elsewhere.iter().map(|spectrum| ("elsewhere", spectrum, Fraction)).collect()
+            }
         }
     }
 }

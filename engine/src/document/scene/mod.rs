@@ -29,7 +29,10 @@ pub use instances::{
     Rule, Scatter, SpeciesMeshes, Stems, TableCoordinates, meant_column,
 };
 pub use light::{Sky, Spa, Sun, SunPosition};
-pub use material::{Coating, Lambertian, Leaf, Material, Rpv, Soilspect, SurfaceQuantity};
+pub use material::{
+    Coating, Lambertian, Leaf, Material, RasterBands, ReflectanceMap, Rpv, Soilspect,
+    SurfaceQuantity,
+};
 pub use mesh::{Axis, GeneratedCrown, Gltf, MeshFile, Obj, Origin, PartsBy, Ply, Prototype};
 pub use output::FileFormat;
 pub use param::Param;

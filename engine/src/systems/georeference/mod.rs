@@ -12,7 +12,9 @@ use crate::geometry::{Rectangle, place_text};
 use crate::terrain::Cells;
 
 pub(super) use crs::{check_crs, frame_projection, name_target, projection_of};
-pub(super) use raster::{Quantity, RasterSource, extent_on_map, read_georaster, target_of};
+pub(super) use raster::{
+    Quantity, RasterSource, check_georaster, extent_on_map, read_georaster, target_of,
+};
 
 /// Coordinate reference system of the scene.
 #[derive(Clone, Debug)]

@@ -22,6 +22,8 @@ pub(in crate::systems) enum Quantity {
     Density,
     /// Classes.
     Classes,
+    /// Fractions of the incident light.
+    Reflectance,
 }
 
 /// Raster that the scene names.
@@ -77,18 +79,29 @@ pub(in crate::systems) fn read_georaster(
             return None;
         }
     };
+    check_georaster(&raster, source, map, resources)?;
+    if source.quantity == Quantity::Heights {
+        convert_heights(&mut raster, source, resources)?;
+    }
+    Some(raster)
+}
+
+/// Refuses a raster in other coordinates than those of the scene; warns of values that may stand for no data.
+pub(in crate::systems) fn check_georaster(
+    raster: &Raster,
+    source: &RasterSource<'_>,
+    map: &mut MapFrame,
+    resources: &mut Resources,
+) -> Option<()> {
     if let Some(place) = &raster.place {
-        check_unit(place, &raster, source, map, resources)?;
+        check_unit(place, raster, source, map, resources)?;
         let is_projected = !raster.is_in_degrees() && source.coordinates.is_none();
         if is_projected && !source.has_size {
             check_crs(&place.crs, source.file, source.path, map, resources)?;
         }
     }
-    if source.quantity == Quantity::Heights {
-        convert_heights(&mut raster, source, resources)?;
-    }
-    warn_assumed(&raster, source, resources);
-    Some(raster)
+    warn_assumed(raster, source, resources);
+    Some(())
 }
 
 /// Extent in the coordinates of the map of a part of the local frame.
@@ -195,7 +208,7 @@ fn convert_heights(
 /// Warns of cells that hold a value for no data which the file does not name.
 fn warn_assumed(raster: &Raster, source: &RasterSource<'_>, resources: &mut Resources) {
     let Some(Assumed { value, count }) = raster.assumed else { return };
-    let all = raster.values.len();
+    let all = raster.columns * raster.rows;
     let message = format!(
         "{count} of its {all} cells hold {value}, which stands for no data in other files but is not \
              named in this one; they are taken as cells without data"

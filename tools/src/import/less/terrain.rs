@@ -195,7 +195,7 @@ impl Project {
         Ok(USUAL_SOIL.to_owned())
     }
 
-    /// A map of albedos has no counterpart: the optical property of the ground stands in for it.
+    /// The unit and the bands of a map of albedos are not known: the optical property of the ground stands in for it.
     fn albedo_stand_in(&self) -> Result<String> {
         let optics = self.usual_optics()?;
         let shown = match self.terrain()?.get("landalbedo") {
@@ -206,7 +206,7 @@ impl Project {
             None => String::new(),
         };
         let what = format!(
-            "STAND-IN: sunfleck has no maps of albedo; {optics:?} covers all of the ground"
+            "STAND-IN: {optics:?} covers all of the ground; write the map as a `ReflectanceMap`"
         );
         self.report.differs("scene.terrain.landalbedo", &shown, what);
         Ok(optics)
