@@ -4,7 +4,7 @@
 //! the same paths, `points/1000_from_chl=20,n=1.5/points.csv` holds the tables of all, one behind the other. A table
 //! begins with the key of its point: a point whose key is found is complete.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write};
 use std::ops::Range;
@@ -12,8 +12,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use serde::de::DeserializeOwned;
 
 use super::names::{FOLDER_LENGTH, folder_name};
+use super::point_warnings::PointWarnings;
 use super::staging::Staging;
 use super::sweep::write_rows;
 use super::sweep_datasets::PointLayout;
@@ -31,6 +33,9 @@ const IRRADIANCE: &str = "# irradiance_w_m2_nm: ";
 
 /// Start of the comment line that says what data sets hold.
 const LAYOUT: &str = "# data set: ";
+
+/// Start of the comment line that holds the warnings of the point's run.
+const WARNINGS: &str = "# warnings: ";
 
 /// Value of a table with its standard error.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +108,21 @@ impl PointTables {
     /// Table of a point; `None` if it is not complete.
     pub(super) fn get(&self, point: &SweepPoint) -> Option<&PointTable> {
         self.found.get(&point.key)
+    }
+
+    /// Warnings of the runs of these points, each with its points; see [`PointWarnings`].
+    ///
+    /// # Errors
+    /// If a table cannot be read.
+    pub fn warnings(&self, points: &[SweepPoint]) -> Result<Vec<String>, OutputError> {
+        let mut all = PointWarnings::default();
+        let mut keys = HashSet::new();
+        // A list may hold a value twice.
+        for point in points.iter().filter(|point| keys.insert(point.key.as_str())) {
+            let Some(table) = self.get(point) else { continue };
+            table.warnings()?.into_iter().for_each(|text| all.add(point, text));
+        }
+        Ok(all.texts().collect())
     }
 
     /// Writes the results of points that were traced on the same paths. `unfinished` are those to write, by their
@@ -217,26 +237,32 @@ impl PointTable {
 
     /// Irradiance on the horizontal plane, W m⁻² nm⁻¹, by the name of the band; empty where the table does not say.
     pub(super) fn irradiance(&self) -> Result<HashMap<String, f64>, OutputError> {
-        for line in self.bytes()?.lines().take(2) {
-            let line = line.map_err(|source| self.unreadable(source))?;
-            if let Some(values) = line.strip_prefix(IRRADIANCE) {
-                let parsed = serde_json::from_str(values);
-                return parsed.map_err(|source| self.unreadable(source.into()));
-            }
-        }
-        Ok(HashMap::new())
+        self.comment(IRRADIANCE)
     }
 
     /// Products of the table as data sets have them; nothing if it was written without.
     pub(super) fn layout(&self) -> Result<PointLayout, OutputError> {
-        for line in self.bytes()?.lines().take(3) {
+        self.comment(LAYOUT)
+    }
+
+    /// Warnings of the point's run.
+    fn warnings(&self) -> Result<Vec<String>, OutputError> {
+        self.comment(WARNINGS)
+    }
+
+    /// Value of the comment line above the rows that has this start; the default without such a line.
+    fn comment<T: DeserializeOwned + Default>(&self, start: &str) -> Result<T, OutputError> {
+        for line in self.bytes()?.lines() {
             let line = line.map_err(|source| self.unreadable(source))?;
-            if let Some(layout) = line.strip_prefix(LAYOUT) {
-                let parsed = serde_json::from_str(layout);
-                return parsed.map_err(|source| self.unreadable(source.into()));
+            if let Some(value) = line.strip_prefix(start) {
+                return serde_json::from_str(value)
+                    .map_err(|source| self.unreadable(source.into()));
+            }
+            if !line.starts_with('#') {
+                break;
             }
         }
-        Ok(PointLayout::default())
+        Ok(T::default())
     }
 
     /// Visits all values in order.
@@ -314,6 +340,9 @@ fn write_table(report: &Report, point: &SweepPoint, mut file: impl Write) -> io:
     }
     if let Some(layout) = PointLayout::new(report) {
         writeln!(file, "{LAYOUT}{}", serde_json::to_string(&layout)?)?;
+    }
+    if !report.warnings.is_empty() {
+        writeln!(file, "{WARNINGS}{}", serde_json::to_string(&report.warnings)?)?;
     }
     write_rows(report, point, file)
 }

@@ -170,7 +170,8 @@ impl Results {
     }
 
     /// Writes the table of a sweep, its sums over days and its derivatives if there are any, and a `summary.json` that
-    /// holds the sums, and says where there are no data and what the derivatives are with respect to.
+    /// holds the sums and the warnings of the report, and says where there are no data and what the derivatives are with
+    /// respect to.
     ///
     /// # Errors
     /// If a file cannot be written; then the folder is as it was.
@@ -194,8 +195,9 @@ impl Results {
             let way = self.way_to_scene(staging, report.source.as_ref());
             let head = Head::new(report, self.command, way);
             let head = head.with_files(staging.names());
-            let write =
-                |file: &mut _| summary::write_sweep(&head, points, daily, derivatives, file);
+            let write = |file: &mut _| {
+                summary::write_sweep(&head, &report.warnings, points, daily, derivatives, file)
+            };
             staging.file("summary.json", write)?;
             Ok(replaced(staging, folder, self.command, report))
         })

@@ -138,9 +138,10 @@ pub(super) fn write_head(head: &Head<'_>, file: &mut impl Write) -> io::Result<(
     write_json(head, file)
 }
 
-/// Writes where a sweep comes from, why points have no data, its sums over days, and what it has derivatives of.
+/// Writes where a sweep comes from, warnings of its points, why points have no data, its sums over days, and what it has derivatives of.
 pub(super) fn write_sweep(
     head: &Head<'_>,
+    warnings: &[String],
     points: &[SweepPoint],
     daily: Option<&DailySums>,
     derivatives: Option<&DerivativeTable>,
@@ -149,13 +150,15 @@ pub(super) fn write_sweep(
     let dark = points.iter().filter_map(|point| Some((point.name(), point.darkness()?)));
     let no_data: serde_json::Map<_, _> = dark.map(|(name, why)| (name, why.into())).collect();
     let (daily, derivatives) = (daily.map(DailySums::json), derivatives.map(DerivativeTable::json));
-    write_json(&SweepSummary { head, no_data, daily, derivatives }, file)
+    write_json(&SweepSummary { head, warnings, no_data, daily, derivatives }, file)
 }
 
 #[derive(Serialize)]
 struct SweepSummary<'a> {
     #[serde(flatten)]
     head: &'a Head<'a>,
+    /// Warnings, each with its points.
+    warnings: &'a [String],
     /// Reason by the name of each point where nothing was traced.
     #[serde(skip_serializing_if = "serde_json::Map::is_empty")]
     no_data: serde_json::Map<String, serde_json::Value>,

@@ -55,7 +55,7 @@ const MOST_RECIPES: usize = 64;
 pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) -> Vec<Report> {
     let count = scenes.len();
     let share = 1.0 / count as f64;
-    let warnings = common_warnings(&common);
+    let warnings = warnings_by_scene(&common, count);
     let sensors = std::mem::take(&mut common.sensors);
     let sensors = sensors_by_scene(sensors, scenes, common.world);
     let own: Vec<&str> = scenes.iter().map(|settled| settled.hash.as_str()).collect();
@@ -72,7 +72,10 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             })
         })
     };
-    let report = |((settled, hash), sensors): ((&SettledScene, String), Vec<SensorReport>)| {
+    let report = |(((settled, hash), sensors), warnings): (
+        ((&SettledScene, String), Vec<SensorReport>),
+        Vec<String>,
+    )| {
         let SettledScene { scene, context, .. } = settled;
         Report {
             projection: projection(common.world),
@@ -100,7 +103,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             recipe: recipe(settled),
         }
     };
-    scenes.iter().zip(hashes).zip(sensors).map(report).collect()
+    scenes.iter().zip(hashes).zip(sensors).zip(warnings).map(report).collect()
 }
 
 /// Reports of the sensors for each scene, in document order.
@@ -152,28 +155,28 @@ fn of_scene(
     }
 }
 
-/// Warnings about the paths that all scenes share.
-fn common_warnings(common: &CommonResults<'_>) -> Vec<String> {
+/// Warnings about the paths that all scenes share, each for the scenes that it is about.
+fn warnings_by_scene(common: &CommonResults<'_>, scenes: usize) -> Vec<Vec<String>> {
     let CommonResults { world, stage, context, .. } = common;
-    let sensors = sensors::in_order(world);
-    let enclosed = enclosed::warnings(&sensors, stage);
-    enclosed
-        .iter()
-        .map(super::failure::one_line)
-        .chain(footprint::warnings(&sensors, stage))
-        .chain(uncovered::warning(stage, context))
-        .chain(unbalanced(&common.sensors))
-        .chain(common.warnings.iter().cloned())
-        .collect()
+    let enclosed = enclosed::warnings(&sensors::in_order(world), stage);
+    let enclosed: Vec<String> = enclosed.iter().map(super::failure::one_line).collect();
+    let beside = footprint::warnings(world, stage, scenes);
+    let uncovered = uncovered::warning(stage, context);
+    let of_scene = |(scene, beside): (usize, Vec<String>)| {
+        let own = common.sensors.iter().filter(|shared| shared.scenes.contains(&scene));
+        let first = enclosed.iter().cloned().chain(beside).chain(uncovered.clone());
+        first.chain(unbalanced(own)).chain(common.warnings.iter().cloned()).collect()
+    };
+    beside.into_iter().enumerate().map(of_scene).collect()
 }
 
 /// Fraction of the incident energy that the rounding of f64 may lose.
 const BALANCE: f64 = 1e-9;
 
 /// Warnings about sensors whose energy balance does not close.
-fn unbalanced(shared: &[SharedReports]) -> impl Iterator<Item = String> {
+fn unbalanced<'a>(shared: impl Iterator<Item = &'a SharedReports>) -> impl Iterator<Item = String> {
     let off = |report: &&SensorReport| report.energy_imbalance.is_some_and(|off| off > BALANCE);
-    shared.iter().flat_map(|shared| &shared.sensors).filter(off).map(|report| {
+    shared.flat_map(|shared| &shared.sensors).filter(off).map(|report| {
         let off = report.energy_imbalance.unwrap_or(f64::NAN);
         format!(
             "sensors.{}: {off:.1e} of the energy is not accounted for: this is a bug of sunfleck",

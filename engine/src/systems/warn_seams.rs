@@ -1,15 +1,8 @@
-use glam::DVec2;
 use hecs::World;
 
 use super::Resources;
 use crate::document::{Diagnostic, ScenePath, Terrain};
 use crate::terrain::Ground;
-
-/// Steps along a seam that are lower may be meant, m.
-const SEAM: f64 = 1.0;
-
-/// Places along a side of the ground where both sides are compared.
-const PLACES: usize = 512;
 
 /// Warns of a periodic ground whose opposite sides differ in height. Reads `document::Terrain` and [`Ground`].
 pub(super) fn warn_seams(world: &mut World, resources: &mut Resources) {
@@ -23,22 +16,8 @@ pub(super) fn warn_seams(world: &mut World, resources: &mut Resources) {
     if !resources.is_periodic() {
         return;
     }
-    let step = |axis: usize| {
-        let (corner, size) = (ground.corner(), ground.size());
-        (0..=PLACES)
-            .filter_map(|place| {
-                let along = place as f64 / PLACES as f64;
-                let at = |side: f64| {
-                    let mut at = DVec2::splat(along);
-                    at[axis] = side;
-                    ground.height(corner + at * size)
-                };
-                Some((at(1.0)? - at(0.0)?).abs())
-            })
-            .fold(0.0, f64::max)
-    };
-    let (east, north) = (step(0), step(1));
-    if east.max(north) <= SEAM {
+    let [east, north] = ground.steps_between_sides().to_array();
+    if east.max(north) <= Ground::SEAM {
         return;
     }
     let message = format!(

@@ -19,6 +19,9 @@ pub struct Ground {
     pub(super) held: Box<[u32]>,
 }
 
+/// Places along a side of the ground where both sides are compared.
+const PLACES: usize = 512;
+
 /// Cells that hold a triangle, on average at most: one that lies like those of a raster is in four or so.
 const MOST_HELD: u64 = 32;
 
@@ -66,6 +69,26 @@ impl Ground {
     #[must_use]
     pub fn gap(&self, place: DVec2) -> f64 {
         (self.corner - place).max(place - (self.corner + self.size)).max_element()
+    }
+
+    /// Step between opposite sides up to which they meet: a lower one may be meant, m.
+    pub const SEAM: f64 = 1.0;
+
+    /// Largest difference in height between its western and eastern side, and between its southern and northern one, m.
+    #[must_use]
+    pub fn steps_between_sides(&self) -> DVec2 {
+        let step = |axis: usize| {
+            let steps = (0..=PLACES).filter_map(|place| {
+                let mut at = DVec2::splat(place as f64 / PLACES as f64);
+                let mut height = |side: f64| {
+                    at[axis] = side;
+                    self.height(self.corner + at * self.size)
+                };
+                Some((height(1.0)? - height(0.0)?).abs())
+            });
+            steps.fold(0.0, f64::max)
+        };
+        DVec2::new(step(0), step(1))
     }
 
     /// South-west corner of its rectangle, m.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde_json::json;
-use sunfleck::output::{DerivativeTable, PointTables, Results, SweepTable, Written};
+use sunfleck::output::{DerivativeTable, PointTables, PointWarnings, Results, SweepTable, Written};
 use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::{output, run};
 
@@ -35,7 +35,8 @@ pub(super) fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let daily = output::daily_sums(&sweep.days(), &points, &tables)?;
     let derivatives = DerivativeTable::new(sweep.differences(), &points, &tables)?;
     let (daily, of) = (daily.as_ref(), derivatives.as_ref());
-    let written = results.write_sweep(&sweep.report(), &points, &table, daily, of)?;
+    let report = Report { warnings: tables.warnings(&points)?, ..sweep.report() };
+    let written = results.write_sweep(&report, &points, &table, daily, of)?;
     let derivatives = derivatives.map(|table| derivatives_text(&table, &written));
     console.written(&written);
     console.say(&format!(
@@ -89,9 +90,7 @@ impl Done {
             let unfinished: Vec<usize> =
                 (0..points.len()).filter(|&index| !finished[index]).collect();
             observer.clear();
-            for (report, point) in reports.iter().zip(points) {
-                self.warn_once(report, point);
-            }
+            self.warn_once(&reports, points);
             if self.ran + self.dark == 0 {
                 // From now on the folder says which scene its points are of.
                 results.write_texts(&report, &[])?;
@@ -107,15 +106,18 @@ impl Done {
         Ok(())
     }
 
-    /// Shows the warnings of a point that no point before it had; the one about its night has been shown.
-    fn warn_once(&mut self, report: &Report, point: &SweepPoint) {
-        let is_of_night =
-            |text: &String| point.night.as_ref().is_some_and(|night| night.text() == text);
-        for text in report.warnings.iter().filter(|text| !is_of_night(text)) {
-            if self.shown.insert(text.clone()) {
-                self.console.warn(&[format!("at {}: {text}", point.name())]);
+    /// Shows the warnings of points that no point before them had; those about nights have been shown.
+    fn warn_once(&mut self, reports: &[Report], points: &[SweepPoint]) {
+        let mut warnings = PointWarnings::default();
+        for (report, point) in reports.iter().zip(points) {
+            let is_of_night =
+                |text: &&String| point.night.as_ref().is_some_and(|night| night.text() == *text);
+            for text in report.warnings.iter().filter(|text| !is_of_night(text)) {
+                warnings.add(point, text.clone());
             }
         }
+        warnings.retain(|text| self.shown.insert(text.to_owned()));
+        self.console.warn(&warnings.texts().collect::<Vec<_>>());
     }
 }
 

@@ -10,17 +10,16 @@ use crate::extract::Stage;
 use crate::sampling::Key;
 use crate::transport::{LightSource, PhotonKind, ReferencePlane, RouletteThreshold};
 
-/// Fractions of an isolated scene's light on lines beside its reference plane, in the band where each
-/// is largest.
+/// Fractions of an isolated scene's light on lines beside its reference plane, by band.
 ///
 /// Such light makes values per area of the plane surprising: a tree over the edge of the ground, or high above
 /// it under a low sun, is lit and visible on lines that do not pass through the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LightBeside {
-    /// Fraction of the light of sun and sky that the scene intercepts.
-    pub incoming: f64,
-    /// Fraction of the scattered light that leaves upwards: no BRF or albedo holds it.
-    pub outgoing: f64,
+    /// Fraction of the light of sun and sky that the scene intercepts, shape `[bands]`; 0 in a band without light.
+    pub incoming: Vec<f64>,
+    /// Fraction of the scattered light that leaves upwards, shape `[bands]`: no BRF or albedo holds it.
+    pub outgoing: Vec<f64>,
 }
 
 /// Packets of each randomisation. The fractions decide a warning and no result.
@@ -40,15 +39,15 @@ impl LightBeside {
             [] | [_] => 0..stage.bands,
             beams => beams[beam].bands.clone(),
         };
-        let beams = 0..stage.light.beams.len().max(1);
-        beams.map(|beam| Self::of_beam(stage, beam, &bands(beam))).reduce(|a, b| Self {
-            incoming: a.incoming.max(b.incoming),
-            outgoing: a.outgoing.max(b.outgoing),
-        })
+        let mut all = Self { incoming: vec![0.0; stage.bands], outgoing: vec![0.0; stage.bands] };
+        for beam in 0..stage.light.beams.len().max(1) {
+            all.add_beam(stage, beam, &bands(beam));
+        }
+        Some(all)
     }
 
-    /// Estimate in the bands of one of the beams.
-    fn of_beam(stage: &Stage, beam: usize, bands: &Range<usize>) -> Self {
+    /// Estimates the fractions in the bands of one of the beams.
+    fn add_beam(&mut self, stage: &Stage, beam: usize, bands: &Range<usize>) {
         let plane = ReferencePlane::new(None, stage);
         let counter: Box<dyn Counter> = Box::new(BesideCounter { plane: plane.clone() });
         let kind = PhotonKind::Packet(RouletteThreshold::Low);
@@ -60,13 +59,14 @@ impl LightBeside {
         let cell = |cell: usize| {
             &spread.mean()[cell * stage.bands..(cell + 1) * stage.bands][bands.clone()]
         };
-        let largest = |part: usize, whole: usize| {
+        let fractions = |part: usize, whole: usize| {
             let fractions = cell(part).iter().zip(cell(whole)).map(|(part, whole)| part / whole);
-            fractions.filter(|fraction| fraction.is_finite()).fold(0.0, f64::max)
+            fractions.map(|fraction| if fraction.is_finite() { fraction } else { 0.0 })
         };
-        Self {
-            incoming: largest(BesideCounter::INCOMING_BESIDE, BesideCounter::INCOMING),
-            outgoing: largest(BesideCounter::OUTGOING_BESIDE, BesideCounter::OUTGOING),
+        let incoming = fractions(BesideCounter::INCOMING_BESIDE, BesideCounter::INCOMING);
+        let outgoing = fractions(BesideCounter::OUTGOING_BESIDE, BesideCounter::OUTGOING);
+        for ((band, incoming), outgoing) in bands.clone().zip(incoming).zip(outgoing) {
+            (self.incoming[band], self.outgoing[band]) = (incoming, outgoing);
         }
     }
 }
