@@ -165,6 +165,16 @@ pub(crate) fn summary(facts: &SceneFacts) -> Vec<Vec<String>> {
     rows
 }
 
+/// Note about a scene that the sun lights alone; `None` of others.
+pub(crate) fn note_without_sky(facts: &SceneFacts) -> Option<String> {
+    let mut lit = facts.bands.iter().filter(|band| band.irradiance > 0.0).peekable();
+    let is_sunlit = facts.sun.is_some() && lit.peek().is_some();
+    (is_sunlit && lit.all(|band| band.diffuse_fraction <= 0.0)).then(|| {
+        "note: sky: none is given, so that shadows receive no light of the sky; `sunfleck keys sky` shows how to write one"
+            .to_owned()
+    })
+}
+
 fn sun(sun: &SunFacts) -> String {
     let source = if sun.from_place_and_time { ", from place and time" } else { "" };
     format!(
@@ -221,10 +231,12 @@ pub(crate) fn bands(facts: &SceneFacts) -> Vec<Vec<String>> {
             continue;
         }
         let is_lit = band.irradiance > 0.0;
-        let source = match (band.emits, is_lit) {
-            (true, _) => "emission",
-            (false, true) => "sun and sky",
-            (false, false) => "none: dark",
+        let source = match band.diffuse_fraction {
+            _ if band.emits => "emission",
+            _ if !is_lit => "none: dark",
+            diffuse if diffuse <= 0.0 => "sun",
+            diffuse if diffuse >= 1.0 => "sky",
+            _ => "sun and sky",
         };
         rows.push(vec![
             band.name.clone(),

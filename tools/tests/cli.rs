@@ -178,6 +178,20 @@ fn check_says_what_a_scene_is() {
     {
         assert!(stdout.contains(part), "{part}: {stdout}");
     }
+    let source = |stdout: &str, band: &str| {
+        let line = stdout.lines().find(|line| line.trim_start().starts_with(band)).unwrap();
+        line.rsplit("  ").next().unwrap().trim().to_owned()
+    };
+    assert_eq!(source(&stdout, "red"), "sun", "{stdout}");
+    let note = "note: sky: none is given, so that shadows receive no light of the sky; \
+                `sunfleck keys sky` shows how to write one\n";
+    assert_eq!(stdout.matches(note).count(), 1, "{stdout}");
+    let scene = fs::read_to_string(folder.path().join("soil.ron")).unwrap();
+    let lit = scene.replacen("    sensors:", "    sky: Fraction([0.2, 0.2]),\n    sensors:", 1);
+    fs::write(folder.path().join("lit.ron"), lit).unwrap();
+    let (_, lit, errors) = outcome(folder.path(), &["check", "lit.ron"]);
+    assert!(!lit.contains("note: sky"), "{lit}");
+    assert_eq!(source(&lit, "red"), "sun and sky", "{lit}{errors}");
     let (_, stdout, _) = outcome(folder.path(), &["check", "soil.ron", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     let scene = &json["scene"];

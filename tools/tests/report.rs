@@ -108,6 +108,10 @@ fn names_of_the_author_are_text_and_no_part_of_the_page() {
 fn a_run_is_told_with_figures_values_and_files() {
     let folder = folder("Leaves");
     let page = page_of_a_run(folder.path());
+    let results =
+        page.split("<h2>Results</h2>").nth(1).unwrap().split("</section>").next().unwrap();
+    let nadir = "<td><bdi>plane</bdi></td><td><bdi>BRF: nadir</bdi></td>";
+    assert_eq!(results.matches(nadir).count(), 1, "{results}");
     for id in ["results", "figures", "pictures", "energy", "scene", "values", "work", "origin"] {
         assert!(page.contains(&format!("<section id=\"{id}\">")), "{id}");
         assert!(page.contains(&format!("href=\"#{id}\"")), "{id}");

@@ -26,7 +26,7 @@ const SCENE: &str = r#"Scene(
     sun: (zenith_deg: "=sza", azimuth_deg: 270.0),
     boundary: Isolated,
     sensors: {
-        "image": Orthographic(size_px: (4, 4), until: Samples(4)),
+        "image": Orthographic(size_px: (4, 4), cover: WholeScene, until: Samples(4)),
         "photons": Photons(per_m2: 20.0, measure: [Albedo]),
     },
     sweep: Grid({ "sza": [0.0, 75.0, 80.0] }),

@@ -25,7 +25,7 @@ pub(super) fn check(arguments: &Check) -> anyhow::Result<()> {
     if arguments.json {
         return print(&describe::json(facts.as_ref(), &warnings)?);
     }
-    let (notes, warnings): (Vec<String>, Vec<String>) =
+    let (mut notes, warnings): (Vec<String>, Vec<String>) =
         warnings.into_iter().partition(|text| text.starts_with(NOTE));
     warn(&warnings);
     let found = match warnings.iter().filter(|text| !text.starts_with(SKIPPED)).count() {
@@ -33,6 +33,7 @@ pub(super) fn check(arguments: &Check) -> anyhow::Result<()> {
         1 => "no errors, 1 warning".to_owned(),
         n => format!("no errors, {n} warnings"),
     };
+    notes.extend(facts.as_ref().and_then(describe::note_without_sky));
     let facts = facts.as_ref().map(describe::text).unwrap_or_default();
     let notes = notes.iter().flat_map(|note| [note.as_str(), "\n"]).collect::<String>();
     print(&format!("{facts}{notes}{}: {found}\n", scene.file.display()))

@@ -355,7 +355,7 @@ fn spectrum_places(context: &Context<'_>, quantity: &Quantity) -> Vec<usize> {
 }
 
 /// Name of a place for a legend: `leaf`, `zenith 30°, azimuth 90°`.
-fn place_name(quantity: &Quantity, place: usize) -> String {
+pub(super) fn place_name(quantity: &Quantity, place: usize) -> String {
     if let (Some(zeniths), Some(azimuths)) =
         (quantity.numbers("zenith_deg"), quantity.numbers("azimuth_deg"))
         && quantity.places().len() == 1

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use sunfleck::output::axis_title;
 
 use super::context::Context;
-use super::products::{band_name, shown_bands};
+use super::products::{band_name, place_name, shown_bands};
 use super::quantity::{Quantity, thinned};
 use super::words::{measured, name, short, title, unit};
 
@@ -54,7 +54,8 @@ pub(super) fn table(caption: &Markup, header: &[String], rows: &[Vec<Cell>]) -> 
 pub(super) fn key_values(quantities: &[Quantity]) -> Option<Markup> {
     let all = || quantities.iter().filter(|quantity| is_key(quantity));
     let mut bands: Vec<String> = Vec::new();
-    for band in all().filter_map(Quantity::bands).flatten() {
+    let in_views = quantities.iter().filter(|quantity| nadir_place(quantity).is_some());
+    for band in all().chain(in_views).filter_map(Quantity::bands).flatten() {
         if !bands.contains(band) {
             bands.push(band.clone());
         }
@@ -77,6 +78,20 @@ pub(super) fn key_values(quantities: &[Quantity]) -> Option<Markup> {
                 single.push(row);
             }
         }
+    }
+    for (quantity, place) in quantities.iter().filter_map(|one| Some((one, nadir_place(one)?))) {
+        let names = quantity.bands().unwrap_or_default();
+        let mut row = key_cells(quantity, place);
+        let nearest = match place_name(quantity, place) {
+            nadir if nadir == "nadir" => nadir,
+            other => format!("{other}, nearest to nadir"),
+        };
+        row[1] = Cell::Text(format!("{}: {nearest}", title(&quantity.name)));
+        row.extend(shown.iter().map(|band| {
+            let at = names.iter().position(|name| name == *band);
+            at.map_or(Cell::Text(String::new()), |at| Cell::of_value(quantity.at(place, at)))
+        }));
+        by_band.push(row);
     }
     if by_band.is_empty() && single.is_empty() {
         return None;
@@ -114,6 +129,17 @@ fn key_cells(quantity: &Quantity, place: usize) -> Vec<Cell> {
         Cell::Text(format!("{}{of_place}{mean}", title(&quantity.name))),
         Cell::Text(if quantity.unit == "1" { String::new() } else { unit(&quantity.unit) }),
     ]
+}
+
+/// Place of the view that is nearest to the nadir, of a product by view and band that is no part of another one.
+fn nadir_place(quantity: &Quantity) -> Option<usize> {
+    let is_part = ["_uc", "_co_sgl", "_mlt"].iter().any(|end| quantity.name.ends_with(end));
+    if is_part || quantity.is_image() || quantity.places().len() != 1 || is_key(quantity) {
+        return None;
+    }
+    quantity.bands()?;
+    let zeniths = quantity.numbers("azimuth_deg").and(quantity.numbers("zenith_deg"))?;
+    (0..zeniths.len()).min_by(|&a, &b| zeniths[a].total_cmp(&zeniths[b]))
 }
 
 /// Returns true of a product whose values are few enough to stand among the results.

@@ -21,6 +21,24 @@ pub(super) fn cut(text: &str, most: usize) -> String {
     shown
 }
 
+/// A text of at most so many letters, in which names between back-ticks are set as code.
+pub(super) fn prose(text: &str, most: usize) -> Markup {
+    let text = cut(text, most);
+    let mut pieces = text.split('`').peekable();
+    let mut shown: Vec<Markup> = Vec::new();
+    let mut is_code = false;
+    while let Some(piece) = pieces.next() {
+        shown.push(match (is_code, pieces.peek()) {
+            (true, Some(_)) => html! { code { (piece) } },
+            // A back-tick without another one is a letter like others.
+            (true, None) => html! { "`" (piece) },
+            (false, _) => html! { (piece) },
+        });
+        is_code = !is_code;
+    }
+    html! { @for piece in &shown { (piece) } }
+}
+
 const fn harmless(letter: char) -> char {
     match letter {
         '\n' | '\t' => ' ',
@@ -231,6 +249,16 @@ mod tests {
         assert_eq!(short(&"x".repeat(10_000)).chars().count(), LONGEST + 1);
         assert_eq!(short("a\u{202e}b\u{0}c"), "a\u{fffd}b\u{fffd}c");
         assert_eq!(name("<b>&\"").into_string(), "<bdi>&lt;b&gt;&amp;&quot;</bdi>");
+    }
+
+    #[test]
+    fn names_between_back_ticks_are_code_and_no_markup() {
+        let shown = |text| prose(text, 600).into_string();
+        assert_eq!(
+            shown("`frame.origin_m`: write `<b>` & ``, or ` alone"),
+            "<code>frame.origin_m</code>: write <code>&lt;b&gt;</code> &amp; <code></code>, or ` alone"
+        );
+        assert_eq!(prose("of `a_long_name`", 7).into_string(), "of `a_l…");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::context::Context;
 use super::figure::{Bar, Figure, Segment, stack};
 use super::tables::{Cell, table};
-use super::words::{cut, duration, number, short};
+use super::words::{duration, number, prose, short};
 use crate::describe::{bytes, grouped};
 
 /// Maximum number of lines of a list.
@@ -36,7 +36,7 @@ pub(super) fn section(context: &Context<'_>) -> Option<Markup> {
 pub(super) fn list(texts: &[String]) -> Markup {
     html! {
         ul {
-            @for text in texts.iter().take(LINES) { li { bdi { (cut(text, 600)) } } }
+            @for text in texts.iter().take(LINES) { li { bdi { (prose(text, 600)) } } }
             @if texts.len() > LINES { li { (texts.len() - LINES) " more are in summary.json." } }
         }
     }
