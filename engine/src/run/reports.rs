@@ -55,7 +55,7 @@ const MOST_RECIPES: usize = 64;
 pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) -> Vec<Report> {
     let count = scenes.len();
     let share = 1.0 / count as f64;
-    let warnings = warnings_by_scene(&common, count);
+    let mut warnings = warnings_by_scene(&common, count).into_iter();
     let sensors = std::mem::take(&mut common.sensors);
     let sensors = sensors_by_scene(sensors, scenes, common.world);
     let own: Vec<&str> = scenes.iter().map(|settled| settled.hash.as_str()).collect();
@@ -72,10 +72,8 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             })
         })
     };
-    let report = |(((settled, hash), sensors), warnings): (
-        ((&SettledScene, String), Vec<SensorReport>),
-        Vec<String>,
-    )| {
+    let report = |((settled, hash), sensors): ((&SettledScene, String), Vec<SensorReport>)| {
+        let warnings = warnings.next().expect("warnings of each scene");
         let SettledScene { scene, context, .. } = settled;
         Report {
             projection: projection(common.world),
@@ -103,7 +101,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             recipe: recipe(settled),
         }
     };
-    scenes.iter().zip(hashes).zip(sensors).zip(warnings).map(report).collect()
+    scenes.iter().zip(hashes).zip(sensors).map(report).collect()
 }
 
 /// Reports of the sensors for each scene, in document order.
