@@ -95,18 +95,8 @@ pub enum AssetError {
     },
     #[error("{}:{line}: column {column:?} is missing among {found:?}; add it", .file.display())]
     MissingColumn { file: PathBuf, line: usize, column: String, found: Vec<String> },
-    #[error(
-        "{}:{line}: column {column:?} is missing among {found:?}; if {alike:?} is that in metres, write \
-         {column:?} in its place, or list the names of all columns under `columns` in the scene",
-        .file.display()
-    )]
-    MissingStemColumn {
-        file: PathBuf,
-        line: usize,
-        column: &'static str,
-        alike: String,
-        found: Vec<String>,
-    },
+    #[error("{}:{line}: {problem}; {help}", .file.display())]
+    NoStemPlaces { file: PathBuf, line: usize, problem: String, help: String },
     #[error(
         "{}:{line}: the header calls a column {own:?} which `columns` in the scene calls {given:?}; take \
          `columns` out, or write its names in the order of the file",

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::AssetError;
-use super::table::{Column, ColumnContent, Table, known_columns, missing};
+use super::table::{Column, ColumnContent, Table, known_columns};
 use crate::document::{INSTANCE_COLUMNS, meant_column};
 
 /// Position, orientation and size of one instance, from a row of a table.
@@ -43,6 +43,8 @@ pub struct StemTable {
     pub species: Vec<String>,
     /// True if the diameters are said to be those of crowns.
     pub diameter_is_of_crown: bool,
+    /// True if there is a column of the heights of places.
+    pub has_heights: bool,
     /// Columns that mean nothing here.
     pub left_out: Vec<String>,
     /// Columns that are spelled almost as a column with a meaning, with that one.
@@ -76,17 +78,8 @@ pub fn read_instances(path: &Path, columns: Option<&[String]>) -> Result<StemTab
     let line = table.first_line;
     let names = names(&mut table, columns)?;
     let has = |name: &str| names.iter().any(|n| n == name);
-    if let Some(column) = ["x_m", "y_m"].into_iter().find(|name| !has(name)) {
-        return Err(match like(column, &names) {
-            Some(alike) => AssetError::MissingStemColumn {
-                file: path.to_owned(),
-                line,
-                column,
-                alike,
-                found: names,
-            },
-            None => missing(column, &names, path, line),
-        });
+    if !has("x_m") || !has("y_m") {
+        return Err(no_places(names, path, line));
     }
     if let Some((first, second)) = CONTRADICTIONS.into_iter().find(|(a, b)| has(a) && has(b)) {
         let (first, second) = (first.to_owned(), second.to_owned());
@@ -121,8 +114,8 @@ pub fn read_instances(path: &Path, columns: Option<&[String]>) -> Result<StemTab
     if rows.is_empty() {
         return Err(AssetError::NoRows { file: path.to_owned() });
     }
-    let diameter_is_of_crown = has("crown_diameter_m");
-    Ok(StemTable { rows, species, diameter_is_of_crown, left_out, misspelt })
+    let (diameter_is_of_crown, has_heights) = (has("crown_diameter_m"), has("z_m"));
+    Ok(StemTable { rows, species, diameter_is_of_crown, has_heights, left_out, misspelt })
 }
 
 /// Names of the columns, by the header or by the scene; a header is left behind.
@@ -228,6 +221,52 @@ fn row(
         species: None,
         line,
     })
+}
+
+/// Error of a table that lacks a coordinate: says which columns may be meant.
+fn no_places(found: Vec<String>, file: &Path, line: usize) -> AssetError {
+    let lacking: Vec<&str> =
+        ["x_m", "y_m"].into_iter().filter(|&name| found.iter().all(|own| own != name)).collect();
+    let are_degrees = found
+        .iter()
+        .any(|name| ["lon", "lat", "lng", "long"].iter().any(|word| is_word(name, word)));
+    let alike: Vec<String> = lacking.iter().filter_map(|column| like(column, &found)).collect();
+    let listed = |names: &[&str]| {
+        let quoted: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+        quoted.join(" and ")
+    };
+    let (are, they) = if lacking.len() == 1 { ("is", "it") } else { ("are", "them") };
+    let columns = listed(&lacking);
+    let help = if are_degrees {
+        format!(
+            "a scene is in metres: convert longitudes and latitudes to the projection of its map and call the columns \
+             {columns}, as by `ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:32632 -oo X_POSSIBLE_NAMES=lon -oo \
+             Y_POSSIBLE_NAMES=lat -lco GEOMETRY=AS_XY metres.csv degrees.csv`"
+        )
+    } else if alike.len() == lacking.len() {
+        let alike: Vec<&str> = alike.iter().map(String::as_str).collect();
+        let that = if alike.len() == 1 { "is that in metres" } else { "are those in metres" };
+        let place = if alike.len() == 1 { "its" } else { "their" };
+        format!(
+            "if {} {that}, write {columns} in {place} place, or list the names of all columns under `columns` in the \
+             scene",
+            listed(&alike)
+        )
+    } else {
+        format!("add {they}, or list the names of all columns under `columns` in the scene")
+    };
+    let noun = if lacking.len() == 1 { "column" } else { "columns" };
+    let problem = format!("{noun} {columns} {are} missing among {found:?}");
+    AssetError::NoStemPlaces { file: file.to_owned(), line, problem, help }
+}
+
+/// Returns whether the name of a column is a word, or starts with it and a unit or an ending.
+fn is_word(name: &str, word: &str) -> bool {
+    let lower = name.trim().to_lowercase();
+    lower == word
+        || lower.strip_prefix(word).is_some_and(|rest| {
+            rest.starts_with(['_', ' ', '(']) || ["itude", "itude_deg"].contains(&rest)
+        })
 }
 
 /// The column that a person may have meant by a coordinate.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Resources;
 use super::coordinate_advice::terrain_advice;
-use super::measure_bounds::placed_meshes;
+use super::measure_bounds::{MeshSummary, placed_meshes};
 use super::measure_extents::BATCH;
 use crate::components::{Instance, InstanceQuery, MeshBounds, Placement};
 use crate::document::{Diagnostic, Instances};
@@ -15,6 +15,9 @@ use crate::terrain::Ground;
 
 /// Height of bodies that are flat, and gap over which those do not float, m.
 const FLAT: f64 = 0.05;
+
+/// Share of its height by which an instance is sunken: roots are less, and a tree that lies on its side is half.
+const SUNKEN: f64 = 0.4;
 
 /// Distance from the ground that is rounding, over the ground's height.
 const ROUNDING: f64 = 1e-6;
@@ -55,7 +58,7 @@ impl Cases {
         let (gap, height) = (low - below, high - low);
         let is_flat = height < FLAT && gap.abs() < ROUNDING * (below.abs() + 1.0);
         let floats = gap > height.max(FLAT);
-        if !is_flat && !floats && high - below >= 0.5 * height {
+        if !is_flat && !floats && high - below >= (1.0 - SUNKEN) * height {
             return;
         }
         let case = Case { count: 1, first: instance, heights: [low, high, below] };
@@ -108,7 +111,7 @@ fn cases(
         })
 }
 
-/// Warns of instances that float above the ground by more than their height, or are sunken into it by half of their
+/// Warns of instances that float above the ground by more than their height, or are sunken into it by two fifths of their
 /// height: crowns without trunks, and roots, are left alone. Reads the components of
 /// instances, [`MeshBounds`] and [`Ground`].
 pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resources) {
@@ -127,19 +130,33 @@ pub(super) fn warn_floating_instances(world: &mut World, resources: &mut Resourc
         ));
     }
     for (prototype, Cases { sunken, floating, .. }) in &cases {
-        for (case, how) in [(sunken, "are sunken into"), (floating, "float above")] {
+        let MeshSummary { name, bounds, .. } = &meshes[prototype];
+        let lying = bounds.map_or_else(String::new, |bounds| lying_advice(name, bounds));
+        for (case, how, rest) in
+            [(sunken, "are sunken into", lying.as_str()), (floating, "float above", "")]
+        {
             let Some(Case { count, first, heights: [low, high, below] }) = case else { continue };
-            let name = &meshes[prototype].name;
             let advice = advice(first, [*low, *high], world, resources);
             let message = format!("{count} of `{name}` {how} the ground");
             let help = format!(
-                "at {} the ground is {below:.2} m high, and it reaches from {low:.2} to {high:.2} m{advice}; \
+                "at {} the ground is {below:.2} m high, and it reaches from {low:.2} to {high:.2} m{advice}{rest}; \
                  heights of instances are those of the local frame",
                 place_text(first.placement.position.truncate()),
             );
             resources.messages.report(Diagnostic::warning("instances", message).help(help));
         }
     }
+}
+
+/// Advice about a mesh that reaches as far below its origin as a tree that lies on its side, with a separator.
+fn lying_advice(name: &str, MeshBounds { low, high }: MeshBounds) -> String {
+    if f64::from(-low.z) <= SUNKEN * f64::from(high.z - low.z) {
+        return String::new();
+    }
+    format!(
+        "; `{name}` itself reaches from {:.2} to {:.2} m about its origin: is its `up` right?",
+        low.z, high.z
+    )
 }
 
 fn advice(

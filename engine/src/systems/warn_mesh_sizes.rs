@@ -27,7 +27,7 @@ pub(super) fn warn_mesh_sizes(world: &mut World, resources: &mut Resources) {
         let size = (high - low).max_element();
         if unit < 1.0 && size < SMALLEST {
             let message = format!("`{name}` is {size:.3} m large, with a unit of {unit} m");
-            let help = "if the coordinates of its file are in metres, leave `unit_m` out";
+            let help = "if the coordinates of its file are in metres, write `unit_m: 1.0`";
             let path = ScenePath::from("meshes").name(name);
             resources.report(Diagnostic::warning(path, message).help(help));
         }

@@ -85,7 +85,7 @@ fn degrees_celsius_radians_and_centimetres() {
         case("71-first-hour/heights_in_centimetres.ron", &[Warns(&["up to 1600 m high"])]),
         case(
             "71-first-hour/unit_of_a_mesh_in_metres.ron",
-            &[Warns(&["0.120 m large", "`unit_m`"])],
+            &[Warns(&["0.120 m large", "`unit_m: 1.0`"])],
         ),
         case(
             "71-first-hour/stems_in_degrees.ron",

@@ -314,6 +314,13 @@ fn thousands_of_groups_are_named_by_patterns_or_materials() {
             r#"parts: { "leaf_7": "black" })"#,
             &["19999 parts have no material: `leaf_0`", "and 19989 more", "parts_by: Material"][..],
         ),
+        (
+            r#"parts: { "green": "leaf", "brown": "black" })"#,
+            &[
+                "`parts` has names of materials (`usemtl`), and the parts of the file are groups",
+                "write parts_by: Material",
+            ],
+        ),
         (r#"parts: { "leef_*": "black" }, material: "black")"#, &["no part `leef_*`"]),
         (r#"parts: { "leaf_20000": "black" }, material: "black")"#, &["no part `leaf_20000`"]),
         (r#"parts_by: Material, parts: { "green": "black" })"#, &["part `brown` has no material"]),

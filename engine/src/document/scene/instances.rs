@@ -42,7 +42,8 @@ record! {
         /// north is so wide; where one of the two is missing, the mesh keeps its proportions.
         /// Columns of other names are let be.
         columns: Option<Vec<String>> = None,
-        /// True if heights count from the terrain below each place.
+        /// True if heights count from the terrain below each place. Without a column `z_m` they do in any case, and
+        /// stems beside the ground stand at height 0.
         on_terrain: bool = false,
         /// Origin of the coordinates; if absent, whichever of the two puts the stems on the terrain.
         coordinates: Option<TableCoordinates> = None,

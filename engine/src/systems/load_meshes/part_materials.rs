@@ -29,6 +29,10 @@ pub(in crate::systems) fn part_materials(
             return crown_materials(crown, loaded, path, resources);
         }
     };
+    if let Some(error) = materials_for_parts(mesh, named, loaded, path) {
+        resources.report(error);
+        return vec![MaterialId(0); loaded.parts.len()];
+    }
     check_part_names(named, loaded, path, resources);
     let patterns: Vec<_> = patterns(named);
     // Parts of one material are many: it is looked up once.
@@ -62,6 +66,32 @@ pub(in crate::systems) fn part_materials(
     }
     materials.resize(loaded.parts.len(), MaterialId(0));
     materials
+}
+
+/// Error of `parts` that names the materials of an OBJ file, whose parts are named by groups: `tree/bark`.
+fn materials_for_parts(
+    mesh: &document::Prototype,
+    named: &Map<Ref<Material>>,
+    loaded: &Mesh,
+    path: &ScenePath,
+) -> Option<Diagnostic> {
+    let document::Prototype::Obj(Obj { parts_by: PartsBy::Group, .. }) = mesh else { return None };
+    let parts = || loaded.parts.iter().map(|part| part.name.as_str());
+    let materials: HashSet<&str> =
+        parts().filter_map(|part| Some(part.rsplit_once('/')?.1)).collect();
+    let is_material = |name: &String| materials.contains(name.as_str());
+    if named.is_empty() || !named.keys().all(is_material) || parts().any(|p| named.contains_key(p))
+    {
+        return None;
+    }
+    let shown: Vec<_> = parts().take(MOST_SHOWN).map(|part| format!("`{part}`")).collect();
+    let more = if loaded.parts.len() > MOST_SHOWN { ", .." } else { "" };
+    let message = format!(
+        "`parts` has names of materials (`usemtl`), and the parts of the file are groups: {}{more}",
+        shown.join(", ")
+    );
+    let help = "write parts_by: Material, then `parts` names the materials of the file";
+    Some(Diagnostic::error(path.key("parts"), message).help(help))
 }
 
 /// Refuses names in `parts` that no part of the mesh has.

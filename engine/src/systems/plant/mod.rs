@@ -2,7 +2,7 @@
 //!
 //! | kind of planting | file | height of an instance |
 //! |---|---|---|
-//! | list, table | `mod.rs`, `table.rs` | as written, m, local frame; with `on_terrain`, above the ground |
+//! | list, table | `mod.rs`, `table.rs` | as written, m, local frame; with `on_terrain`, or without heights, above the ground |
 //! | scatter | `scatter.rs`, [`placement`](crate::placement) | on the ground, less `sink_m` |
 //! | canopy height model | `canopy.rs` | on the ground, less `sink_m` |
 
@@ -172,10 +172,11 @@ fn placements_of(instances: &Instances, site: &mut Site<'_>) -> Vec<Placement> {
         Instances::Table(_) => plant_table(instances, site),
         Instances::List(list) => {
             let rows = listed(&list.at_m, &list.yaw_deg, &list.scale);
+            let base = if list.on_terrain { HeightBase::Ground } else { HeightBase::Frame };
             match site.resources.prototype(&list.of, &site.path.key("of")) {
                 Some(prototype) => {
                     let prototypes = vec![prototype; rows.len()];
-                    plant_rows(instances, &rows, &prototypes, list.on_terrain, site)
+                    plant_rows(instances, &rows, &prototypes, base, site)
                 }
                 None => Vec::new(),
             }
@@ -195,22 +196,33 @@ fn rectangle_of(ground: &Ground) -> Rectangle {
     Rectangle { min: ground.corner(), max: ground.corner() + ground.size() }
 }
 
-/// Instances of the rows of a table or a list. If `on_terrain`, their heights are above the ground, and rows beside
-/// it are reported.
+/// What heights of instances count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HeightBase {
+    /// The local frame.
+    Frame,
+    /// The ground below; places beside it are errors.
+    Ground,
+    /// The ground below, or the local frame beside it.
+    GroundIfAny,
+}
+
+/// Instances of the rows of a table or a list.
 fn plant_rows(
     instances: &Instances,
     rows: &[StemRow],
     prototypes: &[PrototypeId],
-    on_terrain: bool,
+    base: HeightBase,
     site: &mut Site<'_>,
 ) -> Vec<Placement> {
-    let ground = site.ground.filter(|_| on_terrain);
+    let ground = site.ground.filter(|_| base != HeightBase::Frame);
     let mut beside = Vec::new();
     let placed = rows
         .iter()
         .zip(prototypes)
         .filter_map(|(row, &prototype)| {
             let base = match ground.map(|ground| ground.height(row.position.truncate())) {
+                Some(None) if base == HeightBase::GroundIfAny => 0.0,
                 Some(None) => {
                     beside.push(row.position);
                     return None;

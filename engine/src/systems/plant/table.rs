@@ -1,6 +1,6 @@
 use glam::{DVec2, Vec3Swizzles as _};
 
-use super::{Site, plant_rows};
+use super::{HeightBase, Site, plant_rows};
 use crate::assets::{StemRow, StemTable, read_instances};
 use crate::components::{Placement, PrototypeId};
 use crate::document::{
@@ -49,6 +49,11 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
     };
     report_unused_columns(&table, of, file, &at, site);
     let Some(kinds) = kinds(&table, of, file, site) else { return Vec::new() };
+    let base = match (on_terrain, table.has_heights) {
+        (true, _) => HeightBase::Ground,
+        (false, true) => HeightBase::Frame,
+        (false, false) => HeightBase::GroundIfAny,
+    };
     let mut rows = table.rows;
     let is_of_map = match coordinates {
         Some(TableCoordinates::Map) => true,
@@ -60,7 +65,7 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
     };
     warn_degrees(&rows, file, &at, site);
     if is_of_map {
-        move_from_map(&mut rows, *on_terrain, site);
+        move_from_map(&mut rows, base, site);
     }
     let mut prototypes = Vec::with_capacity(rows.len());
     for row in &mut rows {
@@ -71,7 +76,29 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
             return Vec::new();
         }
     }
-    plant_rows(instances, &rows, &prototypes, *on_terrain, site)
+    plant_rows(instances, &rows, &prototypes, base, site)
+}
+
+/// Advice to convert degrees to the projection of the scene.
+fn to_metres(site: &Site<'_>) -> String {
+    let code = site.map.crs.as_ref().and_then(|system| system.crs.code).unwrap_or(32632);
+    format!(
+        "convert them to the projection of the scene, in metres: `ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:{code} -oo \
+         X_POSSIBLE_NAMES=x_m -oo Y_POSSIBLE_NAMES=y_m -lco GEOMETRY=AS_XY metres.csv degrees.csv`, and call its \
+         columns `x_m` and `y_m`"
+    )
+}
+
+/// Returns whether all places of rows could be longitudes and latitudes of one stand.
+fn may_be_degrees(rows: &[StemRow]) -> bool {
+    let places = || rows.iter().map(|row| row.position.truncate());
+    let (low, high) = (
+        places().fold(DVec2::INFINITY, DVec2::min),
+        places().fold(DVec2::NEG_INFINITY, DVec2::max),
+    );
+    let is_of_earth =
+        low.cmpge(DVec2::new(-180.0, -90.0)).all() && high.cmple(DVec2::new(180.0, 90.0)).all();
+    is_of_earth && (high - low).max_element() < 10.0 * NARROW_M
 }
 
 /// Warns of rows that lie so near to each other that their coordinates may be degrees.
@@ -91,8 +118,7 @@ fn warn_degrees(rows: &[StemRow], file: &str, path: &ScenePath, site: &mut Site<
         low.x,
         low.y
     );
-    let help = "if these are longitudes and latitudes, convert them to the projection of the scene, in \
-                    metres: `ogr2ogr -t_srs EPSG:32632 -lco GEOMETRY=AS_XY out.csv in.csv`";
+    let help = format!("if these are longitudes and latitudes, {}", to_metres(site));
     site.report(Diagnostic::warning(path, message).help(help));
 }
 
@@ -218,7 +244,8 @@ fn guess_coordinates(
                 rows.len()
             ),
             "write `coordinates: Local` if they are those of the scene, `coordinates: Map` if they \
-                 are those of the map",
+                 are those of the map"
+                .to_owned(),
         ),
         (false, false) => {
             let first = places().next().unwrap_or_default();
@@ -232,7 +259,12 @@ fn guess_coordinates(
                     place_text(low),
                     place_text(high)
                 ),
-                "correct `frame.origin_m`, or write `coordinates: Local` or `coordinates: Map`",
+                if may_be_degrees(rows) {
+                    format!("they look like longitudes and latitudes: {}", to_metres(site))
+                } else {
+                    "correct `frame.origin_m`, or write `coordinates: Local` or `coordinates: Map`"
+                        .to_owned()
+                },
             )
         }
     };
@@ -241,10 +273,10 @@ fn guess_coordinates(
 }
 
 /// Converts coordinates of the map to the local frame.
-fn move_from_map(rows: &mut [StemRow], on_terrain: bool, site: &Site<'_>) {
+fn move_from_map(rows: &mut [StemRow], base: HeightBase, site: &Site<'_>) {
     let (map, (.., height)) = (site.transform(), site.resources.frame.origin_m);
     for row in rows {
-        let z = if on_terrain { row.position.z } else { row.position.z - height };
+        let z = row.position.z - if base == HeightBase::Frame { height } else { 0.0 };
         row.position = map.apply(row.position.truncate()).extend(z);
     }
 }
