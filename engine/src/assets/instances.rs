@@ -260,13 +260,12 @@ fn no_places(found: Vec<String>, file: &Path, line: usize) -> AssetError {
     AssetError::NoStemPlaces { file: file.to_owned(), line, problem, help }
 }
 
-/// Returns whether the name of a column is a word, or starts with it and a unit or an ending.
+/// Returns whether the name of a column is a word, long or short, and perhaps a unit: `lat`, `latitude_deg`.
 fn is_word(name: &str, word: &str) -> bool {
     let lower = name.trim().to_lowercase();
-    lower == word
-        || lower.strip_prefix(word).is_some_and(|rest| {
-            rest.starts_with(['_', ' ', '(']) || ["itude", "itude_deg"].contains(&rest)
-        })
+    let Some(rest) = lower.strip_prefix(word) else { return false };
+    let rest = rest.trim_start_matches("itude");
+    rest.is_empty() || rest.starts_with(['_', ' ', '('])
 }
 
 /// The column that a person may have meant by a coordinate.

@@ -285,6 +285,11 @@ fn checked(keys: &str) -> Result<Vec<String>, String> {
         let material = if group % 2 == 0 { "green" } else { "brown" };
         let _infallible = writeln!(obj, "g leaf_{group}\nusemtl {material}\nf 1 2 3");
     }
+    checked_file(&obj, keys)
+}
+
+/// What `check` says of a scene with an OBJ file and keys for its parts.
+fn checked_file(obj: &str, keys: &str) -> Result<Vec<String>, String> {
     let scene = std::fs::read_to_string(folder().join("01-obj-inline-comment/face.ron"));
     let scene = scene.expect("a scene of this test");
     let scene = scene.replace(r#"file: "face.obj""#, r#"file: "groups.obj""#);
@@ -314,13 +319,6 @@ fn thousands_of_groups_are_named_by_patterns_or_materials() {
             r#"parts: { "leaf_7": "black" })"#,
             &["19999 parts have no material: `leaf_0`", "and 19989 more", "parts_by: Material"][..],
         ),
-        (
-            r#"parts: { "green": "leaf", "brown": "black" })"#,
-            &[
-                "`parts` has names of materials (`usemtl`), and the parts of the file are groups",
-                "write parts_by: Material",
-            ],
-        ),
         (r#"parts: { "leef_*": "black" }, material: "black")"#, &["no part `leef_*`"]),
         (r#"parts: { "leaf_20000": "black" }, material: "black")"#, &["no part `leaf_20000`"]),
         (r#"parts_by: Material, parts: { "green": "black" })"#, &["part `brown` has no material"]),
@@ -330,4 +328,22 @@ fn thousands_of_groups_are_named_by_patterns_or_materials() {
         assert!(expected.iter().all(|part| message.contains(part)), "{keys}: {message}");
         assert!(message.len() < 3000, "{keys}: {} bytes", message.len());
     }
+}
+
+/// *File*: one object in two materials, as Blender writes a tree. *Expected*: who names the materials gets one error with
+/// the key that makes them parts.
+#[test]
+fn materials_in_place_of_groups_are_one_error() {
+    let obj = "o Tree\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl bark\nf 1 2 3\nusemtl leaves\nf 1 2 4\n";
+    let message = checked_file(obj, r#"parts: { "leaves": "leaf", "bark": "black" })"#)
+        .expect_err("groups are the parts");
+    assert_eq!(message.matches("error:").count(), 1, "{message}");
+    for part in [
+        "`parts` has names of materials (`usemtl`), and the parts of the file are groups: `Tree/bark`, `Tree/leaves`",
+        "write parts_by: Material",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+    let keys = r#"parts_by: Material, parts: { "leaves": "leaf", "bark": "black" })"#;
+    checked_file(obj, keys).expect("materials are the parts");
 }
