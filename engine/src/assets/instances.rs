@@ -79,7 +79,7 @@ pub fn read_instances(path: &Path, columns: Option<&[String]>) -> Result<StemTab
     let names = names(&mut table, columns)?;
     let has = |name: &str| names.iter().any(|n| n == name);
     if !has("x_m") || !has("y_m") {
-        return Err(no_places(names, path, line));
+        return Err(no_places(&names, path, line));
     }
     if let Some((first, second)) = CONTRADICTIONS.into_iter().find(|(a, b)| has(a) && has(b)) {
         let (first, second) = (first.to_owned(), second.to_owned());
@@ -224,13 +224,13 @@ fn row(
 }
 
 /// Error of a table that lacks a coordinate: says which columns may be meant.
-fn no_places(found: Vec<String>, file: &Path, line: usize) -> AssetError {
+fn no_places(found: &[String], file: &Path, line: usize) -> AssetError {
     let lacking: Vec<&str> =
         ["x_m", "y_m"].into_iter().filter(|&name| found.iter().all(|own| own != name)).collect();
     let are_degrees = found
         .iter()
         .any(|name| ["lon", "lat", "lng", "long"].iter().any(|word| is_word(name, word)));
-    let alike: Vec<String> = lacking.iter().filter_map(|column| like(column, &found)).collect();
+    let alike: Vec<String> = lacking.iter().filter_map(|column| like(column, found)).collect();
     let listed = |names: &[&str]| {
         let quoted: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
         quoted.join(" and ")
