@@ -142,6 +142,21 @@ fn an_expanded_scene_is_a_scene() {
     assert_eq!(hash("soil.ron"), hash("again.ron"));
 }
 
+#[test]
+fn a_scene_that_is_not_there_has_a_nearest_name() {
+    let folder = folder_with("");
+    for command in ["check", "run", "sweep", "stats", "expand"] {
+        let (code, _, stderr) = outcome(folder.path(), &[command, "sol.ron"]);
+        assert_eq!(code, 1);
+        assert_eq!(stderr, "error: there is no file sol.ron: did you mean `soil.ron`?\n");
+    }
+    let (_, _, stderr) = outcome(folder.path(), &["check", "none/sol.ron"]);
+    assert_eq!(
+        stderr,
+        "error: there is no file none/sol.ron: there is no folder none that can be read\n"
+    );
+}
+
 /// Two trees of 25 m² of leaves on 100 m² and the sun over Berlin at noon: stems, leaf area, cover and sun are
 /// those that follow by hand.
 #[test]

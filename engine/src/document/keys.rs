@@ -29,6 +29,8 @@ struct Section {
     heading: String,
     /// Text between the heading and the rows.
     text: String,
+    /// Variants of the type without keys, each with its line of the text.
+    plain: Vec<(String, String)>,
     /// Keys, each with its row of the table.
     rows: Vec<(String, String)>,
     /// Text behind the rows.
@@ -68,6 +70,10 @@ pub fn keys_about(name: &str) -> Result<String, String> {
         })
         .map(Section::markdown)
         .collect();
+    for section in all.iter().filter(|section| !is_meant(&section.of_type)) {
+        let lines = section.plain.iter().filter(|(variant, _)| is_meant(variant));
+        parts.extend(lines.map(|(_, line)| section.with_line(line)));
+    }
     for section in &all {
         let rows: Vec<_> = section.rows.iter().filter(|(key, _)| is_meant(key)).collect();
         if !rows.is_empty() {
@@ -80,11 +86,15 @@ pub fn keys_about(name: &str) -> Result<String, String> {
     if is_of_formulas {
         parts.push(formula_section());
     }
+    if parts.is_empty() && !name.is_empty() {
+        parts = parts_that_name(&all, name);
+    }
     if !parts.is_empty() {
         return Ok(parts.join("\n"));
     }
     let types = all.iter().map(|section| section.of_type.as_str());
-    let variants = all.iter().filter_map(|section| section.variant.as_deref());
+    let plain = all.iter().flat_map(|section| section.plain.iter().map(|(name, _)| name.as_str()));
+    let variants = all.iter().filter_map(|section| section.variant.as_deref()).chain(plain);
     let keys = all.iter().flat_map(|section| section.rows.iter().map(|(key, _)| key.as_str()));
     Err(match nearest(name, types.chain(variants).chain(keys)) {
         Some(near) => format!("there is no key, type or variant `{name}`: did you mean `{near}`?"),
@@ -92,7 +102,27 @@ pub fn keys_about(name: &str) -> Result<String, String> {
     })
 }
 
+/// Lines about variants that name this word among their values: an instrument or a spectrum of the library.
+fn parts_that_name(all: &[Section], word: &str) -> Vec<String> {
+    let is_in = |value: &str| {
+        let mut words = value.split(|letter: char| !letter.is_alphanumeric());
+        value.eq_ignore_ascii_case(word) || words.any(|other| other.eq_ignore_ascii_case(word))
+    };
+    let mut parts = Vec::new();
+    for section in all {
+        let names = |line: &str| line.split('`').skip(1).step_by(2).any(is_in);
+        let lines = section.plain.iter().filter(|(_, line)| names(line));
+        parts.extend(lines.map(|(_, line)| section.with_line(line)));
+    }
+    parts
+}
+
 impl Section {
+    /// Heading of the type, and the line about one of its variants.
+    fn with_line(&self, line: &str) -> String {
+        format!("{}\n\n{line}\n", self.heading)
+    }
+
     fn markdown(&self) -> String {
         let rows: Vec<_> = self.rows.iter().map(|(_, row)| row.as_str()).collect();
         let mut text = self.with_rows(&rows);
@@ -123,6 +153,7 @@ fn sections() -> Vec<Section> {
             variant: None,
             heading: format!("## {name}"),
             text: description(&schema),
+            plain: Vec::new(),
             rows: rows(&schema),
             example: String::new(),
         };
@@ -130,7 +161,8 @@ fn sections() -> Vec<Section> {
         let (with_keys, plain): (Vec<&Value>, Vec<&Value>) =
             variants.iter().partition(|variant| variant[VARIANT][KEYS].is_array());
         if !plain.is_empty() {
-            let lines: Vec<_> = plain.into_iter().map(plain_variant).collect();
+            head.plain = plain.into_iter().map(plain_variant).collect();
+            let lines: Vec<_> = head.plain.iter().map(|(_, line)| line.as_str()).collect();
             let text = std::mem::take(&mut head.text);
             head.text = match text.as_str() {
                 "" => lines.join("\n"),
@@ -146,6 +178,7 @@ fn sections() -> Vec<Section> {
                 variant: Some(variant_name.to_owned()),
                 heading: format!("### {variant_name} ({name})"),
                 text: description(variant),
+                plain: Vec::new(),
                 rows: rows(of_variant),
                 example: format!("Example: `{}`", example(of_variant)),
             });
@@ -154,8 +187,8 @@ fn sections() -> Vec<Section> {
     sections
 }
 
-/// A line about a variant without keys.
-fn plain_variant(variant: &Value) -> String {
+/// Name of a variant without keys, and a line about it.
+fn plain_variant(variant: &Value) -> (String, String) {
     let of_variant = &variant[VARIANT];
     let name = of_variant["name"].as_str().unwrap_or_default();
     let mut line = format!("- `{name}`");
@@ -169,7 +202,7 @@ fn plain_variant(variant: &Value) -> String {
     if !of_variant["holds"].is_null() {
         line.extend([" Example: `", example(of_variant), "`"]);
     }
-    line
+    (name.to_owned(), line)
 }
 
 fn rows(schema: &Value) -> Vec<(String, String)> {
@@ -263,6 +296,29 @@ mod tests {
         assert!(page.contains("| `azimuth_deg` | number | `180.0` |"), "{page}");
         let about = keys_about("AZIMUTH_deg").expect("a key");
         assert!(about.matches("| `azimuth_deg` |").count() > 2, "{about}");
+    }
+
+    #[test]
+    fn every_variant_of_the_language_is_found_by_its_name() {
+        for section in sections() {
+            for (name, line) in &section.plain {
+                let part = format!("## {}\n\n", section.of_type);
+                let about = keys_about(name).expect("a variant");
+                assert!(about.contains(line) && about.contains(&part), "{name}: {about}");
+            }
+        }
+        assert_eq!(
+            keys_about("perhectare").expect("a variant"),
+            "## Stems\n\n- `PerHectare(..)` with number: Stems per hectare of the area where they may stand. Example: `PerHectare(400.0)`\n"
+        );
+        let library = keys_about("Library").expect("a variant");
+        assert!(library.starts_with("## Spectrum\n\n- `Library(..)` with text: "), "{library}");
+        assert_eq!(keys_about("bark_BIRCH").expect("a spectrum"), library);
+        assert_eq!(keys_about("birch").expect("a word of it"), library);
+        let instruments = keys_about("sentinel").expect("a word of an instrument");
+        assert_eq!(instruments.matches("- `Sensor(..)`").count(), 2, "{instruments}");
+        let sensor = keys_about("Sensor").expect("a type");
+        assert!(sensor.contains("## BandSet\n\n- `Sensor(..)`"), "{sensor}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::diagnostic::Diagnostic;
+use super::diagnostic::{Diagnostic, nearest};
 use super::encode::Encode as _;
 use super::parsed::ParsedScene;
 use super::path::ScenePath;
@@ -62,6 +62,8 @@ impl Reading {
 pub enum ReadError {
     #[error("cannot read {file}: {source}")]
     Io { file: String, source: io::Error },
+    #[error("there is no file {file}{near}")]
+    Missing { file: String, near: String },
     #[error("{file} is a folder: name the scene file in it")]
     Folder { file: String },
     #[error("{file} is neither a file nor a folder")]
@@ -87,11 +89,35 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<Reading, ReadErro
     Ok(ParsedScene::from_file(path)?.read(options))
 }
 
+/// Number of names in a folder among which the nearest is looked for.
+const MOST_NAMES: usize = 10_000;
+
+/// Text about the file that was meant where there is none: the nearest name of a scene in its folder.
+fn nearby(path: &Path) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let Ok(entries) = std::fs::read_dir(folder.unwrap_or_else(|| Path::new("."))) else {
+        let shown = folder.unwrap_or(path).display();
+        return format!(": there is no folder {shown} that can be read");
+    };
+    let names = entries.flatten().take(MOST_NAMES).map(|entry| entry.file_name());
+    let mut names: Vec<String> = names
+        .filter_map(|name| name.into_string().ok().filter(|name| name.ends_with(".ron")))
+        .collect();
+    names.sort_unstable();
+    let wrong = path.file_name().unwrap_or_default().to_string_lossy();
+    nearest(&wrong, names.iter().map(String::as_str)).map_or_else(String::new, |near| {
+        format!(": did you mean `{}`?", path.with_file_name(near).display())
+    })
+}
+
 /// The text of a scene file. What is no file on a disk (a pipe, say) might never end or never start:
 /// whether that will do is for the caller to say.
 pub(super) fn text_of_file(path: &Path, only_files: bool) -> Result<String, ReadError> {
     let file = path.display().to_string();
-    let io_error = |source| ReadError::Io { file: file.clone(), source };
+    let io_error = |source: io::Error| match source.kind() {
+        io::ErrorKind::NotFound => ReadError::Missing { file: file.clone(), near: nearby(path) },
+        _ => ReadError::Io { file: file.clone(), source },
+    };
     let metadata = std::fs::metadata(path).map_err(io_error)?;
     if metadata.is_dir() {
         return Err(ReadError::Folder { file });

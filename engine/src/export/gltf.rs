@@ -76,12 +76,21 @@ fn unwritten(path: &Path, source: io::Error) -> ExportError {
 }
 
 fn contents(scene: &ExportedScene<'_>, settings: &ExportSettings) -> Vec<String> {
+    let counted = |count: u64, one: &str, many: &str| {
+        format!("{count} {}", if count == 1 { one } else { many })
+    };
+    let instances = scene.instances.len() as u64;
     let mut contents = vec![format!(
-        "{} meshes, {} instances, {} triangles in all",
-        scene.meshes.len(),
-        scene.instances.len(),
-        scene.triangles(settings.disc_sides)
+        "{}, {}, {} in all",
+        counted(scene.meshes.len() as u64, "mesh", "meshes"),
+        counted(instances, "instance", "instances"),
+        counted(scene.triangles(settings.disc_sides), "triangle", "triangles")
     )];
+    if instances > 1 && !settings.is_flat {
+        contents.push(format!(
+            "needs {INSTANCING}, which three.js and Babylon.js read; `--flat` writes a node per instance for other programs"
+        ));
+    }
     if scene.meshes.iter().any(|placed| !placed.mesh.discs.is_empty()) {
         contents
             .push(format!("discs as polygons of {} sides with the same area", settings.disc_sides));

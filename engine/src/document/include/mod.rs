@@ -204,7 +204,7 @@ impl Including<'_> {
             Ok(text) => text,
             Err(error) => {
                 let help = match &error {
-                    ReadError::Io { .. } => {
+                    ReadError::Io { .. } | ReadError::Missing { .. } => {
                         "paths are relative to the folder of the file that includes"
                     }
                     _ => "an included file looks like `Library(materials: { .. }, meshes: { .. })`",
