@@ -142,7 +142,11 @@ fn bad_instances_are_errors_with_their_line_and_the_nearest_name() {
     for (text, expected) in [
         ("x_m,y_m,scale\n1,2,0\n", ":2: scale is 0; write a number above 0"),
         ("x_m,y_m,scale_vertical\n1,2,-1\n", ":2: scale_vertical is -1; write a number above 0"),
-        ("x_m,z_m\n1,2\n", ":1: column \"y_m\" is missing among [\"x_m\", \"z_m\"]; add it"),
+        (
+            "x_m,z_m\n1,2\n",
+            ":1: column \"y_m\" is missing among [\"x_m\", \"z_m\"]; add it, or list the names of all columns \
+             under `columns` in the scene",
+        ),
         ("x_m,y_m\n1,2\n1\n", ":3: has 1 values for 2 columns"),
         ("x_m,y_m,x_m\n1,2,3\n", ":1: columns \"x_m\" and \"x_m\" say the same; keep one"),
         (
@@ -165,7 +169,8 @@ fn bad_instances_are_errors_with_their_line_and_the_nearest_name() {
         assert_eq!(message(&instances(text).unwrap_err()), expected, "{text}");
     }
     let error = instances("X,Y\n1,2\n").unwrap_err();
-    assert!(message(&error).contains("if \"X\" is that in metres, write \"x_m\""), "{error}");
+    let expected = "if \"X\" and \"Y\" are those in metres, write \"x_m\" and \"y_m\" in their place";
+    assert!(message(&error).contains(expected), "{error}");
 }
 
 #[test]
