@@ -21,6 +21,7 @@ try:
     else:
         import laspy
         import lazrs
+        import pyproj  # laspy reads coordinate reference systems by it
 except ImportError as missing:
     print(f"{missing.name} is missing")
     sys.exit(77)
