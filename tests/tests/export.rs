@@ -1,6 +1,6 @@
 //! Exported scenes, read by other programs, against sums over all triangles and discs of the world.
 //!
-//! Needs a Python with `numpy`, `trimesh`, `plyfile`, `laspy` and `lazrs` (`python3`, or the one that
+//! Needs a Python with `numpy`, `trimesh`, `plyfile`, `laspy`, `lazrs` and `pyproj` (`python3`, or the one that
 //! `SUNFLECK_PYTHON` names), and for the validation of glTF `node` with the package `gltf-validator` (`NODE_PATH`). Without
 //! them the comparison is skipped, and says so.
 

@@ -169,7 +169,8 @@ fn bad_instances_are_errors_with_their_line_and_the_nearest_name() {
         assert_eq!(message(&instances(text).unwrap_err()), expected, "{text}");
     }
     let error = instances("X,Y\n1,2\n").unwrap_err();
-    let expected = "if \"X\" and \"Y\" are those in metres, write \"x_m\" and \"y_m\" in their place";
+    let expected =
+        "if \"X\" and \"Y\" are those in metres, write \"x_m\" and \"y_m\" in their place";
     assert!(message(&error).contains(expected), "{error}");
 }
 
