@@ -101,7 +101,8 @@ fn nearby(path: &Path) -> String {
     };
     let names = entries.flatten().take(MOST_NAMES).map(|entry| entry.file_name());
     let mut names: Vec<String> = names
-        .filter_map(|name| name.into_string().ok().filter(|name| name.ends_with(".ron")))
+        .filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "ron"))
+        .filter_map(|name| name.into_string().ok())
         .collect();
     names.sort_unstable();
     let wrong = path.file_name().unwrap_or_default().to_string_lossy();
