@@ -1,11 +1,10 @@
 //! Rasters of several bands: images of ENVI, `GeoTIFF` and EXR.
 
-use std::io::Read as _;
 use std::path::Path;
 
 use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
 
-use super::{RasterError, RasterGeoreference, cells, envi, geotiff, is_tiff};
+use super::{RasterError, RasterGeoreference, cells, envi, geotiff, is_tiff, start_of};
 use crate::assets::AssetError;
 use crate::assets::text::open;
 
@@ -40,11 +39,7 @@ pub struct RasterBand {
 /// # Errors
 /// A file of another format, or one that lacks something or says it wrongly.
 pub fn read_bands(path: &Path) -> Result<BandRaster, AssetError> {
-    let mut start = Vec::new();
-    open(path)?
-        .take(512)
-        .read_to_end(&mut start)
-        .map_err(|cause| AssetError::Unreadable { file: path.to_owned(), cause })?;
+    let start = start_of(path)?;
     let raster = if is_tiff(&start) {
         geotiff::read_bands(open(path)?)
     } else if start.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {

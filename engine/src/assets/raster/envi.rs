@@ -198,32 +198,18 @@ pub(super) fn read(
     header_path: &Path,
     extent: Option<&RasterExtent>,
 ) -> Result<Raster, RasterError> {
-    let header = EnviHeader::read(header_path)?;
-    let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
-    let layout = header.layout()?;
-    let place = header.place(layout.rows)?;
-    let (auxiliary, crs) = sidecar::auxiliary(&file, 0)?;
-    let place = place.map(|place| match crs {
-        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
-        _ => place,
-    });
-    let band = header.band(0)?.or(auxiliary);
-    let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
-    let mut values = layout.read(&file, &window, 0)?;
-    let assumed = band.apply(&mut values);
+    let (header, reader) = open(named, header_path)?;
+    let (auxiliary, _) = sidecar::auxiliary(&reader.file, 0)?;
+    let raster = reader.first_band(&header.band(0)?.or(auxiliary), extent)?;
     let class_names = header.get("class names").map_or_else(Vec::new, |names| {
         names.split(',').map(|name| name.trim().to_owned()).collect()
     });
-    let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
-    let (columns, rows) = (window.columns.len(), window.rows.len());
-    Ok(Raster { columns, rows, values, place, class_names, heights, assumed })
+    Ok(Raster { class_names, ..raster })
 }
 
 /// Reads all bands.
 pub(super) fn read_bands(named: &Path, header_path: &Path) -> Result<BandRaster, RasterError> {
-    let header = EnviHeader::read(header_path)?;
-    let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
-    let layout = header.layout()?;
+    let (header, RawReader { file, layout, .. }) = open(named, header_path)?;
     let place = header.place(layout.rows)?;
     let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), None)?;
     let mut bands = Vec::new();
@@ -243,22 +229,26 @@ pub(super) fn read_bands(named: &Path, header_path: &Path) -> Result<BandRaster,
 
 /// Opens a raster whose values are read strip by strip.
 pub(super) fn reader(named: &Path, header_path: &Path) -> Result<RawReader, RasterError> {
-    let header = EnviHeader::read(header_path)?;
-    let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
-    let layout = header.layout()?;
-    layout.open(&file)?;
-    let (_, crs) = sidecar::auxiliary(&file, 0)?;
-    let place = header.place(layout.rows)?.map(|place| match crs {
-        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
-        _ => place,
-    });
-    let mut bands = header.bands(&layout)?;
+    let (header, reader) = open(named, header_path)?;
+    reader.layout.open(&reader.file)?;
+    let mut bands = header.bands(&reader.layout)?;
     for (index, band) in bands.iter_mut().enumerate() {
-        let metadata = std::mem::take(&mut band.metadata).or(sidecar::auxiliary(&file, index)?.0);
+        let (auxiliary, _) = sidecar::auxiliary(&reader.file, index)?;
+        let metadata = std::mem::take(&mut band.metadata).or(auxiliary);
         band.metadata =
             BandMetadata { scale: metadata.scale.or(header.reflectance_scale()?), ..metadata };
     }
-    Ok(RawReader { file, layout, place, bands })
+    Ok(RawReader { bands, ..reader })
+}
+
+/// Header and values of a raster, whose bands are not described yet.
+fn open(named: &Path, header_path: &Path) -> Result<(EnviHeader, RawReader), RasterError> {
+    let header = EnviHeader::read(header_path)?;
+    let file = if named == header_path { values_of(header_path)? } else { named.to_owned() };
+    let layout = header.layout()?;
+    let (_, crs) = sidecar::auxiliary(&file, 0)?;
+    let place = header.place(layout.rows)?.map(|place| place.or_in(crs));
+    Ok((header, RawReader { file, layout, place, bands: Vec::new() }))
 }
 
 impl EnviHeader {

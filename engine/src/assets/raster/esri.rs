@@ -13,7 +13,6 @@ use super::layers::BandDescription;
 use super::metadata::BandMetadata;
 use super::names::{headers, split, without};
 use super::raw::{Interleave, RawReader, SampleLayout, SampleType};
-use super::window::CellWindow;
 use super::{Raster, RasterError, RasterExtent, RasterGeoreference, parse_no_data, sidecar};
 use crate::files;
 
@@ -170,14 +169,8 @@ pub(super) fn read(
     header_path: &Path,
     extent: Option<&RasterExtent>,
 ) -> Result<Raster, RasterError> {
-    let RawReader { file, layout, place, bands } = reader(path, header_path)?;
-    let band = &bands[0].metadata;
-    let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
-    let mut values = layout.read(&file, &window, 0)?;
-    let assumed = band.apply(&mut values);
-    let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
-    let (columns, rows) = (window.columns.len(), window.rows.len());
-    Ok(Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed })
+    let reader = reader(path, header_path)?;
+    reader.first_band(&reader.bands[0].metadata, extent)
 }
 
 /// Opens a raster whose values are read strip by strip.

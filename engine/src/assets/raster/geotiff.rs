@@ -11,7 +11,7 @@ use tiff::tags::Tag;
 
 use super::directory::{self, PhotometricPatch};
 use super::geokeys::GeoKeys;
-use super::layers::{BandDescription, SampleReader};
+use super::layers::{BandDescription, FileLayout, SampleReader};
 use super::metadata::{BandItems, BandMetadata};
 use super::tiff_picture::TiffPicture;
 use super::window::CellWindow;
@@ -51,39 +51,20 @@ fn open(mut file: File) -> Result<Opened, RasterError> {
     Ok(Opened { tiff, length, mask })
 }
 
-pub(super) fn read(
-    path: &Path,
-    file: File,
-    extent: Option<&RasterExtent>,
-) -> Result<Raster, RasterError> {
-    let Opened { mut tiff, length, mask } = open(file)?;
-    let (columns, rows) = tiff.dimensions().map_err(wrong)?;
-    let (columns, rows) = (u64::from(columns), u64::from(rows));
-    let picture = TiffPicture::new(&mut tiff)?;
-    let is_masked = picture.check()?;
-    claimed_bytes(&mut tiff, columns, rows, length)?;
-    let place = place_or_beside(&mut tiff, path)?;
-    let band = band(&mut tiff, 0)?.or(sidecar::auxiliary(path, 0)?.0);
-    let (window, place) = CellWindow::new(columns, rows, place.as_ref(), extent)?;
-    let mut values = picture.read(&mut tiff, &window, 0)?;
+/// Reads the only band.
+pub(super) fn read(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster, RasterError> {
+    let mut reader = TiffReader::new(path)?;
+    reader.picture.1.check()?;
+    let TiffReader { columns, rows, place, .. } = &reader;
+    let (window, place) = CellWindow::new(*columns, *rows, place.as_ref(), extent)?;
+    let (tiff, picture) = &mut reader.picture;
+    let mut values = picture.read(tiff, &window, 0)?;
+    let band = &reader.bands[0].metadata;
     let assumed = band.apply(&mut values);
-    if is_masked {
-        hide(&mut values, &picture.read(&mut tiff, &window, 1)?);
-    }
-    if let Some(index) = mask {
-        tiff.seek_to_image(index).map_err(wrong)?;
-        hide(&mut values, &TiffPicture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
-    }
-    if let Some(file) = sidecar::mask(path) {
-        let bad = || RasterError::BadMask { columns, rows };
-        let Opened { mut tiff, .. } = open(files::open(&file).map_err(|_unreadable| bad())?)?;
-        let (width, height) = tiff.dimensions().map_err(wrong)?;
-        if (u64::from(width), u64::from(height)) != (columns, rows) {
-            return Err(bad());
-        }
-        hide(&mut values, &TiffPicture::new(&mut tiff)?.read(&mut tiff, &window, 0)?);
-    }
     let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
+    for mask in reader.masks(&window)? {
+        hide(&mut values, &mask);
+    }
     let (columns, rows) = (window.columns.len(), window.rows.len());
     Ok(Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed })
 }
@@ -127,10 +108,7 @@ fn place_or_beside(
         place => place,
     };
     let (_, crs) = sidecar::auxiliary(path, 0)?;
-    Ok(place.map(|place| match crs {
-        Some(crs) if place.crs.name.is_empty() => RasterGeoreference { crs, ..place },
-        _ => place,
-    }))
+    Ok(place.map(|place| place.or_in(crs)))
 }
 
 /// A file whose samples are read strip by strip.
@@ -186,9 +164,31 @@ impl TiffReader {
         let (columns, rows) = (columns.into(), rows.into());
         Ok(Self { picture: (tiff, picture), masks, columns, rows, place, bands })
     }
+
+    /// Masks of the cells of a strip: cells of 0 have no data.
+    fn masks(&mut self, strip: &CellWindow) -> Result<Vec<Vec<f64>>, RasterError> {
+        let (tiff, picture) = &mut self.picture;
+        let mut masks = Vec::new();
+        if picture.has_mask {
+            masks.push(picture.read(tiff, strip, usize::from(picture.samples) - 1)?);
+        }
+        for (tiff, picture) in &mut self.masks {
+            masks.push(picture.read(tiff, strip, 0)?);
+        }
+        Ok(masks)
+    }
 }
 
 impl SampleReader for TiffReader {
+    fn layout(&self) -> FileLayout<'_> {
+        let Self { columns, rows, place, .. } = self;
+        FileLayout { columns: *columns, rows: *rows, place: place.as_ref() }
+    }
+
+    fn bands(&self) -> &[BandDescription] {
+        &self.bands
+    }
+
     fn rows_at_once(&self) -> usize {
         self.picture.1.chunk.1
     }
@@ -201,13 +201,7 @@ impl SampleReader for TiffReader {
     ) -> Result<(), RasterError> {
         let (tiff, picture) = &mut self.picture;
         picture.read_samples(tiff, strip, bands, values)?;
-        let mut masks = Vec::new();
-        if picture.has_mask {
-            masks.push(picture.read(tiff, strip, usize::from(picture.samples) - 1)?);
-        }
-        for (tiff, picture) in &mut self.masks {
-            masks.push(picture.read(tiff, strip, 0)?);
-        }
+        let masks = self.masks(strip)?;
         for values in values {
             for mask in &masks {
                 hide(values, mask);

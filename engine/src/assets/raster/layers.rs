@@ -1,18 +1,15 @@
 //! Bands of large rasters, read in strips: the values of a few bands or of sums of bands, cell by cell.
 
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::geotiff::TiffReader;
 use super::metadata::{BandMetadata, Scaling};
-use super::raw::RawReader;
 use super::window::CellWindow;
 use super::{
-    Assumed, FileReader, Raster, RasterError, RasterExtent, ascii, envi, esri, format, is_tiff,
-    sidecar, strange,
+    Assumed, Raster, RasterError, RasterExtent, RasterFormat, RasterGeoreference, ascii, envi,
+    esri, sidecar,
 };
 use crate::assets::AssetError;
-use crate::assets::text::open;
 use crate::memory;
 
 /// Numbers that are read at once, unless a row of tiles of the file holds more.
@@ -29,7 +26,6 @@ const MOST: u64 = 1 << 31;
 pub struct RasterFile {
     path: PathBuf,
     source: RasterSamples,
-    bands: Vec<BandDescription>,
 }
 
 /// A band of a raster, as the file describes it.
@@ -74,8 +70,22 @@ pub struct RasterLayers {
     pub values: Vec<f32>,
 }
 
+/// Cells of a file, and their place.
+#[derive(Clone, Copy)]
+pub(super) struct FileLayout<'a> {
+    pub(super) columns: u64,
+    pub(super) rows: u64,
+    pub(super) place: Option<&'a RasterGeoreference>,
+}
+
 /// Source of the numbers in a file, by bands.
 pub(super) trait SampleReader {
+    /// The cells of the file.
+    fn layout(&self) -> FileLayout<'_>;
+
+    /// The bands of the file, in its order.
+    fn bands(&self) -> &[BandDescription];
+
     /// Number of rows that lie together in the file.
     fn rows_at_once(&self) -> usize;
 
@@ -89,10 +99,9 @@ pub(super) trait SampleReader {
 }
 
 enum RasterSamples {
-    Tiff(Box<TiffReader>),
-    Raw(Box<RawReader>),
-    /// Text, which is read as a whole.
-    Ascii,
+    Strips(Box<dyn SampleReader>),
+    /// Text of one band, which is read as a whole.
+    Ascii(BandDescription),
 }
 
 impl RasterFile {
@@ -101,38 +110,27 @@ impl RasterFile {
     /// # Errors
     /// What the file lacks or says wrongly.
     pub fn open(path: &Path) -> Result<Self, AssetError> {
-        let mut start = Vec::new();
-        open(path)?
-            .take(512)
-            .read_to_end(&mut start)
-            .map_err(|cause| AssetError::Unreadable { file: path.to_owned(), cause })?;
         let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
-        let (source, bands) = if is_tiff(&start) {
-            let mut reader = TiffReader::new(path).map_err(wrong)?;
-            let bands = std::mem::take(&mut reader.bands);
-            (RasterSamples::Tiff(Box::new(reader)), bands)
-        } else if let Some(header) = envi::header_of(path, &start) {
-            raw(envi::reader(path, &header).map_err(wrong)?)
-        } else if let Some(problem) = strange::format_of(&start) {
-            return Err(wrong(problem));
-        } else if let Some(header) = esri::header_of(path) {
-            raw(esri::reader(path, &header).map_err(wrong)?)
-        } else {
-            format::check(path, FileReader::Raster)?;
-            if strange::is_binary(&start) {
-                return Err(wrong(RasterError::Binary));
+        let reader: Box<dyn SampleReader> = match RasterFormat::of_file(path)? {
+            RasterFormat::Tiff => Box::new(TiffReader::new(path).map_err(wrong)?),
+            RasterFormat::Envi(header) => Box::new(envi::reader(path, &header).map_err(wrong)?),
+            RasterFormat::Esri(header) => Box::new(esri::reader(path, &header).map_err(wrong)?),
+            RasterFormat::Ascii => {
+                let (metadata, _) = sidecar::auxiliary(path, 0).map_err(wrong)?;
+                let band = BandDescription { metadata, ..BandDescription::default() };
+                return Ok(Self { path: path.to_owned(), source: RasterSamples::Ascii(band) });
             }
-            let (metadata, _) = sidecar::auxiliary(path, 0).map_err(wrong)?;
-            let band = BandDescription { metadata, ..BandDescription::default() };
-            (RasterSamples::Ascii, vec![band])
         };
-        Ok(Self { path: path.to_owned(), source, bands })
+        Ok(Self { path: path.to_owned(), source: RasterSamples::Strips(reader) })
     }
 
     /// Bands of the file, in its order.
     #[must_use]
     pub fn bands(&self) -> &[BandDescription] {
-        &self.bands
+        match &self.source {
+            RasterSamples::Strips(reader) => reader.bands(),
+            RasterSamples::Ascii(band) => std::slice::from_ref(band),
+        }
     }
 
     /// Reads the cells that an extent reaches, all of them without an extent. A layer is the sum of its terms; a cell
@@ -153,21 +151,13 @@ impl RasterFile {
         let file = self.path.clone();
         let wrong = |problem| AssetError::Raster { file: file.clone(), problem };
         match &mut self.source {
-            RasterSamples::Tiff(reader) => {
-                let layout = Layout { columns: reader.columns, rows: reader.rows };
-                let mut builder = LayerBuilder::new(layout, reader.place.as_ref(), extent, layers)
-                    .map_err(wrong)?;
-                builder.read(&mut **reader, &self.bands, terms, scaling).map_err(wrong)?;
+            RasterSamples::Strips(reader) => {
+                let mut builder =
+                    LayerBuilder::new(reader.layout(), extent, layers).map_err(wrong)?;
+                builder.read(&mut **reader, terms, scaling).map_err(wrong)?;
                 Ok(builder.layers)
             }
-            RasterSamples::Raw(reader) => {
-                let layout = Layout { columns: reader.layout.columns, rows: reader.layout.rows };
-                let mut builder = LayerBuilder::new(layout, reader.place.as_ref(), extent, layers)
-                    .map_err(wrong)?;
-                builder.read(&mut **reader, &self.bands, terms, scaling).map_err(wrong)?;
-                Ok(builder.layers)
-            }
-            RasterSamples::Ascii => {
+            RasterSamples::Ascii(_) => {
                 let mut grid = ascii::read(&self.path, extent, scaling)?;
                 let values = std::mem::take(&mut grid.values);
                 check_memory(&grid, layers).map_err(wrong)?;
@@ -179,11 +169,6 @@ impl RasterFile {
     }
 }
 
-fn raw(mut reader: RawReader) -> (RasterSamples, Vec<BandDescription>) {
-    let bands = std::mem::take(&mut reader.bands);
-    (RasterSamples::Raw(Box::new(reader)), bands)
-}
-
 fn check_memory(grid: &Raster, layers: usize) -> Result<(), RasterError> {
     let Raster { columns, rows, .. } = *grid;
     let count = columns as f64 * rows as f64 * layers as f64;
@@ -191,13 +176,6 @@ fn check_memory(grid: &Raster, layers: usize) -> Result<(), RasterError> {
         Some(lack) => Err(RasterError::Memory { columns, rows, layers, lack }),
         None => Ok(()),
     }
-}
-
-/// Number of cells of a file.
-#[derive(Clone, Copy)]
-struct Layout {
-    columns: u64,
-    rows: u64,
 }
 
 /// Layers that are being read.
@@ -209,8 +187,7 @@ struct LayerBuilder {
 
 impl LayerBuilder {
     fn new(
-        Layout { columns, rows }: Layout,
-        place: Option<&super::RasterGeoreference>,
+        FileLayout { columns, rows, place }: FileLayout<'_>,
         extent: Option<&RasterExtent>,
         layer_count: usize,
     ) -> Result<Self, RasterError> {
@@ -239,14 +216,14 @@ impl LayerBuilder {
     fn read(
         &mut self,
         reader: &mut dyn SampleReader,
-        descriptions: &[BandDescription],
         terms: &[LayerTerm],
         scaling: Option<Scaling>,
     ) -> Result<(), RasterError> {
         let mut bands: Vec<usize> = terms.iter().map(|term| term.band).collect();
         bands.sort_unstable();
         bands.dedup();
-        let metadata = |band: usize| descriptions[band].metadata.clone().scaled(scaling);
+        let scaled = |band: &BandDescription| band.metadata.clone().scaled(scaling);
+        let metadata: Vec<BandMetadata> = reader.bands().iter().map(scaled).collect();
         let (columns, at_once) = (self.window.columns.len(), reader.rows_at_once().max(1));
         // A few bands at a time where the rows of a tile of all of them would take much memory.
         let bands_at_once = (MOST_NUMBERS / (columns * at_once)).clamp(1, bands.len());
@@ -262,7 +239,7 @@ impl LayerBuilder {
                 let values = &mut values[..bands.len()];
                 reader.read(&strip, bands, values)?;
                 for (&band, values) in bands.iter().zip(&mut *values) {
-                    let assumed = metadata(band).apply(values);
+                    let assumed = metadata[band].apply(values);
                     self.layers.count_assumed(assumed);
                 }
                 self.layers.add(first, self.layer_count, terms, bands, values)?;

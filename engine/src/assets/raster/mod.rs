@@ -20,7 +20,7 @@ mod window;
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
@@ -84,6 +84,16 @@ pub struct RasterGeoreference {
     pub projection: Option<Projection>,
 }
 
+impl RasterGeoreference {
+    /// The georeference in the system that a file beside the raster names, if the raster names none.
+    fn or_in(self, crs: Option<Crs>) -> Self {
+        match crs {
+            Some(crs) if self.crs.name.is_empty() => Self { crs, ..self },
+            _ => self,
+        }
+    }
+}
+
 impl Raster {
     /// Returns whether its coordinates are degrees, or must be taken for degrees: cells of a twentieth and less
     /// within the globe's range and not at its origin.
@@ -142,28 +152,56 @@ impl Raster {
 /// # Errors
 /// What the file lacks or says wrongly.
 pub fn read_raster(path: &Path, extent: Option<&RasterExtent>) -> Result<Raster, AssetError> {
+    let raster = match RasterFormat::of_file(path)? {
+        RasterFormat::Tiff => geotiff::read(path, extent),
+        RasterFormat::Envi(header) => envi::read(path, &header, extent),
+        RasterFormat::Esri(header) => esri::read(path, &header, extent),
+        RasterFormat::Ascii => return ascii::read(path, extent, None),
+    };
+    let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
+    raster.and_then(Raster::checked).map_err(wrong)
+}
+
+/// Format of a raster, with the header of values that lie beside one.
+enum RasterFormat {
+    Tiff,
+    Envi(PathBuf),
+    Esri(PathBuf),
+    Ascii,
+}
+
+impl RasterFormat {
+    /// Format of a file by its content and by those beside it.
+    fn of_file(path: &Path) -> Result<Self, AssetError> {
+        let start = start_of(path)?;
+        let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
+        if is_tiff(&start) {
+            Ok(Self::Tiff)
+        } else if let Some(header) = envi::header_of(path, &start) {
+            Ok(Self::Envi(header))
+        } else if let Some(problem) = strange::format_of(&start) {
+            Err(wrong(problem))
+        } else if let Some(header) = esri::header_of(path) {
+            Ok(Self::Esri(header))
+        } else {
+            format::check(path, FileReader::Raster)?;
+            if strange::is_binary(&start) {
+                Err(wrong(RasterError::Binary))
+            } else {
+                Ok(Self::Ascii)
+            }
+        }
+    }
+}
+
+/// First bytes of a file, by which its format is told.
+fn start_of(path: &Path) -> Result<Vec<u8>, AssetError> {
     let mut start = Vec::new();
     open(path)?
         .take(512)
         .read_to_end(&mut start)
         .map_err(|cause| AssetError::Unreadable { file: path.to_owned(), cause })?;
-    let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
-    let raster = if is_tiff(&start) {
-        geotiff::read(path, open(path)?, extent)
-    } else if let Some(header) = envi::header_of(path, &start) {
-        envi::read(path, &header, extent)
-    } else if let Some(problem) = strange::format_of(&start) {
-        Err(problem)
-    } else if let Some(header) = esri::header_of(path) {
-        esri::read(path, &header, extent)
-    } else {
-        format::check(path, FileReader::Raster)?;
-        if !strange::is_binary(&start) {
-            return ascii::read(path, extent, None);
-        }
-        Err(RasterError::Binary)
-    };
-    raster.and_then(Raster::checked).map_err(wrong)
+    Ok(start)
 }
 
 fn is_tiff(start: &[u8]) -> bool {

@@ -4,9 +4,10 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use super::layers::{BandDescription, SampleReader};
+use super::layers::{BandDescription, FileLayout, SampleReader};
+use super::metadata::BandMetadata;
 use super::window::CellWindow;
-use super::{RasterError, RasterGeoreference, length};
+use super::{Raster, RasterError, RasterExtent, RasterGeoreference, length};
 use crate::files;
 
 /// Order of values of several bands.
@@ -47,7 +48,33 @@ pub(super) struct RawReader {
     pub(super) bands: Vec<BandDescription>,
 }
 
+impl RawReader {
+    /// The first band, with its metadata.
+    pub(super) fn first_band(
+        &self,
+        band: &BandMetadata,
+        extent: Option<&RasterExtent>,
+    ) -> Result<Raster, RasterError> {
+        let Self { file, layout, place, .. } = self;
+        let (window, place) = CellWindow::new(layout.columns, layout.rows, place.as_ref(), extent)?;
+        let mut values = layout.read(file, &window, 0)?;
+        let assumed = band.apply(&mut values);
+        let heights = band.heights(place.as_ref().and_then(|place| place.crs.heights.as_ref()))?;
+        let (columns, rows) = (window.columns.len(), window.rows.len());
+        Ok(Raster { columns, rows, values, place, class_names: Vec::new(), heights, assumed })
+    }
+}
+
 impl SampleReader for RawReader {
+    fn layout(&self) -> FileLayout<'_> {
+        let SampleLayout { columns, rows, .. } = self.layout;
+        FileLayout { columns, rows, place: self.place.as_ref() }
+    }
+
+    fn bands(&self) -> &[BandDescription] {
+        &self.bands
+    }
+
     fn rows_at_once(&self) -> usize {
         1
     }

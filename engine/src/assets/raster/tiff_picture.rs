@@ -44,17 +44,13 @@ impl TiffPicture {
         })
     }
 
-    /// Refuses what holds no one band; returns whether its second sample is a mask.
-    pub(super) fn check(&self) -> Result<bool, RasterError> {
+    /// Refuses what holds no one band.
+    pub(super) fn check(&self) -> Result<(), RasterError> {
         match (self.samples, self.has_mask) {
-            (1, _) | (2, true) => {}
-            (samples, true) => return Err(RasterError::BandsWithMask(samples)),
-            (samples, false) => return Err(RasterError::Bands(samples)),
+            (1, _) | (2, true) => Ok(()),
+            (samples, true) => Err(RasterError::BandsWithMask(samples)),
+            (samples, false) => Err(RasterError::Bands(samples)),
         }
-        if self.bits < 8 {
-            return Err(RasterError::Bits(self.bits));
-        }
-        Ok(self.samples == 2)
     }
 
     /// One sample of the cells of a window; only the strips and tiles that it reaches are decoded.
