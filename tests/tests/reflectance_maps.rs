@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use sunfleck::document::{Diagnostic, ReadOptions, read_file};
 use sunfleck::products::Report;
-use sunfleck::run::{Options, Unwatched, check_file, run_file};
+use sunfleck::run::{Options, SceneWorld, Unwatched, check_file, run_file};
 use sunfleck_tests::scene_text::{LEAF_SHAPE, tree};
 use sunfleck_tests::{Estimate, SceneText, product};
 use tempfile::TempDir;
@@ -319,4 +320,56 @@ fn mistakes_are_told_with_what_to_write_instead() {
     tell("keys", on(both));
     tell("offset alone", on(r#"file: "scaled.tif", bands: All(1.5), offset: -0.1"#));
     insta::assert_snapshot!(all);
+}
+
+/// *Scene*: ground and a mesh of the same map; the mesh stands nowhere at first. *Expected*: a changed scene in which it
+/// stands is refused as a scene read anew is, and the scene before is sound again. Without bands there is no panic.
+#[test]
+fn a_mesh_that_comes_to_wear_the_map_is_refused() {
+    let scene = |bands: &str, places: &str| {
+        SceneText::default()
+            .with("bands", bands)
+            .with("materials", r#""soil": ReflectanceMap(file: "map.asc", bands: All(1), scale: 1.0)"#)
+            .with("meshes", r#""slab": Faces(faces_m: [[(0.0, 0.0, 1.0), (1.0, 0.0, 1.0), (0.0, 1.0, 1.0)]], material: "soil")"#)
+            .with("terrain", r#"Plane(size_m: (4.0, 4.0), material: "soil")"#)
+            .with("instances", format!(r#"List(of: "slab", at_m: [{places}])"#))
+            .with("sun", "zenith_deg: 40.0, azimuth_deg: 200.0")
+            .with("sensors", r#""photons": Photons(per_m2: 10.0)"#)
+    };
+    let read = |scene: &SceneText| {
+        let (folder, file) = with_files(scene);
+        let reading = read_file(&file, &ReadOptions::default()).expect("a scene");
+        (folder, reading.scene)
+    };
+    let one = r#"(name: "a", center_nm: 660.0)"#;
+    let ((folder, bare), (_, worn)) = (read(&scene(one, "")), read(&scene(one, "(1.0, 1.0, 0.0)")));
+    fs::write(folder.path().join("map.asc"), grid(2.0, &["0.1 0.2", "0.3 0.4"])).expect("a file");
+    let mut world = SceneWorld::from_scene(&bare, folder.path()).expect("a world");
+    let problems = world.set(&worn).expect_err("a mesh wears the map");
+    let is_told = |one: &Diagnostic| one.message.contains("the mesh `slab` has it as a material");
+    assert!(problems.iter().any(is_told), "{problems:?}");
+    world.set(&bare).expect("a world");
+    SceneWorld::from_scene(&read(&scene("", "")).1, folder.path()).expect("a world without bands");
+}
+
+/// *File*: ENVI, two bands whose first cell holds -9999, which the header does not name. *Expected*: one cell of six is told.
+#[test]
+fn a_cell_without_data_in_all_bands_is_counted_once() {
+    let values = |band: i16| (0..6).map(move |cell| if cell == 0 { -9999 } else { band + cell });
+    let bytes: Vec<u8> = values(100).chain(values(200)).flat_map(i16::to_le_bytes).collect();
+    let header = "ENVI\nsamples = 3\nlines = 2\nbands = 2\ndata type = 2\ninterleave = bsq\nbyte order = 0\n";
+    let scene = SceneText::default()
+        .with("bands", r#"(name: "a", center_nm: 660.0), (name: "b", center_nm: 865.0)"#)
+        .with(
+            "materials",
+            r#""soil": ReflectanceMap(file: "two", bands: Each({ "a": 1, "b": 2 }), scale: 0.001, elsewhere: Constant(0.2))"#,
+        )
+        .with("terrain", r#"Plane(size_m: (3.0, 2.0), material: "soil")"#)
+        .with("sun", "zenith_deg: 40.0, azimuth_deg: 200.0")
+        .with("sensors", r#""photons": Photons(per_m2: 10.0)"#);
+    let (folder, file) = with_files(&scene);
+    fs::write(folder.path().join("two.hdr"), header).expect("a file");
+    fs::write(folder.path().join("two"), bytes).expect("a file");
+    let told = check(&file);
+    assert!(told.contains("1 of its 6 cells hold -9999"), "{told}");
 }

@@ -21,7 +21,7 @@ pub(super) fn resolve_optics(world: &mut World, resources: &mut Resources) {
         resources.materials.iter().map(|(name, &entity)| (name.clone(), entity)).collect();
     for (index, (name, entity)) in materials.into_iter().enumerate() {
         let path = ScenePath::from("materials").name(&name);
-        let is_used = resources.used_materials.contains(&MaterialId(index as u32));
+        let is_used = resources.used_materials.contains_key(&MaterialId(index as u32));
         if !is_used {
             resources.messages.skip(format!("material `{name}`: nothing wears it"));
         }

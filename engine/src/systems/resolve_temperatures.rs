@@ -9,7 +9,7 @@ use crate::spectral::{BandResponse, planck_mean};
 /// the resources `bands` and `used_materials`; writes [`BlackBody`].
 pub(super) fn resolve_temperatures(world: &mut World, resources: &mut Resources) {
     for (index, (name, &entity)) in resources.materials.iter().enumerate() {
-        let is_used = resources.used_materials.contains(&MaterialId(index as u32));
+        let is_used = resources.used_materials.contains_key(&MaterialId(index as u32));
         let body = if is_used && resources.measures_emission {
             let material = world.get::<&Material>(entity);
             let material = material.expect("`spawn` gives materials their source");

@@ -1,4 +1,4 @@
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use hecs::Entity;
@@ -8,7 +8,7 @@ use super::map_reflectance::ReadMap;
 use super::resolve_bands::BandResponses;
 use super::spectra::LastLeaf;
 use super::{Changes, Messages};
-use crate::components::{MaterialId, PrototypeId, SceneExtents};
+use crate::components::{MaterialId, PrototypeId, SceneExtents, SceneId};
 use crate::document::{
     Bands, Boundary, Diagnostic, Frame, Map, NamePattern, ScenePath, Spectrum, unknown_name,
 };
@@ -54,8 +54,9 @@ pub struct Resources {
 
     /// Coordinate reference system of the frame; `None` if the scene does not name one.
     pub frame_crs: Option<CoordinateSystem>,
-    /// Materials that the ground and placed meshes have.
-    pub used_materials: BTreeSet<MaterialId>,
+    /// Materials that the ground and placed meshes have, each with the first mesh in document order that has it; `None`
+    /// if only the ground does.
+    pub used_materials: BTreeMap<MaterialId, Option<SceneId>>,
     /// Extents of all geometry.
     pub extents: SceneExtents,
 
@@ -92,7 +93,7 @@ impl Resources {
             sun: Entity::DANGLING,
             sky: Entity::DANGLING,
             frame_crs: None,
-            used_materials: BTreeSet::new(),
+            used_materials: BTreeMap::new(),
             extents: SceneExtents::default(),
             changes: Changes::NONE,
             messages: Messages::default(),

@@ -27,7 +27,7 @@ pub fn visible_optics(world: &World, resources: &Resources) -> Vec<Option<Surfac
     resolve_bands(&mut World::new(), &mut visible);
     let mut optics_of = |(index, (name, &entity)): (usize, (&String, &hecs::Entity))| {
         let material = world.get::<&Material>(entity).ok()?;
-        let is_used = resources.used_materials.contains(&MaterialId(index as u32));
+        let is_used = resources.used_materials.contains_key(&MaterialId(index as u32));
         let mut spectra = material.spectra().into_iter().map(|(_, spectrum, _)| spectrum);
         let is_known = is_used && spectra.all(|spectrum| has_wavelengths(spectrum, resources));
         let path = ScenePath::from("materials").name(name);

@@ -224,6 +224,8 @@ impl LayerBuilder {
         bands.dedup();
         let scaled = |band: &BandDescription| band.metadata.clone().scaled(scaling);
         let metadata: Vec<BandMetadata> = reader.bands().iter().map(scaled).collect();
+        // A cell lacks data in many bands, and is one cell.
+        let mut assumed = vec![None; metadata.len()];
         let (columns, at_once) = (self.window.columns.len(), reader.rows_at_once().max(1));
         // A few bands at a time where the rows of a tile of all of them would take much memory.
         let bands_at_once = (MOST_NUMBERS / (columns * at_once)).clamp(1, bands.len());
@@ -239,29 +241,29 @@ impl LayerBuilder {
                 let values = &mut values[..bands.len()];
                 reader.read(&strip, bands, values)?;
                 for (&band, values) in bands.iter().zip(&mut *values) {
-                    let assumed = metadata[band].apply(values);
-                    self.layers.count_assumed(assumed);
+                    let next = metadata[band].apply(values);
+                    assumed[band] = counted(assumed[band], next);
                 }
                 self.layers.add(first, self.layer_count, terms, bands, values)?;
             }
             start = end;
         }
+        self.layers.grid.assumed = assumed.into_iter().flatten().max_by_key(|one| one.count);
         Ok(())
     }
 }
 
-impl RasterLayers {
-    /// Counts cells of the value for no data that was found first.
-    fn count_assumed(&mut self, assumed: Option<Assumed>) {
-        match (&mut self.grid.assumed, assumed) {
-            (Some(known), Some(next)) if known.value.to_bits() == next.value.to_bits() => {
-                known.count += next.count;
-            }
-            (known @ None, Some(next)) => *known = Some(next),
-            _ => {}
+/// Cells of the value for no data that was found first, those of another strip included.
+fn counted(known: Option<Assumed>, next: Option<Assumed>) -> Option<Assumed> {
+    match (known, next) {
+        (Some(Assumed { value, count }), Some(next)) if value.to_bits() == next.value.to_bits() => {
+            Some(Assumed { value, count: count + next.count })
         }
+        (known, next) => known.or(next),
     }
+}
 
+impl RasterLayers {
     /// Adds the terms of a strip of cells, whose values have the shape `[bands, cells]`.
     fn add(
         &mut self,

@@ -17,8 +17,8 @@ use crate::assets::{
     companions,
 };
 use crate::components::{
-    CellLayout, InstanceCount, MappedReflectance, MaterialId, PartMaterials, ReflectanceCells,
-    SceneId, SurfaceOptics, TerrainPatch,
+    CellLayout, MappedReflectance, MaterialId, ReflectanceCells, SceneId, SurfaceOptics,
+    TerrainPatch,
 };
 use crate::document::{Diagnostic, Material, ReflectanceMap, ScenePath};
 use crate::geometry::{Rectangle, place_text};
@@ -47,9 +47,8 @@ struct MapSource {
     elsewhere: Option<Vec<f32>>,
 }
 
-/// Reads the maps of the ground's reflectance. Reads `document::Material`, [`TerrainPatch`], [`MapFrame`],
-/// [`PartMaterials`] and [`InstanceCount`], and the resources `spectra`, `responses` and `used_materials`; writes
-/// [`SurfaceOptics`] of materials that are maps.
+/// Reads the maps of the ground's reflectance. Reads `document::Material`, [`TerrainPatch`] and [`MapFrame`], and the
+/// resources `spectra`, `bands`, `responses` and `used_materials`; writes [`SurfaceOptics`] of materials that are maps.
 ///
 /// Maps that have not changed since the last run are not read again.
 pub(super) fn map_reflectance(world: &mut World, resources: &mut Resources) {
@@ -64,11 +63,16 @@ pub(super) fn map_reflectance(world: &mut World, resources: &mut Resources) {
                 _ => continue,
             };
         let path = ScenePath::from("materials").name(&name);
-        let id = MaterialId(index as u32);
-        let is_used = resources.used_materials.contains(&id);
-        let is_of_ground = !refuse_meshes(world, id, &name, &path, resources);
+        let is_of_ground = match resources.used_materials.get(&MaterialId(index as u32)) {
+            Some(&Some(mesh)) => {
+                refuse_mesh(mesh, &name, &path, resources);
+                false
+            }
+            Some(None) => true,
+            None => false,
+        };
         let optics = match (terrain(world, resources), &mut frame) {
-            (Some(terrain), Some(frame)) if is_used && is_of_ground => {
+            (Some(terrain), Some(frame)) if is_of_ground => {
                 let mut site = Site { path, terrain, frame, known: &known, resources };
                 site.mapped(&map)
             }
@@ -84,26 +88,16 @@ fn terrain(world: &World, resources: &Resources) -> Option<Rectangle> {
     Some(Rectangle { min: patch.corner, max: patch.corner + patch.size })
 }
 
-/// Refuses a map on meshes that stand on the ground; returns whether there is any.
-fn refuse_meshes(
-    world: &World,
-    id: MaterialId,
-    name: &str,
-    path: &ScenePath,
-    resources: &mut Resources,
-) -> bool {
-    let mut query = world.query::<(&SceneId, &PartMaterials, &InstanceCount)>();
-    let worn = query.iter().filter(|(_, parts, count)| count.0 > 0 && parts.0.contains(&id));
-    let Some(mesh) = worn.map(|(mesh, ..)| mesh.0).min() else { return false };
+/// Refuses a map on a mesh that stands on the ground.
+fn refuse_mesh(mesh: SceneId, name: &str, path: &ScenePath, resources: &mut Resources) {
     let (mesh, _) =
-        resources.meshes.get_index(mesh as usize).expect("meshes are numbered in order");
+        resources.meshes.get_index(mesh.0 as usize).expect("meshes are numbered in order");
     let message = format!(
         "`{name}` is a map of the ground's reflectance, but the mesh `{mesh}` has it as a material"
     );
     let help = "give the mesh a material of its own, such as `Lambertian(reflectance: Constant(0.3))`: \
                 a map is for the terrain alone";
     resources.report(Diagnostic::error(path, message).help(help));
-    true
 }
 
 /// A map that is to be read, and where it belongs.
@@ -117,8 +111,12 @@ struct Site<'a> {
 }
 
 impl Site<'_> {
-    /// Reflectance of a map; `None` after an error.
+    /// Reflectance of a map; `None` after an error, and where there are no bands.
     fn mapped(&mut self, map: &ReflectanceMap) -> Option<MappedReflectance> {
+        // `document::check` refuses a scene without bands.
+        if self.resources.bands.is_empty() {
+            return None;
+        }
         let quantity = spectra::Quantity::Reflectance;
         let elsewhere = match &map.elsewhere {
             None => None,
