@@ -230,34 +230,41 @@ fn no_places(found: &[String], file: &Path, line: usize) -> AssetError {
     let are_degrees = found
         .iter()
         .any(|name| ["lon", "lat", "lng", "long"].iter().any(|word| is_word(name, word)));
-    let alike: Vec<String> = lacking.iter().filter_map(|column| like(column, found)).collect();
+    let alike: Vec<&str> = lacking.iter().filter_map(|column| like(column, found)).collect();
     let listed = |names: &[&str]| {
         let quoted: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
         quoted.join(" and ")
     };
-    let (are, they) = if lacking.len() == 1 { ("is", "it") } else { ("are", "them") };
     let columns = listed(&lacking);
+    let [noun_is, that_is, its, it] = match lacking.len() {
+        1 => ["column {} is", "is that", "its", "it"],
+        _ => ["columns {} are", "are those", "their", "them"],
+    };
     let help = if are_degrees {
         format!(
             "a scene is in metres: convert longitudes and latitudes to the projection of its map and call the columns \
-             {columns}, as by `ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:32632 -oo X_POSSIBLE_NAMES=lon -oo \
-             Y_POSSIBLE_NAMES=lat -lco GEOMETRY=AS_XY metres.csv degrees.csv`"
+             {columns}, as by {}",
+            degrees_to_metres(32632, ["lon", "lat"])
         )
     } else if alike.len() == lacking.len() {
-        let alike: Vec<&str> = alike.iter().map(String::as_str).collect();
-        let that = if alike.len() == 1 { "is that in metres" } else { "are those in metres" };
-        let place = if alike.len() == 1 { "its" } else { "their" };
         format!(
-            "if {} {that}, write {columns} in {place} place, or list the names of all columns under `columns` in the \
-             scene",
+            "if {} {that_is} in metres, write {columns} in {its} place, or list the names of all columns under \
+             `columns` in the scene",
             listed(&alike)
         )
     } else {
-        format!("add {they}, or list the names of all columns under `columns` in the scene")
+        format!("add {it}, or list the names of all columns under `columns` in the scene")
     };
-    let noun = if lacking.len() == 1 { "column" } else { "columns" };
-    let problem = format!("{noun} {columns} {are} missing among {found:?}");
+    let problem = format!("{} missing among {found:?}", noun_is.replace("{}", &columns));
     AssetError::NoStemPlaces { file: file.to_owned(), line, problem, help }
+}
+
+/// Command that converts a table of longitudes and latitudes to a system in metres, by its EPSG code.
+pub(crate) fn degrees_to_metres(code: u32, [x, y]: [&str; 2]) -> String {
+    format!(
+        "`ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:{code} -oo X_POSSIBLE_NAMES={x} -oo Y_POSSIBLE_NAMES={y} -lco \
+         GEOMETRY=AS_XY metres.csv degrees.csv`"
+    )
 }
 
 /// Returns whether the name of a column is a word, long or short, and perhaps a unit: `lat`, `latitude_deg`.
@@ -269,12 +276,12 @@ fn is_word(name: &str, word: &str) -> bool {
 }
 
 /// The column that a person may have meant by a coordinate.
-fn like(column: &str, names: &[String]) -> Option<String> {
+fn like<'a>(column: &str, names: &'a [String]) -> Option<&'a str> {
     let words: &[&str] =
         if column == "x_m" { &["x", "east", "rechts"] } else { &["y", "north", "hoch"] };
     let is_like = |name: &&String| {
         let lower = name.to_lowercase();
         words.iter().any(|word| lower == *word || lower.contains(word) && lower.len() < 20)
     };
-    names.iter().find(is_like).cloned()
+    names.iter().find(is_like).map(String::as_str)
 }

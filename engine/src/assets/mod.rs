@@ -42,6 +42,7 @@ pub use error::AssetError;
 pub use faces::mesh_of_faces;
 pub use gltf::{GltfError, read_gltf};
 pub use import::Import;
+pub(crate) use instances::degrees_to_metres;
 pub use instances::{StemRow, StemTable, read_instances};
 pub use obj::read_obj;
 pub use ply::{PlyError, read_ply};

@@ -73,7 +73,7 @@ pub(super) fn write(
         let out = BufWriter::with_capacity(1 << 20, file.try_clone()?);
         let out = GuardedWriter { file: out, error: Arc::clone(&error) };
         let mut writer = Writer::new(out, header).map_err(io::Error::other)?;
-        put_points(scene, &ground_parts, &areas, (settings, written), &mut writer)
+        put_points(scene, &ground_parts, &areas, settings, written, &mut writer)
             .map_err(io::Error::other)?;
         writer.close().map_err(io::Error::other)?;
         writer.into_inner().map_err(io::Error::other)?.flush()?;
@@ -208,7 +208,8 @@ fn put_points(
     scene: &ExportedScene<'_>,
     ground_parts: &[MeshPart],
     areas: &[Vec<f64>],
-    (settings, written): (&ExportSettings, &dyn Fn(f64)),
+    settings: &ExportSettings,
+    written: &dyn Fn(f64),
     writer: &mut Writer<GuardedWriter>,
 ) -> Result<(), ::las::Error> {
     let terrain = &*scene.terrain;

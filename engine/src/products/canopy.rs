@@ -183,7 +183,7 @@ fn table(name: &str, unit: &str, dimensions: Vec<Vec<ProductAxis>>, values: Vec<
     }
 }
 
-/// Map of some columns of values, shape `[rows from south to north, columns of cells, columns]`.
+/// Map of exact values on the ground: some columns of values, shape `[rows from south to north, columns of cells, columns]`.
 fn map_product(
     name: &str,
     grid: &CellGrid,
@@ -199,52 +199,29 @@ fn map_product(
     let means: Vec<f64> = bands.iter().map(|band| mean(band.0)).collect();
     // The first row of an image is the northernmost.
     let rows = (0..grid.rows).rev();
-    let pixels =
+    let cells =
         rows.flat_map(|row| (0..grid.columns).map(move |column| row * grid.columns + column));
     let pixels =
-        pixels.flat_map(|cell| bands.iter().map(move |band| values[cell * stride + band.0] as f32));
+        cells.flat_map(|cell| bands.iter().map(move |band| values[cell * stride + band.0] as f32));
     let values: Vec<f32> = pixels.collect();
     let names: Vec<String> = bands.iter().map(|band| band.1.clone()).collect();
-    let raster = MapRaster { columns: grid.columns, rows: grid.rows, values, bands: names };
-    let place = Georeference {
-        west: origin.0 + grid.corner.x,
-        north: origin.1 + grid.corner.y + grid.size.y,
-        pixel_width: grid.size.x / grid.columns as f64,
-        pixel_height: grid.size.y / grid.rows as f64,
-    };
-    map_of(name, INDEX, raster, place, (means, rendering))
-}
-
-/// Values of the cells of a map; NaN where there are none.
-struct MapRaster {
-    columns: usize,
-    rows: usize,
-    /// Shape `[rows from north to south, columns, bands]`.
-    values: Vec<f32>,
-    bands: Vec<String>,
-}
-
-/// Product of exact values on the ground.
-fn map_of(
-    name: &str,
-    unit: &str,
-    raster: MapRaster,
-    place: Georeference,
-    (means, rendering): (Vec<f64>, Rendering),
-) -> Product {
-    let MapRaster { columns, rows, values, bands } = raster;
     let is_known = |pixel: &[f32]| f32::from(u8::from(pixel.iter().any(|value| !value.is_nan())));
-    let coverage = values.chunks_exact(bands.len()).map(is_known).collect();
+    let coverage = values.chunks_exact(names.len()).map(is_known).collect();
     let standard_error = vec![f32::NAN; values.len()];
-    let pixels = PixelRows { width: columns, values, standard_error, coverage };
+    let axes = vec![vec![labels("band", &names)]];
     let image = Image {
-        width: columns,
-        height: rows,
-        bands: bands.clone(),
-        pixels: pixels.into(),
+        width: grid.columns,
+        height: grid.rows,
+        bands: names,
+        pixels: PixelRows { width: grid.columns, values, standard_error, coverage }.into(),
         has_errors: false,
         rendering,
-        georeference: Some(place),
+        georeference: Some(Georeference {
+            west: origin.0 + grid.corner.x,
+            north: origin.1 + grid.corner.y + grid.size.y,
+            pixel_width: grid.size.x / grid.columns as f64,
+            pixel_height: grid.size.y / grid.rows as f64,
+        }),
     };
-    Product { image: Some(image), ..table(name, unit, vec![vec![labels("band", &bands)]], means) }
+    Product { image: Some(image), ..table(name, INDEX, axes, means) }
 }

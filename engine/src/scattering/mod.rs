@@ -187,7 +187,7 @@ impl SurfaceModels {
 }
 
 impl<'m> Interaction<'m> {
-    /// The same at a horizontal position, m: without it, maps are taken at the origin.
+    /// The point at a horizontal position, m: without it, maps are taken at the origin.
     #[must_use]
     pub const fn at_place(self, place: DVec2) -> Self {
         Self { place, ..self }

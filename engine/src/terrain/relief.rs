@@ -68,7 +68,7 @@ impl Ground {
         if (last - first + 1).element_product() > MOST_LOOKED_AT {
             return None;
         }
-        let rectangle = Rectangle { low, high };
+        let rectangle = UnitRectangle { low, high };
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut only = None;
         for cell in
@@ -125,12 +125,12 @@ impl TrianglePlane {
 }
 
 /// A rectangle in units of that of the ground.
-struct Rectangle {
+struct UnitRectangle {
     low: DVec2,
     high: DVec2,
 }
 
-impl Rectangle {
+impl UnitRectangle {
     /// Smallest and largest distance of its corners from the line through two places, to the left, times the distance
     /// between those.
     fn distances(&self, from: DVec3, to: DVec3) -> (f64, f64) {

@@ -9,6 +9,7 @@ mod meshes;
 mod polygons;
 mod rasters;
 mod spectra;
+mod stems;
 mod tables;
 mod transport;
 mod views;

@@ -108,7 +108,7 @@ impl RasterFile {
     /// Opens a raster and reads the descriptions of its bands; the format follows from the content.
     ///
     /// # Errors
-    /// What the file lacks or says wrongly.
+    /// A file that cannot be read, lacks something, or says something wrongly.
     pub fn open(path: &Path) -> Result<Self, AssetError> {
         let wrong = |problem| AssetError::Raster { file: path.to_owned(), problem };
         let reader: Box<dyn SampleReader> = match RasterFormat::of_file(path)? {
@@ -137,7 +137,7 @@ impl RasterFile {
     /// without data in one of its bands has none in any layer. The scaling takes the place of that of the file.
     ///
     /// # Errors
-    /// What the file lacks or says wrongly, and more cells than there is memory for.
+    /// A file that lacks something or says it wrongly, and one with more cells than there is memory for.
     ///
     /// # Panics
     /// If there is no such band, or no term for a layer.

@@ -24,7 +24,7 @@ pub struct Scaling {
 }
 
 impl BandMetadata {
-    /// The same with another scaling, if there is one.
+    /// Metadata with another scaling, if there is one.
     pub(super) fn scaled(self, scaling: Option<Scaling>) -> Self {
         match scaling {
             Some(Scaling { scale, offset }) => {

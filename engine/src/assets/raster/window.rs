@@ -35,7 +35,7 @@ impl CellWindow {
         Ok((window, place))
     }
 
-    /// The same of any number of cells, for values that are read in parts.
+    /// Window of any number of cells, for values that are read in parts.
     pub(super) fn of_any_size(
         columns: u64,
         rows: u64,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::areas::ScaledAreas;
 use super::layer_profiles::{LayerProfiles, UprightLayers};
-use super::window::{CellExtent, CellPlace, CellWindow};
+use super::window::{CellExtent, CellPlace, InstanceAreas};
 use crate::components::{Lean, Placement};
 use crate::queries::cell_grid::{CellFinder, CellGrid};
 use crate::queries::surfaces::{
@@ -40,7 +40,7 @@ pub(super) struct ScaledTree<'a> {
 #[derive(Debug)]
 pub(super) struct AreaSums {
     pub(super) sums: Sums,
-    window: CellWindow,
+    window: InstanceAreas,
 }
 
 /// Adds the areas of an instance to sums.
@@ -74,7 +74,7 @@ impl CountingSpace<'_> {
 
 impl AreaSums {
     pub(super) fn new(sums: Sums) -> Self {
-        Self { sums, window: CellWindow::new() }
+        Self { sums, window: InstanceAreas::new() }
     }
 }
 

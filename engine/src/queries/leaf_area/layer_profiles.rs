@@ -74,7 +74,7 @@ struct HeightSlice {
     entries: u32,
 }
 
-/// What a surface is in a slice that it reaches into.
+/// Part of a surface in a slice that it reaches into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum SlicePart {
     /// It is looked at for itself.
@@ -311,7 +311,7 @@ impl HeightTable {
                 }
             });
         }
-        // What ends in a slice lies below all that follow; polynomials hold in theirs alone.
+        // A surface that ends in a slice lies below all slices that follow; polynomials hold in theirs alone.
         let mut ended = vec![0.0; self.slices + 1];
         for surface in surfaces {
             ended[self.slice(surface.heights.range().1) + 1] += surface.area;

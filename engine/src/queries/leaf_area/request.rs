@@ -84,7 +84,7 @@ impl LeafAreaRequest {
         let (columns, rows) = self.cells.over(size);
         let from_ground = self.heights == HeightReference::Ground;
         let thickness_of = |bottom: f64| match self.layers {
-            // Where nothing stands above the ground, layers are of any height.
+            // Layers of a scene without a surface above the ground may be of any height.
             LayerCount::Count(_) if highest <= bottom => 1.0,
             LayerCount::Count(count) => (highest - bottom) / count as f64,
             LayerCount::Thickness(thickness) => thickness,

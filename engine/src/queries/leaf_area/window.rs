@@ -9,7 +9,7 @@ use crate::statistics::Sums;
 /// They are added up here and then added to the sums of all instances, which takes a look-up for each cell instead of
 /// each surface.
 #[derive(Debug)]
-pub(super) struct CellWindow {
+pub(super) struct InstanceAreas {
     extent: CellExtent,
     /// Shape `[columns, rows, layers]`.
     areas: Vec<f64>,
@@ -98,7 +98,7 @@ const MOST_CELLS_WITH_REST: u64 = 4;
 /// Areas of this part of a layer are rounding.
 const ROUNDING: f64 = 1e-13;
 
-impl CellWindow {
+impl InstanceAreas {
     pub(super) const fn new() -> Self {
         let none = CellNumbers { first: 0, last: 0 };
         let extent = CellExtent { columns: none, rows: none, layers: none };

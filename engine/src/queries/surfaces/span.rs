@@ -70,7 +70,7 @@ mod tests {
 
     use super::*;
 
-    /// The same fractions as of the patch, cut as a polygon.
+    /// Fractions are those of the patch, cut as a polygon.
     #[test]
     fn fractions_are_those_of_pieces() {
         for is_ellipse in [false, true] {

@@ -13,7 +13,7 @@ use crate::terrain::Cells;
 
 pub(super) use crs::{check_crs, frame_projection, name_target, projection_of};
 pub(super) use raster::{
-    Quantity, RasterSource, check_georaster, extent_on_map, read_georaster, target_of,
+    RasterQuantity, RasterSource, check_georaster, extent_on_map, read_georaster, target_of,
 };
 
 /// Coordinate reference system of the scene.

@@ -15,7 +15,7 @@ use crate::systems::Resources;
 
 /// Quantity that the values of a raster are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::systems) enum Quantity {
+pub(in crate::systems) enum RasterQuantity {
     /// Heights, m.
     Heights,
     /// Stems per hectare.
@@ -32,7 +32,7 @@ pub(in crate::systems) struct RasterSource<'a> {
     pub(in crate::systems) file: &'a str,
     /// Path of the key in the document that names the file.
     pub(in crate::systems) path: &'a ScenePath,
-    pub(in crate::systems) quantity: Quantity,
+    pub(in crate::systems) quantity: RasterQuantity,
     /// Unit of the coordinates, if the scene says it.
     pub(in crate::systems) coordinates: Option<Coordinates>,
     /// True if the scene says how large the raster is, whatever the file says.
@@ -45,7 +45,11 @@ pub(in crate::systems) struct RasterSource<'a> {
 
 impl<'a> RasterSource<'a> {
     /// Whole raster, with the units that its file names.
-    pub(in crate::systems) fn new(file: &'a str, path: &'a ScenePath, quantity: Quantity) -> Self {
+    pub(in crate::systems) fn new(
+        file: &'a str,
+        path: &'a ScenePath,
+        quantity: RasterQuantity,
+    ) -> Self {
         let (coordinates, has_size, height_unit_m, extent) = (None, false, None, None);
         Self { file, path, quantity, coordinates, has_size, height_unit_m, extent }
     }
@@ -67,7 +71,7 @@ pub(in crate::systems) fn read_georaster(
     };
     let read = match read_raster(&file, source.extent.as_ref()) {
         // Classes without a place lie over the whole terrain, whose window nobody wrote.
-        Err(error) if source.quantity == Quantity::Classes && nowhere(&error) => {
+        Err(error) if source.quantity == RasterQuantity::Classes && nowhere(&error) => {
             read_raster(&file, None)
         }
         read => read,
@@ -80,7 +84,7 @@ pub(in crate::systems) fn read_georaster(
         }
     };
     check_georaster(&raster, source, map, resources)?;
-    if source.quantity == Quantity::Heights {
+    if source.quantity == RasterQuantity::Heights {
         convert_heights(&mut raster, source, resources)?;
     }
     Some(raster)

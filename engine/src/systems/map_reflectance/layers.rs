@@ -4,7 +4,7 @@ use crate::spectral::BandResponse;
 use crate::systems::Resources;
 
 /// Layers of a map, and the layer of each band of the scene.
-pub(super) struct Layers {
+pub(super) struct MapLayers {
     /// Bands of the raster that the layers are made of.
     pub(super) terms: Vec<LayerTerm>,
     /// Layer of each band of the scene.
@@ -32,7 +32,7 @@ pub(super) fn choose_layers(
     elsewhere: Option<&[f64]>,
     path: &ScenePath,
     resources: &mut Resources,
-) -> Option<Layers> {
+) -> Option<MapLayers> {
     let path = path.key("bands");
     let names: Vec<String> = resources.bands.iter().map(|band| band.name.clone()).collect();
     let sums: Vec<Vec<(usize, f64)>> = match &map.bands {
@@ -68,7 +68,7 @@ pub(super) fn choose_layers(
     });
     let terms = terms.collect();
     let elsewhere = distinct.iter().map(|layer| layer.elsewhere).collect();
-    Some(Layers { terms, of_bands, elsewhere })
+    Some(MapLayers { terms, of_bands, elsewhere })
 }
 
 /// Band of a raster that the scene names; `None` after an error.

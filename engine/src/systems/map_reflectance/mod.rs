@@ -8,7 +8,7 @@ use std::time::SystemTime;
 use hecs::World;
 
 use super::georeference::{
-    MapFrame, Quantity, RasterSource, check_georaster, extent_on_map, locate_raster,
+    MapFrame, RasterQuantity, RasterSource, check_georaster, extent_on_map, locate_raster,
 };
 use super::spectra::{self, resolve_spectrum};
 use super::{Resources, set_component};
@@ -23,8 +23,8 @@ use crate::components::{
 use crate::document::{Diagnostic, Material, ReflectanceMap, ScenePath};
 use crate::geometry::{Rectangle, place_text};
 
-use layers::{Layers, choose_layers};
-use values::check_values;
+use layers::{MapLayers, choose_layers};
+use values::{LayerNames, check_values};
 
 /// A map that has been read, and what it was read from.
 #[derive(Clone, Debug)]
@@ -132,7 +132,7 @@ impl Site<'_> {
             self.resources.messages.file(companion.clone());
         }
         let mut file = self.or_report(RasterFile::open(&path))?;
-        let Layers { terms, of_bands, elsewhere } =
+        let MapLayers { terms, of_bands, elsewhere } =
             choose_layers(map, file.bands(), elsewhere.as_deref(), &self.path, self.resources)?;
         let scaling = map.scale.map(|scale| Scaling { scale, offset: map.offset });
         if scaling.is_none() && !terms.iter().all(|term| file.bands()[term.band].has_scaling()) {
@@ -156,7 +156,7 @@ impl Site<'_> {
         };
         let read = match self.known.iter().find(|known| known.source == source) {
             Some(known) => {
-                // What was said of it holds for the last run alone.
+                // Messages about it were those of the last run alone.
                 self.check(map, &known.grid)?;
                 known.clone()
             }
@@ -188,9 +188,9 @@ impl Site<'_> {
         let layout = CellLayout { columns: grid.columns, rows: grid.rows, corner, size };
         let covered = Rectangle { min: corner, max: corner + size };
         self.check_cover(covered, source.elsewhere.is_some())?;
-        if let Err(problem) =
-            check_values(&mut values, layout, source.elsewhere.as_deref(), of_bands, self.resources)
-        {
+        let names = LayerNames { bands: &self.resources.bands, of_bands };
+        let elsewhere = source.elsewhere.as_deref();
+        if let Err(problem) = check_values(&mut values, layout, elsewhere, source.scaling, &names) {
             self.report("file", problem.message, &problem.help);
             return None;
         }
@@ -203,7 +203,7 @@ impl Site<'_> {
     /// Checks the coordinate reference system and the unit of a raster, and its values for no data.
     fn check(&mut self, map: &ReflectanceMap, grid: &Raster) -> Option<()> {
         let path = self.path.key("file");
-        let source = RasterSource::new(&map.file, &path, Quantity::Reflectance);
+        let source = RasterSource::new(&map.file, &path, RasterQuantity::Reflectance);
         check_georaster(grid, &source, self.frame, self.resources)
     }
 

@@ -1,6 +1,7 @@
+use crate::assets::Scaling;
 use crate::components::CellLayout;
+use crate::document::Band;
 use crate::geometry::place_text;
-use crate::systems::Resources;
 use crate::terrain::Cells;
 
 /// Reason for which values are no reflectances.
@@ -20,8 +21,8 @@ pub(super) fn check_values(
     values: &mut [f32],
     layout: CellLayout,
     elsewhere: Option<&[f32]>,
-    of_bands: &[u32],
-    resources: &Resources,
+    scaling: Option<Scaling>,
+    names: &LayerNames<'_>,
 ) -> Result<(), ValueProblem> {
     let cells = layout.columns * layout.rows;
     let layers = values.len() / cells;
@@ -47,7 +48,10 @@ pub(super) fn check_values(
         }
     }
     if let Some(wrong) = wrong {
-        return Err(wrong.problem(layout, of_bands, resources));
+        return Err(ValueProblem {
+            message: wrong.message(layout, names),
+            help: help(wrong.most.into(), scaling),
+        });
     }
     if missing > 0 && elsewhere.is_none() {
         return Err(ValueProblem {
@@ -70,33 +74,75 @@ struct WrongValues {
     most: f32,
 }
 
+/// Names of layers in messages: those of the bands of the scene that have their values there.
+pub(super) struct LayerNames<'a> {
+    pub(super) bands: &'a [Band],
+    /// Layer of each band.
+    pub(super) of_bands: &'a [u32],
+}
+
+impl LayerNames<'_> {
+    fn first(&self, layer: usize) -> &str {
+        let mut names = self.bands.iter().zip(self.of_bands);
+        names.find(|(_, of)| **of as usize == layer).map_or("", |(band, _)| &band.name)
+    }
+}
+
 impl WrongValues {
-    fn problem(&self, layout: CellLayout, of_bands: &[u32], resources: &Resources) -> ValueProblem {
-        let Self { cell, layer, value, count, most } = *self;
+    fn message(&self, layout: CellLayout, names: &LayerNames<'_>) -> String {
+        let Self { cell, layer, value, count, .. } = *self;
         let CellLayout { columns, rows, corner, size } = layout;
         let grid = Cells { columns, rows, values: Vec::<()>::new(), corner, size };
-        let mut names = resources.bands.iter().zip(of_bands);
-        let name = names.find(|(_, of)| **of as usize == layer).map_or("", |(band, _)| &band.name);
         let others = match count - 1 {
             0 => String::new(),
             1 => ", and 1 more cell has such a value".to_owned(),
             more => format!(", and {more} more cells have such values"),
         };
-        let message = format!(
+        format!(
             "the cell at {} m (column {}, row {} of those on the terrain) has a reflectance of {value} in \
-             band `{name}`{others}: expected 0 to 1",
+             band `{}`{others}: expected 0 to 1",
             place_text(grid.center(cell)),
             cell % columns + 1,
-            cell / columns + 1
-        );
-        let help = if most > 100.0 {
-            "write `scale: 0.0001` if the values are reflectances times 10000"
-        } else if most > 2.0 {
-            "write `scale: 0.01` if the values are percent"
-        } else {
-            "correct them in the file (`gdal_calc.py --calc=\"clip(A,0,10000)\"`), or name them as cells \
-             without data there and write `elsewhere`"
-        };
-        ValueProblem { message, help: help.to_owned() }
+            cell / columns + 1,
+            names.first(layer)
+        )
+    }
+}
+
+/// What to write about values of which `most` is the largest.
+///
+/// - `scaling`: that of the scene, if it has one
+fn help(most: f64, scaling: Option<Scaling>) -> String {
+    const CORRECT: &str = "correct them in the file";
+    const NAME: &str = "or name them as cells without data there and write `elsewhere`";
+    let Some(Scaling { scale, offset }) = scaling else { return format!("{CORRECT}, {NAME}") };
+    let stored = |value: f64| (value - offset) / scale;
+    let (meant, what) = match stored(most) {
+        number if number > 100.0 => (0.0001, "reflectances times 10000"),
+        number if number > 2.0 => (0.01, "percent"),
+        _ => (scale, ""),
+    };
+    if most > 2.0 && scale > meant {
+        return format!("write `scale: {meant}` if the values are {what}");
+    }
+    let (low, high) = (stored(0.0).min(stored(1.0)).round(), stored(0.0).max(stored(1.0)).round());
+    format!("{CORRECT} (`gdal_calc.py --calc=\"clip(A,{low},{high})\"`), {NAME}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn advice_is_another_scale_or_the_range_of_the_numbers_in_the_file() {
+        let help = |most, scale, offset| help(most, Some(Scaling { scale, offset }));
+        assert_eq!(help(30.0, 1.0, 0.0), "write `scale: 0.01` if the values are percent");
+        let reflectances = "write `scale: 0.0001` if the values are reflectances times 10000";
+        assert_eq!(help(30.0, 0.01, 0.0), reflectances);
+        assert_eq!(help(3000.0, 1.0, 0.0), reflectances);
+        assert!(help(1.5, 1.0, 0.0).contains("clip(A,0,1)"));
+        assert!(help(1.2, 0.01, 0.0).contains("clip(A,0,100)"));
+        // Products of Sentinel-2 since 2022, whose dark pixels are below 0.
+        assert!(help(0.4, 0.0001, -0.1).contains("clip(A,1000,11000)"));
     }
 }

@@ -3,7 +3,7 @@ use crate::components::Placement;
 use crate::document::{CanopyHeights, Diagnostic, Prototype, Ref};
 use crate::geometry::{millimetres, place_text};
 use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
-use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
+use crate::systems::georeference::{RasterQuantity, RasterSource, read_raster_on_terrain};
 use crate::terrain::Ground;
 
 /// Heights beyond this are no trees, m: the tallest on Earth is 116 m high.
@@ -24,7 +24,7 @@ pub(super) fn plant_canopy(
     let at = site.path.key("file");
     let source = RasterSource {
         height_unit_m: *height_unit_m,
-        ..RasterSource::new(file, &at, Quantity::Heights)
+        ..RasterSource::new(file, &at, RasterQuantity::Heights)
     };
     let model = read_raster_on_terrain(&source, terrain, &mut site.map, site.resources)?;
     let beyond = |height: &&f64| height.abs() > HIGHEST;

@@ -8,7 +8,7 @@ use crate::document::{Diagnostic, Prototype, Ref, Scatter, Stems};
 use crate::geometry::{Rectangle, place_text};
 use crate::placement::{Amount, Habit, Species, instantiate_trees, places};
 use crate::sampling::Key;
-use crate::systems::georeference::{Quantity, RasterSource, read_raster_on_terrain};
+use crate::systems::georeference::{RasterQuantity, RasterSource, read_raster_on_terrain};
 use crate::terrain::{Cells, Ground};
 
 /// Instances that a rule of placement scatters; reports an error if there is no place for them.
@@ -100,7 +100,7 @@ fn densities(
     site: &mut Site<'_>,
 ) -> Option<Cells<f64>> {
     let path = site.path.key("stems").key("file");
-    let source = RasterSource::new(file, &path, Quantity::Density);
+    let source = RasterSource::new(file, &path, RasterQuantity::Density);
     let mut cells = read_raster_on_terrain(&source, terrain, &mut site.map, site.resources)?;
     if let Some(value) = cells.values.iter().find(|value| **value < 0.0) {
         let message = format!("a density of {value} stems per hectare");

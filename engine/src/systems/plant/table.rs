@@ -1,7 +1,7 @@
 use glam::{DVec2, Vec3Swizzles as _};
 
 use super::{HeightBase, Site, plant_rows};
-use crate::assets::{StemRow, StemTable, read_instances};
+use crate::assets::{StemRow, StemTable, degrees_to_metres, read_instances};
 use crate::components::{Placement, PrototypeId};
 use crate::document::{
     Diagnostic, InstanceTable, Instances, ScenePath, SpeciesMeshes, TableCoordinates, suggestion,
@@ -83,9 +83,8 @@ pub(super) fn plant_table(instances: &Instances, site: &mut Site<'_>) -> Vec<Pla
 fn to_metres(site: &Site<'_>) -> String {
     let code = site.map.crs.as_ref().and_then(|system| system.crs.code).unwrap_or(32632);
     format!(
-        "convert them to the projection of the scene, in metres: `ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:{code} -oo \
-         X_POSSIBLE_NAMES=x_m -oo Y_POSSIBLE_NAMES=y_m -lco GEOMETRY=AS_XY metres.csv degrees.csv`, and call its \
-         columns `x_m` and `y_m`"
+        "convert them to the projection of the scene, in metres: {}, and call its columns `x_m` and `y_m`",
+        degrees_to_metres(code, ["x_m", "y_m"])
     )
 }
 

@@ -5,7 +5,7 @@ use crate::document::{Diagnostic, LandCover, ScenePath, unknown_name};
 use crate::geometry::{Rectangle, millimetres, place_text};
 use crate::systems::Resources;
 use crate::systems::georeference::{
-    MapFrame, Quantity, RasterSource, extent_on_map, locate_raster, read_georaster,
+    MapFrame, RasterQuantity, RasterSource, extent_on_map, locate_raster, read_georaster,
 };
 use crate::terrain::{Cells, Parts};
 
@@ -22,7 +22,7 @@ pub(super) fn land_cover_cells(
     let file = ScenePath::from(["terrain", "land_cover", "file"]);
     let source = RasterSource {
         extent: extent_on_map(terrain, map),
-        ..RasterSource::new(&cover.file, &file, Quantity::Classes)
+        ..RasterSource::new(&cover.file, &file, RasterQuantity::Classes)
     };
     let raster = read_georaster(&source, map, resources)?;
     for name in cover.classes.keys().filter(|name| name.parse::<f64>().is_err()) {

@@ -9,7 +9,7 @@ use crate::document::{Coordinates, Diagnostic, TerrainRaster};
 use crate::geometry::Rectangle;
 use crate::systems::Resources;
 use crate::systems::georeference::{
-    MapFrame, MapTransform, Quantity, RasterSource, frame_projection, projection_of,
+    MapFrame, MapTransform, RasterQuantity, RasterSource, frame_projection, projection_of,
     read_georaster, target_of,
 };
 use crate::terrain::{self, Cells};
@@ -80,7 +80,7 @@ fn read_heights(
         has_size: size_m.is_some(),
         height_unit_m: *height_unit_m,
         extent,
-        ..RasterSource::new(file, &path, Quantity::Heights)
+        ..RasterSource::new(file, &path, RasterQuantity::Heights)
     };
     let mut raster = read_georaster(&source, map, resources)?;
     if let Some(place) = &raster.place {
