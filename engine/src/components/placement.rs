@@ -1,5 +1,5 @@
 use glam::{DMat3, DVec3};
-use hecs::World;
+use hecs::{BatchWriter, ColumnBatch, ColumnBatchBuilder, ColumnBatchType, Component, World};
 
 use super::{PlantingId, PrototypeId, SceneId};
 
@@ -91,21 +91,55 @@ impl Instance {
     pub fn spawn<I: Iterator<Item = Self>>(instances: impl Fn() -> I, world: &mut World) {
         let leans = |instance: &Self| instance.placement.lean.tilt != 0.0;
         let (all, leaning) = (instances().count(), instances().filter(leans).count());
-        // With exact numbers, no more memory is reserved than is filled.
-        let upright = instances().filter(|one| !leans(one)).take(all - leaning);
-        world.spawn_batch(upright.map(|instance| instance.upright()));
-        let leaning = instances().filter(leans).take(leaning);
-        world.spawn_batch(leaning.map(|instance| {
-            let (id, planting, prototype, position, yaw, scale) = instance.upright();
-            (id, planting, prototype, position, yaw, scale, instance.placement.lean)
-        }));
+        // Columns of exactly this length become those of the world, without a copy.
+        if leaning < all {
+            let upright = instances().filter(|one| !leans(one));
+            world.spawn_column_batch(columns(upright, all - leaning, false));
+        }
+        if leaning > 0 {
+            world.spawn_column_batch(columns(instances().filter(leans), leaning, true));
+        }
     }
+}
 
-    fn upright(&self) -> Upright {
-        let Self { id, planting, placement } = *self;
-        let Placement { prototype, position, yaw, scale, .. } = placement;
-        (id, planting, prototype, Position(position), Yaw(yaw), scale)
+/// Columns of the components of `count` instances.
+fn columns(instances: impl Iterator<Item = Instance>, count: usize, lean: bool) -> ColumnBatch {
+    let mut types = ColumnBatchType::new();
+    types.add_bundle::<Upright>();
+    if lean {
+        types.add::<Lean>();
     }
+    let batch = types.into_batch(count as u32);
+    {
+        let mut ids = column::<SceneId>(&batch);
+        let mut plantings = column::<PlantingId>(&batch);
+        let mut prototypes = column::<PrototypeId>(&batch);
+        let mut positions = column::<Position>(&batch);
+        let mut yaws = column::<Yaw>(&batch);
+        let mut scales = column::<Scale>(&batch);
+        let mut leans = batch.writer::<Lean>();
+        for Instance { id, planting, placement } in instances {
+            let Placement { prototype, position, yaw, scale, lean } = placement;
+            push(&mut ids, id);
+            push(&mut plantings, planting);
+            push(&mut prototypes, prototype);
+            push(&mut positions, Position(position));
+            push(&mut yaws, Yaw(yaw));
+            push(&mut scales, scale);
+            if let Some(leans) = &mut leans {
+                push(leans, lean);
+            }
+        }
+    }
+    batch.build().expect("each column holds all instances")
+}
+
+fn column<T: Component>(batch: &ColumnBatchBuilder) -> BatchWriter<'_, T> {
+    batch.writer().expect("instances have this component")
+}
+
+fn push<T: Component>(column: &mut BatchWriter<'_, T>, value: T) {
+    assert!(column.push(value).is_ok(), "there are no more instances than were counted");
 }
 
 impl Lean {
@@ -185,16 +219,15 @@ mod tests {
     /// Sizes of the columns of a [`World`] for one instance, in bytes.
     #[test]
     fn instances_take_48_bytes_and_8_more_if_they_lean() {
-        fn bytes<A, B, C, D, E, F>(_: &(A, B, C, D, E, F)) -> usize {
-            size_of::<A>()
-                + size_of::<B>()
-                + size_of::<C>()
-                + size_of::<D>()
-                + size_of::<E>()
-                + size_of::<F>()
-        }
-        let (id, planting, placement) = (SceneId(0), PlantingId(0), placement());
-        assert_eq!(bytes(&Instance { id, planting, placement }.upright()), 48);
+        let sizes = [
+            size_of::<SceneId>(),
+            size_of::<PlantingId>(),
+            size_of::<PrototypeId>(),
+            size_of::<Position>(),
+            size_of::<Yaw>(),
+            size_of::<Scale>(),
+        ];
+        assert_eq!(sizes.iter().sum::<usize>(), 48);
         assert_eq!(size_of::<Lean>(), 8);
     }
 

@@ -3,10 +3,11 @@ use std::path::Path;
 use super::failure::one_line;
 use super::provenance::{self, FileHashes};
 use super::reading::{folder_of, read};
-use super::staging::staged;
+use super::setting::setting;
+use super::staging::{stage_with, staged};
 use super::{Failure, Options, Progress, SceneWorld};
-use crate::document::{Boundary, Reading, Scene};
-use crate::extract::{SceneOptics, Stage};
+use crate::document::{Reading, Scene};
+use crate::extract::{SceneOptics, Setting, Stage};
 
 /// A scene and its world: what every question about a scene is asked of, be it answered by a run or not.
 #[expect(missing_debug_implementations, reason = "a World has no Debug")]
@@ -66,18 +67,16 @@ impl LoadedScene {
     /// # Errors
     /// As of [`stage`](Self::stage).
     pub fn isolated_stage(
-        &mut self,
+        &self,
         options: &Options,
         progress: &dyn Progress,
     ) -> Result<Stage, Failure> {
         progress.stage("building");
         let Self { reading, world } = self;
-        let scene = Scene { boundary: Boundary::Isolated, ..reading.scene.clone() };
-        let optics = SceneOptics::from_world(&world.world, scene.bands.len());
-        let kept = world.geometry.take();
-        let stage = staged(world, &scene, &optics, options.free_memory());
-        world.geometry = kept;
-        stage.map_err(|failure| failure.with_source(&reading.source))
+        let isolated = Setting { is_periodic: false, ..setting(&reading.scene) };
+        let optics = SceneOptics::from_world(&world.world, reading.scene.bands.len());
+        stage_with(None, world, &isolated, &optics, options.free_memory())
+            .map_err(|failure| failure.with_source(&reading.source))
     }
 
     /// Returns the hash of the scene as it was resolved and of the content of each file that it reads, hexadecimal.

@@ -1,12 +1,14 @@
 //! World to stage, with places in the document for errors of the ray engine.
 
+use std::sync::Arc;
+
 use super::Failure;
 use super::scene_world::SceneWorld;
 use super::setting::setting;
-use crate::accel::BuildError;
+use crate::accel::{BuildError, TwoLevelBvh};
 use crate::components::{InstanceCount, SceneExtents, SceneId};
 use crate::document::{Diagnostic, Scene, ScenePath};
-use crate::extract::{SceneOptics, Stage, extract};
+use crate::extract::{SceneOptics, Setting, Stage, extract};
 use crate::products::data_size;
 use crate::systems::{Resources, place_of_instance};
 
@@ -22,16 +24,30 @@ pub(super) fn staged(
     free: u64,
 ) -> Result<Stage, Failure> {
     let built = world.geometry.clone();
-    if built.is_none() {
-        if let Some(problem) = check_memory(&world.resources.extents, free) {
-            return Err(Failure::Problems(vec![problem]));
-        }
-        world.builds += 1;
-    }
-    let stage = extract(&world.world, optics, &setting(scene), built)
-        .map_err(|error| Failure::Problems(vec![located(&error, world)]))?;
+    world.builds += usize::from(built.is_none());
+    let stage = stage_with(built, world, &setting(scene), optics, free)?;
     world.geometry = Some(stage.geometry.clone());
     Ok(stage)
+}
+
+/// Extracts the stage of a world with a ray engine, which is built if there is none.
+///
+/// # Errors
+/// As of [`staged`].
+pub(super) fn stage_with(
+    built: Option<Arc<TwoLevelBvh>>,
+    world: &SceneWorld,
+    setting: &Setting,
+    optics: &SceneOptics,
+    free: u64,
+) -> Result<Stage, Failure> {
+    if built.is_none()
+        && let Some(problem) = check_memory(&world.resources.extents, free)
+    {
+        return Err(Failure::Problems(vec![problem]));
+    }
+    extract(&world.world, optics, setting, built)
+        .map_err(|error| Failure::Problems(vec![located(&error, world)]))
 }
 
 /// Error of the ray engine, at its place in the document.

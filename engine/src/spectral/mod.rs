@@ -9,6 +9,12 @@ mod response;
 mod sensors;
 mod solar;
 
+/// Shortest wavelength of spectra and responses, nm: far ultraviolet.
+pub const SHORTEST_NM: f64 = 100.0;
+
+/// Longest wavelength of spectra and responses, nm: microwaves of 1 mm.
+pub const LONGEST_NM: f64 = 1e6;
+
 pub use band::{BandWindow, OutsideSpectrum, band_mean};
 pub use library::{library_names, library_spectrum, soil_reflectance};
 pub use planck::{brightness_temperature, planck, planck_mean, planck_mean_slope};

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 use glam::{DVec2, DVec3};
 use hecs::World;
@@ -7,7 +8,9 @@ use rayon::prelude::*;
 use super::Resources;
 use super::coordinate_advice::place_of_instance;
 use super::measure_bounds::{MeshSummary, placed_meshes};
-use crate::components::{Instance, InstanceQuery, Placement, SceneExtents, SceneId, TerrainPatch};
+use crate::components::{
+    Instance, InstanceQuery, Placement, Position, SceneExtents, SceneId, TerrainPatch,
+};
 use crate::document::{Diagnostic, HEIGHT, LENGTH, Range, SCALE, ScenePath};
 use crate::geometry::Bounds;
 
@@ -64,6 +67,19 @@ impl Reach {
     }
 }
 
+/// Instance whose position, scale or extent is beyond the lawful ranges.
+struct Unlawful {
+    instance: SceneId,
+    message: String,
+    help: &'static str,
+}
+
+impl Unlawful {
+    fn first(self, other: Self) -> Self {
+        if other.instance < self.instance { other } else { self }
+    }
+}
+
 /// Heights of the lowest and the highest ground, m.
 #[derive(Clone, Copy)]
 struct GroundHeights {
@@ -85,8 +101,13 @@ pub(super) fn measure_extents(world: &mut World, resources: &mut Resources) {
         .collect();
     check_meshes(&bounds, &meshes, resources);
     let tile = resources.is_periodic().then_some(patch.size);
-    let are_lawful = check_placements(world, &bounds, resources);
-    let reach = if are_lawful { reach(world, &bounds, patch.corner, tile) } else { Reach::NOTHING };
+    let reach = match reach(world, &bounds, patch.corner, tile) {
+        Ok(reach) => reach,
+        Err(problem) => {
+            refuse(problem, world, resources);
+            Reach::NOTHING
+        }
+    };
     let heights = patch.mesh.vertices.iter().map(|v| patch.base + patch.unit * f64::from(v.z));
     let (lowest, highest) = heights
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
@@ -130,25 +151,14 @@ fn check_meshes(
     }
 }
 
-/// Returns whether all positions and scales are lawful; reports the first that is not.
-fn check_placements(
+/// Reports an instance with an unlawful position, scale or extent.
+fn refuse(
+    Unlawful { instance, message, help }: Unlawful,
     world: &World,
-    bounds: &BTreeMap<u32, Bounds>,
     resources: &mut Resources,
-) -> bool {
-    let problem_of_instance = |components: InstanceQuery<'_>| {
-        let Instance { id, placement, .. } = Instance::from_components(components);
-        Some((id, problem_of(&placement, bounds.get(&placement.prototype.0))?))
-    };
-    let mut query = world.query::<InstanceQuery<'_>>();
-    let batches = query.iter_batched(BATCH).par_bridge();
-    let problem = batches
-        .filter_map(|batch| batch.filter_map(problem_of_instance).min_by_key(|&(id, _)| id))
-        .min_by_key(|&(id, _)| id);
-    let Some((instance, (message, help))) = problem else { return true };
+) {
     let (path, name) = place_of_instance(instance, world, resources);
     resources.report(Diagnostic::error(path, format!("{name}: {message}")).help(help));
-    false
 }
 
 /// Refuses and warns of instances that reach over many periodic tiles.
@@ -208,6 +218,9 @@ fn check_duplicates(world: &World, meshes: &BTreeMap<u32, MeshSummary>, resource
         let Instance { id, placement, .. } = Instance::from_components(components);
         (pose(&placement), id)
     };
+    if !may_hold_duplicates(world) {
+        return;
+    }
     let mut query = world.query::<InstanceQuery<'_>>();
     let mut poses: Vec<([u64; 6], SceneId)> = query.iter().map(pose_of).collect();
     poses.par_sort_unstable();
@@ -240,8 +253,23 @@ fn check_duplicates(world: &World, meshes: &BTreeMap<u32, MeshSummary>, resource
     }
 }
 
+/// Returns whether some positions are alike, or a rare pair of them has the same hash: far less memory than that of
+/// all poses is sorted.
+fn may_hold_duplicates(world: &World) -> bool {
+    let mut query = world.query::<&Position>();
+    let hash = |position: &Position| {
+        let mut hasher = DefaultHasher::new();
+        position.0.to_array().map(f64::to_bits).hash(&mut hasher);
+        hasher.finish()
+    };
+    let batches = query.iter_batched(BATCH).par_bridge();
+    let mut hashes: Vec<u64> = batches.flat_map_iter(|batch| batch.map(hash)).collect();
+    hashes.par_sort_unstable();
+    hashes.windows(2).any(|pair| pair[0] == pair[1])
+}
+
 /// Problem with the place of an instance, and advice.
-fn problem_of(placement: &Placement, bounds: Option<&Bounds>) -> Option<(String, &'static str)> {
+fn problem_of_place(placement: &Placement) -> Option<(String, &'static str)> {
     let Placement { position, scale, .. } = placement;
     let all: [(&Range, f64); 5] = [
         (&LENGTH, position.x),
@@ -250,10 +278,11 @@ fn problem_of(placement: &Placement, bounds: Option<&Bounds>) -> Option<(String,
         (&SCALE, scale.horizontal.into()),
         (&SCALE, scale.vertical.into()),
     ];
-    if let Some(problem) = all.into_iter().find_map(|(range, value)| range.problem(value)) {
-        return Some(problem);
-    }
-    let Bounds { min, max } = world_bounds(placement, bounds?);
+    all.into_iter().find_map(|(range, value)| range.problem(value))
+}
+
+/// Problem with how far the box around an instance reaches, and advice.
+fn problem_of_box(Bounds { min, max }: &Bounds) -> Option<(String, &'static str)> {
     let farthest = min.abs().max(max.abs());
     [(&LENGTH, farthest.x), (&LENGTH, farthest.y), (&HEIGHT, farthest.z)]
         .into_iter()
@@ -270,30 +299,39 @@ fn world_bounds(placement: &Placement, bounds: &Bounds) -> Bounds {
     Bounds { min: center - half, max: center + half }
 }
 
-/// Heights and images of all instances.
+/// Heights and images of all instances, or the first that is unlawful.
 fn reach(
     world: &World,
     bounds: &BTreeMap<u32, Bounds>,
     corner: DVec2,
     tile: Option<DVec2>,
-) -> Reach {
+) -> Result<Reach, Unlawful> {
     let of = |components: InstanceQuery<'_>| {
         let Instance { id, placement, .. } = Instance::from_components(components);
-        let Some(bounds) = bounds.get(&placement.prototype.0) else { return Reach::NOTHING };
-        let Bounds { min, max } = world_bounds(&placement, bounds);
+        let unlawful = |(message, help)| Unlawful { instance: id, message, help };
+        problem_of_place(&placement).map_or(Ok(()), |problem| Err(unlawful(problem)))?;
+        let Some(bounds) = bounds.get(&placement.prototype.0) else { return Ok(Reach::NOTHING) };
+        let reached = world_bounds(&placement, bounds);
+        problem_of_box(&reached).map_or(Ok(()), |problem| Err(unlawful(problem)))?;
+        let Bounds { min, max } = reached;
         let images = tile.map_or(1.0, |tile| {
             // Offsets k, in tiles, for which the box and the tile overlap.
             let first = ((corner - max.truncate()) / tile).ceil();
             let last = ((corner + tile - min.truncate()) / tile).floor();
             (last - first + 1.0).max(DVec2::ONE).element_product()
         });
-        Reach { high: (max.z, id), low: (min.z, id), records: images, most: (images, id) }
+        Ok(Reach { high: (max.z, id), low: (min.z, id), records: images, most: (images, id) })
+    };
+    let both = |a: Result<Reach, Unlawful>, b: Result<Reach, Unlawful>| match (a, b) {
+        (Ok(a), Ok(b)) => Ok(a.union(b)),
+        (Err(a), Err(b)) => Err(a.first(b)),
+        (Err(unlawful), Ok(_)) | (Ok(_), Err(unlawful)) => Err(unlawful),
     };
     let mut query = world.query::<InstanceQuery<'_>>();
     let batches = query.iter_batched(BATCH).par_bridge();
     batches
-        .map(|batch| batch.map(of).fold(Reach::NOTHING, Reach::union))
-        .reduce(|| Reach::NOTHING, Reach::union)
+        .map(|batch| batch.map(of).fold(Ok(Reach::NOTHING), both))
+        .reduce(|| Ok(Reach::NOTHING), both)
 }
 
 /// Bits of all that decides where an instance is.

@@ -87,18 +87,18 @@ fn draw(
     bars: &Bars,
 ) -> anyhow::Result<(Vec<String>, String)> {
     let mut loaded = LoadedScene::from_file(&arguments.scene.file, options, bars)?;
-    let mut lines = Vec::new();
-    bars.stage("drawing the map");
-    let map = SceneMap::new(&loaded, arguments.size);
-    let png = map.png().context("there is no memory for the pixels of the map: lower --size")?;
-    output::replace(&folder.join("map.svg"), map.svg())?;
-    output::replace(&folder.join("map.png"), png)?;
-    lines.push(format!("{}, map.svg", folder.join("map.png").display()));
-    lines.extend(map.contents.iter().map(|line| format!("  {line}")));
-    if arguments.boxes {
+    let (map, stage) = if arguments.boxes {
+        // The map has the colours of all materials of a mesh.
+        let map = draw_map(&loaded, arguments.size, folder);
         replace_by_boxes(&mut loaded);
-    }
-    let stage = loaded.isolated_stage(options, bars)?;
+        (map, loaded.isolated_stage(options, bars))
+    } else {
+        rayon::join(
+            || draw_map(&loaded, arguments.size, folder),
+            || loaded.isolated_stage(options, bars),
+        )
+    };
+    let (mut lines, stage) = (map?, stage?);
     let settings =
         ViewSettings { width: arguments.size, samples: arguments.samples, towards: arguments.view };
     let view = SceneView::new(&loaded, &stage, settings);
@@ -111,6 +111,18 @@ fn draw(
     }
     lines.extend(view.contents.iter().map(|line| format!("  {line}")));
     Ok((loaded.warnings(), lines.join("\n") + "\n"))
+}
+
+/// Draws the map and writes it; returns what was drawn, a line each.
+fn draw_map(loaded: &LoadedScene, size: u32, folder: &Path) -> anyhow::Result<Vec<String>> {
+    let map = SceneMap::new(loaded, size);
+    let png = map.png().context("there is no memory for the pixels of the map: lower --size")?;
+    output::replace(&folder.join("map.svg"), map.svg())?;
+    output::replace(&folder.join("map.png"), png)?;
+    let written = format!("{}, map.svg", folder.join("map.png").display());
+    Ok(std::iter::once(written)
+        .chain(map.contents.iter().map(|line| format!("  {line}")))
+        .collect())
 }
 
 /// Opens a file with the program that the desktop has for it; where that fails, a warning says why.

@@ -5,10 +5,7 @@ use std::path::Path;
 use super::super::AssetError;
 use super::SpectrumPoint;
 use crate::document::WavelengthUnit;
-
-/// Wavelengths of spectra, nm: from the far ultraviolet to microwaves of 1 mm.
-const SHORTEST_NM: f64 = 100.0;
-const LONGEST_NM: f64 = 1e6;
+use crate::spectral::{LONGEST_NM, SHORTEST_NM};
 
 /// Points that a reader has found so far.
 pub(super) struct PointList<'a> {

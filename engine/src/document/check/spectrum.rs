@@ -9,13 +9,10 @@ use super::super::scene::{
 };
 use super::reflectance_map::check_reflectance_map;
 use super::{Report, ScenePath, count};
-use crate::spectral::{library_names, library_spectrum};
+use crate::spectral::{SHORTEST_NM, library_names, library_spectrum};
 
 /// A spectrum may name one that names one, and so on, so often.
 const CHAIN: usize = 16;
-
-/// Shortest wavelength of a band, nm: the far ultraviolet.
-const SHORTEST_NM: f64 = 100.0;
 
 /// Quantity of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]

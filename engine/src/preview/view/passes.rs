@@ -81,7 +81,11 @@ impl Accumulator {
         let strip = ROWS * size.x as usize;
         let pixels = size.as_dvec2();
         sums.par_chunks_mut(strip).enumerate().for_each(|(index, sums)| {
-            let samples: Vec<Sample> = (0..sums.len())
+            // Rays of neighbours meet the same trees: square after square, not row after row.
+            let mut offsets: Vec<usize> = (0..sums.len()).collect();
+            offsets.sort_by_key(|offset| offset % size.x as usize / ROWS);
+            let samples: Vec<Sample> = offsets
+                .iter()
                 .map(|offset| {
                     let pixel = index * strip + offset;
                     let key = Key::new(0).path("preview").index(pixel as u64);
@@ -92,8 +96,8 @@ impl Accumulator {
                 })
                 .collect();
             let colours = shade(stage, shading, &samples);
-            for (sum, colour) in sums.iter_mut().zip(colours) {
-                sum.add(colour);
+            for (offset, colour) in offsets.into_iter().zip(colours) {
+                sums[offset].add(colour);
             }
         });
     }

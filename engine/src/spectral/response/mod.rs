@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::band::value_at;
-use super::{BandWindow, OutsideSpectrum, band_mean};
+use super::{BandWindow, LONGEST_NM, OutsideSpectrum, SHORTEST_NM, band_mean};
 use smooth_rule::smooth_rule;
 
 /// Point of a curve: wavelength, nm, and value.
@@ -104,11 +104,14 @@ impl TryFrom<ResponseRecord> for BandResponse {
 }
 
 /// Points that are no response.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidResponse {
     /// Fewer than two points.
     #[error("a response has at least two points")]
     TooShort,
+    /// A wavelength beyond all spectra.
+    #[error("wavelengths of a response are {SHORTEST_NM} to {LONGEST_NM} nm, not {0}")]
+    NoLight(f64),
     /// Wavelengths that do not rise.
     #[error("wavelengths of a response rise from point to point")]
     NotRising,
@@ -137,6 +140,10 @@ impl BandResponse {
     pub fn from_points(points: Vec<Point>) -> Result<Self, InvalidResponse> {
         if points.len() < 2 {
             return Err(InvalidResponse::TooShort);
+        }
+        let is_light = |wavelength: f64| (SHORTEST_NM..=LONGEST_NM).contains(&wavelength);
+        if let Some(&(wavelength, _)) = points.iter().find(|point| !is_light(point.0)) {
+            return Err(InvalidResponse::NoLight(wavelength));
         }
         if !points.windows(2).all(|pair| pair[0].0 < pair[1].0) {
             return Err(InvalidResponse::NotRising);

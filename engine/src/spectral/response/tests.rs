@@ -79,6 +79,13 @@ fn means_of_planck_are_those_of_narrow_windows() {
 fn what_is_no_response_is_refused() {
     let from = BandResponse::from_points;
     assert_eq!(from(vec![(500.0, 1.0)]), Err(InvalidResponse::TooShort));
+    for (wavelength, points) in [
+        (1e-310, [(1e-310, 1.0), (500.0, 0.0)]),
+        (0.64, [(0.64, 1.0), (0.68, 0.0)]),
+        (f64::INFINITY, [(500.0, 1.0), (f64::INFINITY, 0.0)]),
+    ] {
+        assert_eq!(from(points.to_vec()), Err(InvalidResponse::NoLight(wavelength)));
+    }
     assert_eq!(from(vec![(500.0, 1.0), (500.0, 1.0)]), Err(InvalidResponse::NotRising));
     assert_eq!(from(vec![(500.0, 1.0), (510.0, -0.1)]), Err(InvalidResponse::Negative));
     assert_eq!(from(vec![(500.0, 1.0), (510.0, f64::NAN)]), Err(InvalidResponse::Negative));
