@@ -36,6 +36,7 @@ pub mod accel;
 pub mod appearance;
 pub mod assets;
 pub mod components;
+pub mod counts;
 pub mod document;
 pub mod export;
 pub mod extract;

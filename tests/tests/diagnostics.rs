@@ -92,7 +92,7 @@ fn ground_under_ground_is_told() {
     let with =
         |height: i32| format!("{slope}v 6 2 {height}\nv 7 2 {height}\nv 7 3 {height}\nf 6 7 8\n");
     let told = warnings(&with(-4));
-    assert!(told.starts_with("warning: 1 triangles of `hill` lie under others\n"), "{told}");
+    assert!(told.starts_with("warning: 1 triangle of `hill` lies under another one\n"), "{told}");
     assert!(told.contains("one lies at (106.67, 2.33, -4.00): what is placed there"), "{told}");
     // The middle of one of the slope's triangles is (6, 3).
     let roof = warnings(&with(9).replace("v 6 2", "v 5 3.5").replace("v 7 3", "v 7 4"));

@@ -135,7 +135,7 @@ fn images_of_less_need_their_irradiance() {
     let irradiance = |values: &[f64]| RadianceQuantity::Brf { irradiance: Some(values.to_vec()) };
     let error =
         convert_radiance(&files, &irradiance(&[1.0]), &FORMATS).expect_err("too few").to_string();
-    assert!(error.contains("has 2 bands, and --irradiance has 1 values"), "{error}");
+    assert!(error.contains("has 2 bands, and --irradiance has 1 value"), "{error}");
     let brf = convert_radiance(&files, &irradiance(&[2.0, 0.5]), &FORMATS).expect("it converts");
     let found = pixels(&brf.sensors[0].products[0]).values;
     let expected =

@@ -158,7 +158,7 @@ fn heights_of_lists_and_tables_may_count_from_the_terrain() {
     assert!((height(", on_terrain: true") - 13.0).abs() < 1e-12);
     let beside = list(", on_terrain: true").replace("(5.0, 5.0", "(-5.0, 5.0");
     let message = wrong(&beside, Path::new("."));
-    assert!(message.contains("1 of 1 places have no terrain below"), "{message}");
+    assert!(message.contains("1 of 1 place has no terrain below"), "{message}");
     assert!(message.contains("(-5, 5) is one: move it, or take out `on_terrain`"), "{message}");
 }
 

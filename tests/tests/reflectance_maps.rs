@@ -371,5 +371,5 @@ fn a_cell_without_data_in_all_bands_is_counted_once() {
     fs::write(folder.path().join("two.hdr"), header).expect("a file");
     fs::write(folder.path().join("two"), bytes).expect("a file");
     let told = check(&file);
-    assert!(told.contains("1 of its 6 cells hold -9999"), "{told}");
+    assert!(told.contains("1 of its 6 cells holds -9999"), "{told}");
 }

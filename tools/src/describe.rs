@@ -1,5 +1,6 @@
 //! Contents of a scene, as `sunfleck check` prints them.
 
+use sunfleck::counts::noun_of;
 use sunfleck::run::{SceneFacts, SunFacts};
 
 /// A scene's facts and warnings as JSON.
@@ -336,12 +337,7 @@ pub(crate) fn grouped(count: u64) -> String {
 
 /// `1 instance`, `2 instances`.
 fn counted(count: u64, noun: &str) -> String {
-    let noun = match (count, noun) {
-        (1, noun) => noun.to_owned(),
-        (_, "triangle or disc") => "triangles and discs".to_owned(),
-        (_, noun) => format!("{noun}s"),
-    };
-    format!("{} {noun}", grouped(count))
+    format!("{} {}", grouped(count), noun_of(count, noun))
 }
 
 /// `1.5 MiB`.

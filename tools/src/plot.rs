@@ -8,7 +8,7 @@ use sunfleck::document::System;
 pub(crate) use sunfleck::output::{axis_title, range_of, tick};
 
 /// A rectangle of a picture.
-pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type PlotArea<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 pub(crate) const INK: RGBColor = RGBColor(40, 40, 40);
 pub(crate) const FAINT: RGBColor = RGBColor(225, 225, 225);
@@ -44,7 +44,7 @@ pub(crate) fn upwards(size: i32) -> TextStyle<'static> {
 }
 
 /// Title, and below it a coloured dot and a name for each system.
-pub(crate) fn heading(area: &Area<'_>, title: &str, systems: &[System]) -> anyhow::Result<()> {
+pub(crate) fn heading(area: &PlotArea<'_>, title: &str, systems: &[System]) -> anyhow::Result<()> {
     area.draw_text(title, &placed(18, HPos::Left, VPos::Top), (16, 12))?;
     let mut x = 22;
     for &system in systems {

@@ -157,7 +157,7 @@ fn what_is_wrong_with_a_scenario_is_told_with_its_place() {
         ("\"size\": [20.0, 10.0, 5.0]", "\"size\": [20.0]", "canopy.size: expected three lengths"),
         ("trees/Wood.ply", "trees/None.ply", "mesh_tree_elements[0]: there is no file"),
         ("trees/Wood.ply", "trees/Wood.stl", "neither a PLY nor an OBJ file"),
-        ("[0.88, 0.85]", "[0.88]", "surface.reflectance: 2 wavelengths and 1 values"),
+        ("[0.88, 0.85]", "[0.88]", "surface.reflectance: 2 wavelengths and 1 value"),
         ("\"nanometer\"", "\"inch\"", "\"inch\" is no unit of wavelengths"),
         ("\"lambertian\"", "\"checkerboard\"", "\"checkerboard\", which has no counterpart"),
         ("\"centimeter\"", "\"inch\"", "write m, cm, mm or km"),

@@ -1,3 +1,4 @@
+use crate::counts::{counted, existing};
 use std::io;
 use std::path::PathBuf;
 
@@ -75,9 +76,10 @@ pub enum AssetError {
     )]
     BadCorner { file: PathBuf, line: usize, found: String },
     #[error(
-        "{}:{line}: corner {index} names none of the {count} vertices; count from 1 at the first, \
+        "{}:{line}: corner {index} names no vertex, and there {} above it; count from 1 at the first, \
          or from -1 backwards",
-        .file.display()
+        .file.display(),
+        existing(.count, "vertex")
     )]
     NoSuchVertex { file: PathBuf, line: usize, index: i64, count: usize },
 
@@ -105,7 +107,12 @@ pub enum AssetError {
     ContradictedColumn { file: PathBuf, line: usize, own: String, given: String },
     #[error("{}:{line}: columns {first:?} and {second:?} say the same; keep one", .file.display())]
     RepeatedColumn { file: PathBuf, line: usize, first: String, second: String },
-    #[error("{}:{line}: has {found} values for {wanted} columns{advice}", .file.display())]
+    #[error(
+        "{}:{line}: has {} for {}{advice}",
+        .file.display(),
+        counted(.found, "value"),
+        counted(.wanted, "column")
+    )]
     WrongFieldCount {
         file: PathBuf,
         line: usize,

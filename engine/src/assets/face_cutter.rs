@@ -1,5 +1,6 @@
 //! Faces of a file, cut into triangles.
 
+use crate::counts::{agreeing, counted, noun_of};
 use glam::DVec3;
 
 use super::AssetError;
@@ -88,8 +89,14 @@ impl FaceCutter {
         let (crossed, first) = self.crossed;
         if crossed > 0 {
             mesh.warn(&format!(
-                "the outlines of {crossed} faces cross themselves (first: {place} {first}); what they \
-                 enclose counts once: check the order of their corners"
+                "the {} of {} (first: {place} {first}); what {} counts once: check the order of corners",
+                noun_of(crossed, "outline"),
+                format_args!(
+                    "{} {}",
+                    counted(crossed, "face"),
+                    agreeing(crossed, "crosses itself", "cross themselves")
+                ),
+                agreeing(crossed, "it encloses", "they enclose")
             ));
         }
     }

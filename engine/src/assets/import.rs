@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 
 use super::{AssetError, Loaded};
 use crate::components::{Mesh, MeshPart};
+use crate::counts::{agreeing, counted};
 use crate::document::{Axis, Origin};
 
 /// Most triangles of one file.
@@ -133,7 +134,11 @@ impl MeshCollector {
         }
         let dropped = total - self.triangles.len();
         if dropped > 0 {
-            self.warn(&format!("{dropped} triangles without area were dropped"));
+            self.warn(&format!(
+                "{} without area {} dropped",
+                counted(dropped, "triangle"),
+                agreeing(dropped, "was", "were")
+            ));
         }
         self.warn_transparent(&vertices, names);
         let mesh = self.mesh(&vertices, names);

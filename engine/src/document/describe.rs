@@ -86,7 +86,7 @@ fn leave_out_annotations(schema: &mut Value) {
 }
 
 /// A key of a record.
-pub(super) struct Key {
+pub(super) struct SchemaKey {
     pub(super) name: &'static str,
     pub(super) doc: String,
     pub(super) schema: Value,
@@ -96,7 +96,7 @@ pub(super) struct Key {
     pub(super) example: Option<String>,
 }
 
-impl Key {
+impl SchemaKey {
     pub(super) fn new<T: Decode + Encode>(
         name: &'static str,
         doc: String,
@@ -115,12 +115,12 @@ impl Key {
 }
 
 /// A record, or the keys of a variant.
-pub(super) fn record(doc: &str, keys: Vec<Key>) -> Value {
+pub(super) fn record(doc: &str, keys: Vec<SchemaKey>) -> Value {
     let required: Vec<_> =
         keys.iter().filter(|key| key.default.is_none()).map(|key| key.name).collect();
     let annotations: Vec<_> = keys
         .iter()
-        .map(|Key { name, doc, schema, default, example }| {
+        .map(|SchemaKey { name, doc, schema, default, example }| {
             let schema = with_description(schema.clone(), doc);
             json!({ "name": name, "schema": schema, "default": default, "example": example })
         })

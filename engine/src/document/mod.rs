@@ -15,6 +15,7 @@ mod include;
 mod keys;
 mod leaves;
 mod legible;
+mod param_uses;
 mod params;
 mod parsed;
 mod path;
@@ -26,7 +27,7 @@ mod sun;
 
 pub use check::check;
 pub(crate) use check::{
-    HEIGHT, IRRADIANCE, LENGTH, Range, SCALE, check_maps, rounded_up, too_many_pixels,
+    HEIGHT, IRRADIANCE, LENGTH, LawfulRange, SCALE, check_maps, rounded_up, too_many_pixels,
 };
 pub use describe::json_schema;
 pub(crate) use diagnostic::suggestion;

@@ -1,5 +1,6 @@
 //! A scene's text as a tree, from which the scene is read at any values of its parameters.
 
+use crate::counts::counted;
 use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -45,6 +46,11 @@ impl ParsedScene {
         let tree = Arc::new(tree);
         let source = Arc::new(source.with_tree(Arc::clone(&tree)));
         Ok(Self { source, tree, included })
+    }
+
+    /// The tree of the text, included files among it.
+    pub(super) fn tree(&self) -> &Node {
+        &self.tree
     }
 
     /// Returns the scene without the key `sweep`: a point of a sweep has no use for the list of all.
@@ -102,7 +108,7 @@ impl ParsedScene {
             })
         });
         if dropped > 0 {
-            let message = format!("and {dropped} more errors");
+            let message = format!("and {}", counted(dropped, "more error"));
             diagnostics.push(Diagnostic::error(ScenePath::root(), message));
         }
         diagnostics

@@ -12,6 +12,7 @@ use super::buffer::BinaryBuffer;
 use super::contents::{ExportedScene, PlacedMesh, Pose, indices, polygon};
 use super::{ExportError, ExportFormat, ExportSettings, Exported, put};
 use crate::components::{Mesh, MeshPart, Placement};
+use crate::counts::counted;
 use crate::output::OutputError;
 use crate::products::data_size;
 
@@ -42,7 +43,11 @@ pub(super) fn write(
     // Lengths in a binary file have 32 bits.
     let limit = settings.limit.min(u32::MAX.into());
     if size > limit {
-        let what = format!("{} meshes and {} instances", scene.meshes.len(), scene.instances.len());
+        let what = format!(
+            "{} and {}",
+            counted(scene.meshes.len(), "mesh"),
+            counted(scene.instances.len(), "instance")
+        );
         let help = if nodes > limit / 2 {
             "leave out `--flat`, so that instances take 40 bytes each"
         } else {
@@ -76,17 +81,14 @@ fn unwritten(path: &Path, source: io::Error) -> ExportError {
 }
 
 fn contents(scene: &ExportedScene<'_>, settings: &ExportSettings) -> Vec<String> {
-    let counted = |count: u64, one: &str, many: &str| {
-        format!("{count} {}", if count == 1 { one } else { many })
-    };
-    let instances = scene.instances.len() as u64;
+    let instances = scene.instances.len();
     let mut contents = vec![format!(
         "{}, {}, {} in all",
-        counted(scene.meshes.len() as u64, "mesh", "meshes"),
-        counted(instances, "instance", "instances"),
-        counted(scene.triangles(settings.disc_sides), "triangle", "triangles")
+        counted(scene.meshes.len(), "mesh"),
+        counted(instances, "instance"),
+        counted(scene.triangles(settings.disc_sides), "triangle")
     )];
-    if instances > 1 && !settings.is_flat {
+    if instances > 0 && !settings.is_flat {
         contents.push(format!(
             "needs {INSTANCING}, which three.js and Babylon.js read; `--flat` writes a node per instance for other programs"
         ));

@@ -16,6 +16,7 @@ use super::surface::{SampledSurface, area};
 use super::{ExportError, ExportFormat, ExportSettings, Exported, put};
 use crate::appearance::srgb;
 use crate::components::{MaterialId, Mesh, MeshPart, PartMaterials, Scale};
+use crate::counts::counted;
 use crate::products::data_size;
 use crate::sampling::Key;
 use crate::terrain::Ground;
@@ -61,7 +62,7 @@ pub(super) fn write(
     let points = (settings.points_per_m2 * all).round();
     if points * POINT_BYTES as f64 > settings.limit as f64 {
         return Err(ExportError::TooLarge {
-            what: format!("{points} points on {all:.1} m²"),
+            what: format!("{} on {all:.1} m²", counted(points as u64, "point")),
             size: data_size((points * POINT_BYTES as f64) as u64),
             limit: data_size(settings.limit),
             help: "lower `--points-per-m2`, or raise `--limit`",
@@ -80,8 +81,10 @@ pub(super) fn write(
         let kept = error.lock().unwrap_or_else(PoisonError::into_inner).take();
         kept.map_or(Ok(()), Err)
     })?;
-    let mut contents =
-        vec![format!("{points} points on {all:.2} m² of surface, counted on one side")];
+    let mut contents = vec![format!(
+        "{} on {all:.2} m² of surface, counted on one side",
+        counted(points as u64, "point")
+    )];
     if scene.terrain.projection.as_ref().and_then(|one| one.wkt.as_ref()).is_none() {
         contents.push("no coordinate reference system: its text is not known".to_owned());
     }

@@ -10,6 +10,7 @@ use super::contents::{ExportedScene, Pose, indices, polygon};
 use super::{ExportError, ExportSettings, Exported, put};
 use crate::appearance::srgb;
 use crate::components::{Instance, Mesh, MeshPart, PartMaterials};
+use crate::counts::counted;
 use crate::products::data_size;
 
 /// Bytes of a corner: place, normal, colour; and of a face: number of corners, their numbers, its material.
@@ -30,7 +31,10 @@ pub(super) fn write(
     let size = triangles * (3 * CORNER_BYTES + FACE_BYTES);
     if size > settings.limit || 3 * triangles > i32::MAX as u64 {
         return Err(ExportError::TooLarge {
-            what: format!("{triangles} triangles, those of each instance written out,"),
+            what: format!(
+                "{}, those of each instance written out,",
+                counted(triangles, "triangle")
+            ),
             size: data_size(size),
             limit: data_size(
                 settings.limit.min(i32::MAX as u64 / 3 * (3 * CORNER_BYTES + FACE_BYTES)),
@@ -63,7 +67,7 @@ pub(super) fn write(
         }
         out.flush()
     })?;
-    let mut contents = vec![format!("{triangles} triangles, {}", data_size(size))];
+    let mut contents = vec![format!("{}, {}", counted(triangles, "triangle"), data_size(size))];
     contents.extend(scene.told_tile());
     Ok(Exported { files: vec![path.to_owned()], contents })
 }

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::legend::{Bar, Entries, Legend};
+use super::legend::{Bar, Entries, PictureLegend};
 use super::picture_input::PictureInput;
 use crate::statistics::values_at_ranks;
 
@@ -67,14 +67,18 @@ impl Composite {
         let low = shown.iter().map(|one| one.low).fold(f32::INFINITY, f32::min);
         let high = shown.iter().map(|one| one.high).fold(f32::NEG_INFINITY, f32::max);
         if self.is_natural {
-            return Ok([Stretch { low, high }; 3]);
+            return Ok([r, g, b].map(|one| Stretch { low, high, ..one }));
         }
         // A dim band stretched in full would drown the others: bare soil in cyan.
         Ok([r, g, b].map(|one| Stretch { high: one.high.max(FAINTEST * high), ..one }))
     }
 
     /// A bar for each band that is shown, in the colours that it has where the others are dark.
-    pub(super) fn legend(&self, input: &PictureInput<'_>, stretches: &[Stretch; 3]) -> Legend {
+    pub(super) fn legend(
+        &self,
+        input: &PictureInput<'_>,
+        stretches: &[Stretch; 3],
+    ) -> PictureLegend {
         let PictureInput { image, wavelengths, lit, .. } = input;
         let mut bars: Vec<Bar> = Vec::new();
         let mut shown: Vec<usize> = Vec::new();
@@ -88,12 +92,12 @@ impl Composite {
             channels[channel] = true;
             let wavelength = wavelengths.get(band).copied().filter(|nm| nm.is_finite());
             let name = image.bands[band].clone();
-            bars.push(Bar { name, wavelength, channels, low: stretch.low, high: stretch.high });
+            bars.push(Bar { wavelength, channels, ..stretch.bar(name) });
             shown.push(band);
         }
         let dark = image.bands.iter().zip(lit.dark()).filter(|(_, is_dark)| *is_dark);
         let dark = dark.map(|(name, _)| name.clone()).collect();
-        Legend { entries: Entries::Bars(bars), dark, zero: None }
+        PictureLegend { entries: Entries::Bars(bars), dark, zero: None }
     }
 }
 
@@ -102,21 +106,32 @@ impl Composite {
 pub(super) struct Stretch {
     low: f32,
     high: f32,
+    /// Smallest and largest value.
+    extremes: [f32; 2],
 }
 
 impl Stretch {
     /// Stretch of a channel that shows nothing.
-    const NONE: Self = Self { low: 0.0, high: 1.0 };
+    const NONE: Self = Self { low: 0.0, high: 1.0, extremes: [0.0, 1.0] };
 
     fn between_percentiles(input: &PictureInput<'_>, band: usize) -> io::Result<Self> {
-        let ranks = |count| STRETCH.map(|share| (share * (count - 1) as f64).round() as u64);
+        let ranks = |count| {
+            let [low, high] = STRETCH.map(|share| (share * (count - 1) as f64).round() as u64);
+            [0, low, high, count - 1]
+        };
         let found = values_at_ranks(ranks, |each| input.visit_band(band, each))?;
-        let Some([low, high]) = found.map(|all| all.map(|value| value as f32)) else {
+        let Some([least, low, high, largest]) = found.map(|all| all.map(|value| value as f32))
+        else {
             return Ok(Self::NONE);
         };
+        let extremes = [least, largest];
         // Differences in the last digits are no picture.
         let is_plain = high - low <= 1e-5 * high.abs();
-        Ok(if is_plain { Self::plain(high) } else { Self { low, high } })
+        Ok(if is_plain {
+            Self { extremes, ..Self::plain(high) }
+        } else {
+            Self { low, high, extremes }
+        })
     }
 
     /// Range of all values of a band.
@@ -135,7 +150,8 @@ impl Stretch {
             low = low.min(0.0);
         }
         Ok(if high > low {
-            Self { low: low as f32, high: high as f32 }
+            let (low, high) = (low as f32, high as f32);
+            Self { low, high, extremes: [low, high] }
         } else if high.is_finite() {
             Self::plain(high as f32)
         } else {
@@ -145,13 +161,15 @@ impl Stretch {
 
     /// Stretch of a plain image, which is neither black nor white.
     fn plain(value: f32) -> Self {
-        Self { low: 0.0, high: (2.0 * value).max(f32::MIN_POSITIVE) }
+        let high = (2.0 * value).max(f32::MIN_POSITIVE);
+        Self { low: 0.0, high, extremes: [value; 2] }
     }
 
     /// Grey bar of a legend for a band with this name.
-    pub(super) const fn bar(self, name: String) -> Bar {
-        let Self { low, high } = self;
-        Bar { name, wavelength: None, channels: [true; 3], low, high }
+    pub(super) fn bar(self, name: String) -> Bar {
+        let Self { low, high, extremes: [least, largest] } = self;
+        let is_clipped = [least < low, largest > high];
+        Bar { name, wavelength: None, channels: [true; 3], low, high, is_clipped }
     }
 
     /// `value` in [0, 1].

@@ -19,7 +19,7 @@ const VALUE: usize = size_of::<f32>();
 
 /// One of the rasters of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Raster {
+pub(super) enum ImageRaster {
     /// A band each.
     Values,
     /// The standard error of each band, and the coverage, which is of all bands.
@@ -42,11 +42,11 @@ impl From<&Image> for RasterSize {
 /// Writes rows of all bands to their places; the file has shape `[bands, rows, columns]`.
 pub(super) fn write_rows(
     image: &Image,
-    raster: Raster,
+    raster: ImageRaster,
     block: &BandRows,
     file: &mut (impl Write + Seek),
 ) -> io::Result<()> {
-    if raster == Raster::Values && classes_of(image).is_some() {
+    if raster == ImageRaster::Values && classes_of(image).is_some() {
         return file.write_all(&classification::bytes(block));
     }
     let mut bytes = Vec::with_capacity(block.coverage.len() * VALUE);
@@ -60,14 +60,14 @@ pub(super) fn write_rows(
     };
     for band in 0..block.bands() {
         let values = match raster {
-            Raster::Values => block.values(band),
-            Raster::Errors => block.standard_error(band),
+            ImageRaster::Values => block.values(band),
+            ImageRaster::Errors => block.standard_error(band),
         };
         write(band, values)?;
     }
     match raster {
-        Raster::Values => Ok(()),
-        Raster::Errors => write(block.bands(), &block.coverage),
+        ImageRaster::Values => Ok(()),
+        ImageRaster::Errors => write(block.bands(), &block.coverage),
     }
 }
 
@@ -91,14 +91,14 @@ pub(super) fn read_rows(
 pub(super) fn write_header(
     source: &Source<'_>,
     image: &Image,
-    raster: Raster,
+    raster: ImageRaster,
     file: &mut impl Write,
 ) -> io::Result<()> {
     let provenance = source.provenance(RecipeForm::Packed);
     let provenance = provenance.into_iter().map(|(key, value)| format!("{key}: {}", item(&value)));
     let mut description = provenance.collect::<Vec<_>>().join("; ");
     let mut names: Vec<_> = image.bands.iter().map(|name| item(name)).collect();
-    if raster == Raster::Errors {
+    if raster == ImageRaster::Errors {
         description.insert_str(0, "standard errors and coverage; ");
         for name in &mut names {
             name.push_str("_se");
@@ -111,7 +111,7 @@ pub(super) fn write_header(
     writeln!(file, "lines = {}", image.height)?;
     writeln!(file, "bands = {}", names.len())?;
     writeln!(file, "header offset = 0")?;
-    let classes = classes_of(image).filter(|_| raster == Raster::Values);
+    let classes = classes_of(image).filter(|_| raster == ImageRaster::Values);
     let (kind, data_type) =
         if classes.is_some() { ("ENVI Classification", 1) } else { ("ENVI Standard", 4) };
     writeln!(file, "file type = {kind}")?;
@@ -125,7 +125,8 @@ pub(super) fn write_header(
     writeln!(file, "band names = {{{}}}", names.join(", "))?;
     let wavelengths = source.wavelengths(image);
     // The coverage has none, and a list must name as many as there are bands.
-    if raster == Raster::Values && wavelengths.iter().all(|wavelength| wavelength.is_finite()) {
+    if raster == ImageRaster::Values && wavelengths.iter().all(|wavelength| wavelength.is_finite())
+    {
         let numbers: Vec<_> = wavelengths.iter().map(f64::to_string).collect();
         writeln!(file, "wavelength units = Nanometers")?;
         writeln!(file, "wavelength = {{{}}}", numbers.join(", "))?;

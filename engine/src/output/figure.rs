@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 
 use super::layout::{Layout, NO_DATA, Row, extent};
-use super::lettering::{Area, Canvas, INK, Letters};
-use super::picture::{Picture, ShownPixels, encode_png};
+use super::lettering::{Canvas, INK, Letters, PixelRectangle};
+use super::picture::{PicturePainter, ShownPixels, encode_png};
 use crate::products::Georeference;
 
 /// Larger side that small pictures are enlarged to, by whole numbers, pixels.
@@ -25,7 +25,7 @@ pub(super) struct Caption<'a> {
 
 /// A picture with title, legend and scale around it.
 pub(super) struct Figure<'a> {
-    picture: &'a Picture<'a>,
+    picture: &'a PicturePainter<'a>,
     layout: Layout,
     zoom: usize,
 }
@@ -33,7 +33,7 @@ pub(super) struct Figure<'a> {
 impl<'a> Figure<'a> {
     /// The picture of an image, of which these pixels show something.
     pub(super) fn new(
-        picture: &'a Picture<'a>,
+        picture: &'a PicturePainter<'a>,
         shown: ShownPixels,
         place: Option<Georeference>,
         caption: &Caption<'_>,
@@ -87,11 +87,15 @@ impl<'a> Figure<'a> {
     /// Writes all rows of pixels from top to bottom: first those above the picture, with its frame, then the picture a
     /// block at a time, then those below it.
     fn paint(&self, out: &mut dyn Write) -> io::Result<()> {
-        let Area { top, left, width, height } = self.layout.picture();
+        let PixelRectangle { top, left, width, height } = self.layout.picture();
         let frame = |canvas: &mut Canvas, from: usize| {
             // A canvas holds rows of the figure from `from` on.
-            let line =
-                |top: usize| Area { left: left - 1, top: top - from, width: width + 2, height: 1 };
+            let line = |top: usize| PixelRectangle {
+                left: left - 1,
+                top: top - from,
+                width: width + 2,
+                height: 1,
+            };
             canvas.fill(line(if from == 0 { top - 1 } else { top + height }), INK);
         };
         let mut head = self.layout.draw(0..top);
@@ -102,7 +106,7 @@ impl<'a> Figure<'a> {
             for (row, pixels) in rows.zip(rgba.chunks_exact(4 * self.picture.size().0)) {
                 for part in 0..self.zoom {
                     let mut canvas = Canvas::new(self.layout.full_width(), 1);
-                    let side = |left| Area { left, top: 0, width: 1, height: 1 };
+                    let side = |left| PixelRectangle { left, top: 0, width: 1, height: 1 };
                     self.paint_row(self.zoom * row + part, pixels, left, &mut canvas);
                     canvas.fill(side(left - 1), INK);
                     canvas.fill(side(left + width), INK);
@@ -136,7 +140,7 @@ mod tests {
     /// Pixels of a figure, shape `[rows, columns, 3]`.
     fn painted(image: &Image, caption: &Caption<'_>) -> (usize, Vec<u8>) {
         let input = input(image, &[660.0]);
-        let picture = Picture::new(&input).expect("a picture");
+        let picture = PicturePainter::new(&input).expect("a picture");
         let shown = picture.encode(&[], &mut Vec::new()).expect("a file in memory");
         let figure = Figure::new(&picture, shown, image.georeference, caption);
         let mut rgb = Vec::new();

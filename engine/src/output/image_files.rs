@@ -5,13 +5,14 @@ use std::io;
 
 use super::band_rows::BandRows;
 use super::dataset::ImageRasters;
-use super::envi::Raster;
+use super::envi::ImageRaster;
 use super::figure::{Caption, Figure};
-use super::picture::Picture;
-use super::picture_input::{LitBands, PictureInput};
+use super::picture::PicturePainter;
+use super::picture_input::{BandsWithData, PictureInput};
 use super::provenance::RecipeForm;
 use super::staged_file::StagedFile;
 use super::staging::Staging;
+use super::titles::product_title;
 use super::{OutputError, Source, envi, exr, geotiff, names};
 use crate::document::FileFormat;
 use crate::products::Image;
@@ -50,7 +51,7 @@ pub(super) fn put(
     }
     let [values, errors] = readers;
     if has(FileFormat::GeoTiff) {
-        let rasters = [(Raster::Values, &values), (Raster::Errors, &errors)];
+        let rasters = [(ImageRaster::Values, &values), (ImageRaster::Errors, &errors)];
         for ((raster, pixels), name) in rasters.into_iter().zip(names.geotiffs()) {
             let mut file = staging.begin(&name)?;
             let scratch = || staging.scratch();
@@ -109,7 +110,7 @@ fn write_blocks(
 struct Rasters {
     values: StagedFile,
     errors: StagedFile,
-    lit: LitBands,
+    lit: BandsWithData,
 }
 
 impl Rasters {
@@ -128,26 +129,26 @@ impl Rasters {
                 staging.file(&header, |file| envi::write_header(source, image, raster, file))?;
             Ok(file)
         };
-        let values = begin(names.img(), Raster::Values)?;
+        let values = begin(names.img(), ImageRaster::Values)?;
         let errors = match names.errors() {
-            Some(name) => begin(name, Raster::Errors)?,
+            Some(name) => begin(name, ImageRaster::Errors)?,
             // Pictures are made of the coverage that it holds.
             None => staging.begin_unnamed()?,
         };
-        Ok((Self { values, errors, lit: LitBands::new(image.bands.len()) }, size))
+        Ok((Self { values, errors, lit: BandsWithData::new(image.bands.len()) }, size))
     }
 
     /// Rasters from which other files are made, and which are gone then.
     fn without_names(image: &Image, staging: &Staging) -> Result<Self, OutputError> {
         let [values, errors] = [staging.begin_unnamed()?, staging.begin_unnamed()?];
-        Ok(Self { values, errors, lit: LitBands::new(image.bands.len()) })
+        Ok(Self { values, errors, lit: BandsWithData::new(image.bands.len()) })
     }
 
     fn write(&mut self, image: &Image, block: &BandRows) -> Result<(), OutputError> {
         self.lit.add(block);
         let Self { values, errors, .. } = self;
-        values.write(|file| envi::write_rows(image, Raster::Values, block, file))?;
-        errors.write(|file| envi::write_rows(image, Raster::Errors, block, file))
+        values.write(|file| envi::write_rows(image, ImageRaster::Values, block, file))?;
+        errors.write(|file| envi::write_rows(image, ImageRaster::Errors, block, file))
     }
 }
 
@@ -158,7 +159,7 @@ fn put_pictures(
     [framed, bare]: [&str; 2],
     staging: &mut Staging,
 ) -> Result<u64, OutputError> {
-    let picture = Picture::new(input).map_err(OutputError::pixels(source))?;
+    let picture = PicturePainter::new(input).map_err(OutputError::pixels(source))?;
     let mut figure_file = staging.begin(framed)?;
     let mut shown = None;
     let size = staging.file(bare, |file| {
@@ -167,7 +168,7 @@ fn put_pictures(
     })?;
     let shown = shown.expect("the file was written");
     let caption = Caption {
-        title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
+        title: format!("{}: {}", source.sensor, product_title(&source.product.name)),
         scene: &source.report.scene,
         unit: &source.product.unit,
     };

@@ -2,14 +2,17 @@
 
 use std::ops::Range;
 
-use super::legend::{Bar, Entries, Legend};
-use super::lettering::{Area, Canvas, INK, Letters};
+use super::legend::{Bar, Entries, PictureLegend, common_bar};
+use super::lettering::{Canvas, INK, Letters, PixelRectangle};
 use super::picture::{GAMMA, byte};
 use super::scale::tick;
 use crate::products::{Class, Georeference};
 
 /// Colours of the squares behind pixels without data.
 pub(super) const NO_DATA: [[u8; 3]; 2] = [[240; 3], [215; 3]];
+
+/// Text about ends of bars beyond which values lie.
+const CLIPPED: &str = "≤ ≥: clipped at 1st and 99th percentile";
 
 /// ``x 0 to 20 m, y 0 to 10 m``.
 pub(super) fn extent(place: &Georeference, (width, height): (usize, usize)) -> String {
@@ -65,13 +68,23 @@ impl Layout {
         self.rows.push(Row::Gap(self.letters.height() / part));
     }
 
-    pub(super) fn legend(&mut self, legend: &Legend, unit: &str) {
+    pub(super) fn legend(&mut self, legend: &PictureLegend, unit: &str) {
         match &legend.entries {
             Entries::Bars(bars) => {
+                let common = common_bar(bars);
                 for bar in bars {
                     self.text(&heading(bar, bars.len(), unit));
-                    self.rows.push(Row::Ramp(bar.clone()));
+                    if common.is_none() {
+                        self.rows.push(Row::Ramp(bar.clone()));
+                        self.gap(4);
+                    }
+                }
+                if let Some(common) = common {
+                    self.rows.push(Row::Ramp(common));
                     self.gap(4);
+                }
+                if bars.iter().any(|bar| bar.is_clipped.contains(&true)) {
+                    self.text(CLIPPED);
                 }
             }
             Entries::Classes(classes, how) => {
@@ -105,16 +118,16 @@ impl Layout {
     }
 
     /// Place of the picture.
-    pub(super) fn picture(&self) -> Area {
+    pub(super) fn picture(&self) -> PixelRectangle {
         let mut top = self.margin;
         for row in &self.rows {
             if let Row::Picture { width, height } = *row {
                 // In the middle, if letters take more room.
-                return Area { left: self.left_of(width), top, width, height };
+                return PixelRectangle { left: self.left_of(width), top, width, height };
             }
             top += self.height(row);
         }
-        Area { left: self.margin, top, width: 0, height: 0 }
+        PixelRectangle { left: self.margin, top, width: 0, height: 0 }
     }
 
     /// Left side of something as wide as the picture.
@@ -143,7 +156,7 @@ impl Layout {
             Row::Scale { place, zoom, width } => {
                 let (left, width) = (self.left_of(*width), *width);
                 let pixel = place.pixel_width / *zoom as f64;
-                self.draw_scale(Area { left, top, width, height: 0 }, pixel, canvas);
+                self.draw_scale(PixelRectangle { left, top, width, height: 0 }, pixel, canvas);
             }
             Row::Ramp(bar) => self.draw_ramp(bar, top, canvas),
             Row::Class(class) => {
@@ -154,17 +167,21 @@ impl Layout {
     }
 
     /// A bar of a round length on the left, and an arrow to the north on the right.
-    fn draw_scale(&self, row: Area, pixel: f64, canvas: &mut Canvas) {
+    fn draw_scale(&self, row: PixelRectangle, pixel: f64, canvas: &mut Canvas) {
         let line = self.letters.height();
         let thickness = (line / 8).max(1);
         let length = round_length(pixel * 0.4 * row.width as f64);
         let width = ((length / pixel).round() as usize).max(1);
         let top = row.top + line / 2;
         let (left, height) = (row.left, 2 * thickness);
-        canvas.fill(Area { left, top, width, height }, INK);
+        canvas.fill(PixelRectangle { left, top, width, height }, INK);
         for end in [left, left + width.saturating_sub(thickness)] {
-            let tooth =
-                Area { left: end, top: row.top + line / 4, width: thickness, height: line / 2 };
+            let tooth = PixelRectangle {
+                left: end,
+                top: row.top + line / 4,
+                width: thickness,
+                height: line / 2,
+            };
             canvas.fill(tooth, INK);
         }
         let text = format!("{} m", tick(length));
@@ -174,10 +191,11 @@ impl Layout {
             // A triangle that widens downwards, twice as high as wide.
             let half = step / 4;
             let left = tip - half.min(tip);
-            let area = Area { left, top: row.top + step, width: 2 * half + 1, height: 1 };
+            let area = PixelRectangle { left, top: row.top + step, width: 2 * half + 1, height: 1 };
             canvas.fill(area, INK);
         }
-        let shaft = Area { left: tip, top: row.top, width: thickness, height: line + line / 2 };
+        let shaft =
+            PixelRectangle { left: tip, top: row.top, width: thickness, height: line + line / 2 };
         canvas.fill(shaft, INK);
         let name = (tip.saturating_sub(2 * self.letters.width()), row.top);
         canvas.write("N", name, self.letters);
@@ -190,12 +208,10 @@ impl Layout {
             let part = x as f32 / (width.max(2) - 1) as f32;
             let level = byte(part.powf(GAMMA.recip()));
             let colour = bar.channels.map(|is_shown| if is_shown { level } else { 0 });
-            canvas.fill(Area { left: left + x, top, width: 1, height }, colour);
+            canvas.fill(PixelRectangle { left: left + x, top, width: 1, height }, colour);
         }
-        canvas.frame(Area { left, top, width, height }, 1, INK);
-        let numbers =
-            [bar.low, 0.5 * (bar.low + bar.high), bar.high].map(|value| tick(value.into()));
-        for (text, part) in numbers.iter().zip([0.0, 0.5, 1.0]) {
+        canvas.frame(PixelRectangle { left, top, width, height }, 1, INK);
+        for (text, part) in bar.numbers().iter().zip([0.0, 0.5, 1.0]) {
             let room = width.saturating_sub(self.letters.width_of(text));
             let place = (left + (part * room as f64) as usize, top + height + height / 8);
             canvas.write(text, place, self.letters);
@@ -205,7 +221,7 @@ impl Layout {
     /// A square and what its colour means.
     fn draw_swatch(&self, name: &str, swatch: Swatch, top: usize, canvas: &mut Canvas) {
         let (left, side) = (self.margin, self.letters.height());
-        let area = Area { left, top, width: 2 * side, height: side };
+        let area = PixelRectangle { left, top, width: 2 * side, height: side };
         match swatch {
             Swatch::Plain(colour) => canvas.fill(area, colour),
             Swatch::NoData => draw_no_data(area, self.letters, canvas),
@@ -252,7 +268,7 @@ fn round_length(most: f64) -> f64 {
 }
 
 /// Squares of two greys.
-fn draw_no_data(area: Area, letters: Letters, canvas: &mut Canvas) {
+fn draw_no_data(area: PixelRectangle, letters: Letters, canvas: &mut Canvas) {
     let side = (letters.height() / 2).max(1);
     for y in area.top..area.top + area.height {
         for x in area.left..area.left + area.width {

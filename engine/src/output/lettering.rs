@@ -81,7 +81,7 @@ impl Canvas {
     }
 
     /// Fills a rectangle.
-    pub(crate) fn fill(&mut self, area: Area, colour: [u8; 3]) {
+    pub(crate) fn fill(&mut self, area: PixelRectangle, colour: [u8; 3]) {
         for y in area.top..area.top + area.height {
             for x in area.left..area.left + area.width {
                 self.mix((x, y), colour, 255);
@@ -90,22 +90,41 @@ impl Canvas {
     }
 
     /// Draws the outline of a rectangle, outside of it.
-    pub(crate) fn frame(&mut self, area: Area, thickness: usize, colour: [u8; 3]) {
+    pub(crate) fn frame(&mut self, area: PixelRectangle, thickness: usize, colour: [u8; 3]) {
         let left = area.left.saturating_sub(thickness);
         let top = area.top.saturating_sub(thickness);
         let (width, height) = (area.width + 2 * thickness, area.height + 2 * thickness);
-        self.fill(Area { left, top, width, height: thickness }, colour);
-        self.fill(Area { left, top: area.top + area.height, width, height: thickness }, colour);
-        self.fill(Area { left, top, width: thickness, height }, colour);
-        self.fill(Area { left: area.left + area.width, top, width: thickness, height }, colour);
+        self.fill(PixelRectangle { left, top, width, height: thickness }, colour);
+        self.fill(
+            PixelRectangle { left, top: area.top + area.height, width, height: thickness },
+            colour,
+        );
+        self.fill(PixelRectangle { left, top, width: thickness, height }, colour);
+        self.fill(
+            PixelRectangle { left: area.left + area.width, top, width: thickness, height },
+            colour,
+        );
     }
 
-    /// Writes a line of text with its upper left corner at a place; letters that the font lacks are `?`.
+    /// Writes a line of text with its upper left corner at a place; letters that the font lacks are `?`,
+    /// but for `≤` and `≥`, which are underlined `<` and `>`.
     pub(crate) fn write(&mut self, text: &str, (left, top): (usize, usize), letters: Letters) {
         for (index, letter) in text.chars().enumerate() {
             let raster = |letter| get_raster(letter, FontWeight::Regular, letters.raster());
+            let (letter, is_underlined) = match letter {
+                '≤' => ('<', true),
+                '≥' => ('>', true),
+                other => (other, false),
+            };
             let Some(raster) = raster(letter).or_else(|| raster('?')) else { continue };
             let start = left + index * letters.width();
+            if is_underlined {
+                let lowest = raster.rows().rposition(|pixels| pixels.iter().any(|&one| one > 0));
+                let row = lowest.unwrap_or(0) + letters.raster().val() / 8;
+                for column in 1..raster.width() - 1 {
+                    self.dot((start, top), (column, row), letters.scale, u8::MAX);
+                }
+            }
             for (row, pixels) in raster.rows().enumerate() {
                 for (column, &opacity) in pixels.iter().enumerate() {
                     if opacity > 0 {
@@ -134,7 +153,7 @@ impl Canvas {
 
 /// A rectangle of a canvas, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Area {
+pub(crate) struct PixelRectangle {
     pub(crate) left: usize,
     pub(crate) top: usize,
     pub(crate) width: usize,
@@ -156,6 +175,20 @@ mod tests {
         let is_white =
             |x: usize| (0..canvas.height).all(|y| canvas.rgb[3 * (y * canvas.width + x)] == 255);
         assert!(!(0..canvas.width).all(is_white));
+    }
+
+    #[test]
+    fn bounds_are_signs_with_a_line_below() {
+        let letters = Letters::for_width(300);
+        let written = |text| {
+            let mut canvas = Canvas::new(letters.width(), letters.height());
+            canvas.write(text, (0, 0), letters);
+            canvas.rgb
+        };
+        let dark = |text| written(text).iter().filter(|&&byte| byte < 128).count();
+        let line = 3 * (letters.width() - 2);
+        assert_eq!([dark("≤"), dark("≥")], [dark("<") + line, dark(">") + line]);
+        assert_eq!(written("∑"), written("?"));
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Lines of a chart, from the axes of a product.
 
+use super::scale::are_unlike;
+use super::tracks::{SunAngles, Track, axis_of_zeniths, planes, upright};
+use super::view_plane::ViewPlane;
 use crate::products::{AxisPoints, Product, ProductAxis};
 
 /// Maximum number of lines that can be distinguished.
 const MOST_LINES: usize = 8;
-/// Maximum number of vertical planes of views in a chart of lines.
-const MOST_PLANES: usize = 4;
 
 /// A chart of lines.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +15,8 @@ pub(super) struct Lines {
     pub(super) axis: String,
     /// True if that axis is height, and stands upright.
     pub(super) is_profile: bool,
+    /// Zenith angle of the sun, where it lies in a plane of the views: the place of the hot spot, degrees.
+    pub(super) sun: Option<f64>,
     pub(super) curves: Vec<Line>,
     /// Lines that are left out.
     pub(super) hidden: usize,
@@ -24,6 +27,8 @@ pub(super) struct Lines {
 pub(super) struct Line {
     /// Name of the values; empty if there is only one line.
     pub(super) name: String,
+    /// Name of its band; empty of a product without bands.
+    pub(super) band: String,
     pub(super) points: Vec<Point>,
 }
 
@@ -35,17 +40,12 @@ pub(super) struct Point {
     pub(super) error: f64,
 }
 
-/// Places along the first dimension of a product that belong to one line, in rising order.
-struct Track {
-    name: String,
-    /// Place on the axis and number along the dimension.
-    places: Vec<(f64, usize)>,
-}
-
 impl Lines {
     /// Values by zenith angle, one line for each vertical plane and band; or by height, one for each material
     /// and band. Nothing of other products, of views all over the hemisphere, and of single points.
-    pub(super) fn new(product: &Product) -> Option<Self> {
+    ///
+    /// - `sun`: position of the sun, if it is known
+    pub(super) fn new(product: &Product, sun: Option<SunAngles>) -> Option<Self> {
         if product.image.is_some() || product.faces.is_some() {
             return None;
         }
@@ -54,13 +54,8 @@ impl Lines {
             match (numbers(first, "zenith_deg"), numbers(first, "bottom_m")) {
                 (Some(zeniths), _) => {
                     let azimuths = numbers(first, "azimuth_deg")?;
-                    let mut tracks = planes(&upright(zeniths, azimuths))?;
-                    let mut title = "zenith angle (°)".to_owned();
-                    if let [track] = &mut tracks[..]
-                        && !track.name.is_empty()
-                    {
-                        title = format!("{title}, {}", std::mem::take(&mut track.name));
-                    }
+                    let mut tracks = planes(&upright(zeniths, azimuths), sun)?;
+                    let title = axis_of_zeniths(&mut tracks);
                     (tracks, title, false)
                 }
                 (_, Some(bottoms)) => {
@@ -68,7 +63,8 @@ impl Lines {
                     let middles =
                         bottoms.iter().zip(tops).map(|(bottom, top)| 0.5 * (bottom + top));
                     let places = middles.zip(0..).collect();
-                    (vec![Track { name: String::new(), places }], "height (m)".to_owned(), true)
+                    let track = Track { name: String::new(), plane: None, places };
+                    (vec![track], "height (m)".to_owned(), true)
                 }
                 _ => return None,
             };
@@ -81,6 +77,12 @@ impl Lines {
         let first =
             others.first().and_then(|axes| axes.first()).map_or(1, |axis| axis.points.len());
         let of_group = if others.len() > 1 { each / first.max(1) } else { each }.max(1);
+        let band_of = |other: usize| match others.last().and_then(|axes| axes.first()) {
+            Some(ProductAxis { name, points: AxisPoints::Labels(bands) }) if name == "band" => {
+                bands[other % bands.len().max(1)].clone()
+            }
+            _ => String::new(),
+        };
         let mut lines = Vec::new();
         for other in 0..each {
             for track in &tracks {
@@ -95,7 +97,7 @@ impl Lines {
                     points.into_iter().filter(|point| point.value.is_finite()).collect();
                 let mut names = names_of(others, other);
                 names.extend(Some(track.name.clone()).filter(|name| !name.is_empty()));
-                let line = Line { name: names.join(", "), points };
+                let line = Line { name: names.join(", "), band: band_of(other), points };
                 lines.push(GroupedLine { group: other / of_group, line });
             }
         }
@@ -109,7 +111,34 @@ impl Lines {
         if let [line] = &mut lines[..] {
             line.name.clear();
         }
-        (!lines.is_empty()).then_some(Self { axis, is_profile, curves: lines, hidden })
+        let is_principal = |track: &Track| track.plane == Some(ViewPlane::Principal);
+        let sun = sun.filter(|_| tracks.iter().any(is_principal)).map(|sun| sun.zenith_deg);
+        (!lines.is_empty()).then_some(Self { axis, is_profile, sun, curves: lines, hidden })
+    }
+
+    /// Numbers of the lines of each panel: all in one, or those of each band alone where bands are so unlike in size that
+    /// they are not legible on one axis.
+    pub(super) fn panels(&self) -> Vec<Vec<usize>> {
+        let mut bands: Vec<(&str, Vec<usize>)> = Vec::new();
+        for (number, line) in self.curves.iter().enumerate() {
+            match bands.iter_mut().find(|(band, _)| *band == line.band) {
+                Some((_, lines)) => lines.push(number),
+                None => bands.push((&line.band, vec![number])),
+            }
+        }
+        let peak =
+            |lines: &[usize]| lines.iter().map(|&at| self.curves[at].peak()).fold(0.0, f64::max);
+        if are_unlike(bands.iter().map(|(_, lines)| peak(lines))) {
+            return bands.into_iter().map(|(_, lines)| lines).collect();
+        }
+        vec![(0..self.curves.len()).collect()]
+    }
+}
+
+impl Line {
+    /// Largest absolute value.
+    fn peak(&self) -> f64 {
+        self.points.iter().map(|point| point.value.abs()).fold(0.0, f64::max)
     }
 }
 
@@ -126,15 +155,14 @@ fn thinned(lines: Vec<GroupedLine>) -> (Vec<Line>, usize) {
     if count <= MOST_LINES {
         return (lines.into_iter().map(|one| one.line).collect(), 0);
     }
-    let peak = |line: &Line| line.points.iter().map(|point| point.value.abs()).fold(0.0, f64::max);
     let mut groups: Vec<(usize, f64, usize)> = Vec::new();
     for GroupedLine { group, line } in &lines {
         match groups.last_mut() {
             Some((last, highest, members)) if last == group => {
-                *highest = highest.max(peak(line));
+                *highest = highest.max(line.peak());
                 *members += 1;
             }
-            _ => groups.push((*group, peak(line), 1)),
+            _ => groups.push((*group, line.peak(), 1)),
         }
     }
     groups.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -186,62 +214,6 @@ fn names_of(dimensions: &[Vec<ProductAxis>], mut number: usize) -> Vec<String> {
     names
 }
 
-/// Zenith angles and azimuths of views, with negative zenith angles turned to the other side.
-fn upright(zeniths: &[f64], azimuths: &[f64]) -> Vec<(f64, f64)> {
-    let view = |(&zenith, &azimuth): (&f64, &f64)| {
-        if zenith < 0.0 {
-            (-zenith, (azimuth + 180.0).rem_euclid(360.0))
-        } else {
-            (zenith, azimuth)
-        }
-    };
-    zeniths.iter().zip(azimuths).map(view).collect()
-}
-
-/// Views by the vertical plane that they lie in, with signed zenith angles: positive towards the azimuth of
-/// the last view of the plane. Nadir views lie in all planes.
-fn planes(views: &[(f64, f64)]) -> Option<Vec<Track>> {
-    let (zeniths, azimuths): (Vec<f64>, Vec<f64>) = views.iter().copied().unzip();
-    let is_slanted = |view: usize| zeniths[view] > 1e-9;
-    let across = |a: f64, b: f64| {
-        let turn = (a - b).rem_euclid(180.0);
-        turn.min(180.0 - turn)
-    };
-    // The last view of each plane first.
-    let mut references: Vec<f64> = Vec::new();
-    for view in (0..zeniths.len()).rev().filter(|&view| is_slanted(view)) {
-        if references.iter().all(|&azimuth| across(azimuth, azimuths[view]) > 1e-6) {
-            references.push(azimuths[view]);
-        }
-    }
-    if references.len() > MOST_PLANES || references.is_empty() {
-        return None;
-    }
-    references.reverse();
-    let is_single = references.len() == 1;
-    let track = |reference: f64| {
-        let place = |view: usize| {
-            if !is_slanted(view) {
-                return Some((0.0, view));
-            }
-            let turn = (azimuths[view] - reference).rem_euclid(360.0);
-            let is_behind = (turn - 180.0).abs() < 90.0;
-            let sign = if is_behind { -1.0 } else { 1.0 };
-            (across(azimuths[view], reference) <= 1e-6).then_some((sign * zeniths[view], view))
-        };
-        let mut places: Vec<(f64, usize)> = (0..zeniths.len()).filter_map(place).collect();
-        places.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let has_sign = places.iter().any(|place| place.0 < 0.0);
-        let name = match (is_single, has_sign) {
-            (true, false) => String::new(),
-            (_, false) => format!("azimuth {}°", super::scale::tick(reference)),
-            _ => format!("+ towards {}°", super::scale::tick(reference)),
-        };
-        Track { name, places }
-    };
-    Some(references.into_iter().map(track).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,12 +246,48 @@ mod tests {
             axis("zenith_deg", &[30.0, 0.0, 30.0]),
             axis("azimuth_deg", &[335.0, 155.0, 155.0]),
         ];
-        let lines = Lines::new(&product(vec![views, bands(&["red"])], &[1.0, 2.0, 3.0]));
+        let lines = Lines::new(&product(vec![views, bands(&["red"])], &[1.0, 2.0, 3.0]), None);
         let lines = lines.expect("a chart");
         assert_eq!(lines.curves.len(), 1);
         let places: Vec<(f64, f64)> =
             lines.curves[0].points.iter().map(|point| (point.at, point.value)).collect();
         assert_eq!(places, [(-30.0, 1.0), (0.0, 2.0), (30.0, 3.0)]);
+    }
+
+    /// The last view is opposite of the sun: positive zenith angles are on the side of the sun all the same.
+    #[test]
+    fn the_principal_plane_has_the_sun_on_its_positive_side() {
+        let views = || {
+            vec![axis("zenith_deg", &[30.0, 0.0, 30.0]), axis("azimuth_deg", &[10.0, 10.0, 190.0])]
+        };
+        let lines = |azimuth_deg: f64| {
+            let sun = Some(SunAngles { zenith_deg: 40.0, azimuth_deg });
+            Lines::new(&product(vec![views(), bands(&["red"])], &[1.0, 2.0, 3.0]), sun)
+                .expect("a chart")
+        };
+        let values = |lines: &Lines| -> Vec<f64> {
+            lines.curves[0].points.iter().map(|point| point.value).collect()
+        };
+        let principal = lines(10.0);
+        assert_eq!((values(&principal), principal.sun), (vec![3.0, 2.0, 1.0], Some(40.0)));
+        assert!(principal.axis.contains("+ backward scattering (side of the sun)"));
+        let cross = lines(280.0);
+        assert_eq!((values(&cross), cross.sun), (vec![3.0, 2.0, 1.0], None));
+        assert_eq!(cross.axis, "cross plane, view zenith (°), + clockwise of the sun");
+        assert_eq!(lines(55.0).axis, "view zenith (°), + towards 190°");
+    }
+
+    #[test]
+    fn bands_of_unlike_size_have_panels_of_their_own() {
+        let layers = || vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
+        let panels = |red: f64| {
+            let values = [red, 0.4, 0.5 * red, 0.3];
+            Lines::new(&product(vec![layers(), bands(&["red", "nir"])], &values), None)
+                .expect("a chart")
+                .panels()
+        };
+        assert_eq!(panels(0.2), [vec![0, 1]]);
+        assert_eq!(panels(0.02), [vec![0], vec![1]]);
     }
 
     #[test]
@@ -291,7 +299,7 @@ mod tests {
         };
         let values: Vec<f64> = (0..8).map(f64::from).collect();
         let of = |azimuths: &[f64]| {
-            Lines::new(&product(vec![views(azimuths), bands(&["red", "nir"])], &values))
+            Lines::new(&product(vec![views(azimuths), bands(&["red", "nir"])], &values), None)
         };
         let two = of(&[0.0, 0.0, 90.0, 90.0]).expect("a chart");
         let names: Vec<&str> = two.curves.iter().map(|line| line.name.as_str()).collect();
@@ -303,14 +311,14 @@ mod tests {
             vec![views(&[0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0]), bands(&["red"])],
             &values,
         );
-        assert_eq!(Lines::new(&all), None);
+        assert_eq!(Lines::new(&all, None), None);
     }
 
     #[test]
     fn layers_are_a_profile() {
         let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
         let lines =
-            Lines::new(&product(vec![layers, bands(&["red", "nir"])], &[1.0, 2.0, 3.0, 4.0]));
+            Lines::new(&product(vec![layers, bands(&["red", "nir"])], &[1.0, 2.0, 3.0, 4.0]), None);
         let lines = lines.expect("a chart");
         assert!(lines.is_profile);
         assert_eq!(lines.curves[1].points[1], Point { at: 3.0, value: 4.0, error: 0.1 });
@@ -321,7 +329,7 @@ mod tests {
         let layers = vec![axis("bottom_m", &[0.0, 2.0]), axis("top_m", &[2.0, 4.0])];
         let names: Vec<String> = (0..20).map(|band| format!("b{band}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let lines = Lines::new(&product(vec![layers, bands(&names)], &[1.0; 40]));
+        let lines = Lines::new(&product(vec![layers, bands(&names)], &[1.0; 40]), None);
         let lines = lines.expect("a chart");
         assert_eq!((lines.curves.len(), lines.hidden), (8, 12));
         assert_eq!((lines.curves[0].name.as_str(), lines.curves[7].name.as_str()), ("b0", "b19"));
@@ -338,7 +346,7 @@ mod tests {
         // Of 4 materials the first and the third absorb most.
         let values: Vec<f64> = (0..24).map(|at| [4.0, 1.0, 3.0, 2.0][at / 3 % 4]).collect();
         let all = product(vec![layers, material, bands(&["blue", "red", "nir"])], &values);
-        let lines = Lines::new(&all).expect("a chart");
+        let lines = Lines::new(&all, None).expect("a chart");
         let names: Vec<&str> = lines.curves.iter().map(|line| line.name.as_str()).collect();
         let [grass, leaf] = ["grass", "leaf"]
             .map(|material| ["blue", "red", "nir"].map(|band| format!("{material}, {band}")));

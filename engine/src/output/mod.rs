@@ -46,6 +46,9 @@ mod swap;
 mod sweep;
 mod sweep_datasets;
 mod table;
+mod titles;
+mod tracks;
+mod view_plane;
 mod web_page;
 mod zarr;
 
@@ -71,10 +74,12 @@ pub use provenance::{RecipeRecord, RecordError, read_record};
 pub use results::{COEFFICIENTS, Results, ResultsOrigin, Written};
 pub use rows::{harmless, number};
 pub use run_record::RunRecord;
-pub use scale::{axis_title, range_of, tick};
+pub use scale::{are_unlike, axis_title, range_of, tick};
 pub use size::{file_size, memory_of_files};
 pub use sweep::SweepTable;
 pub use table::table;
+pub use titles::{product_title, unit_text, value_axis_title};
+pub use view_plane::ViewPlane;
 pub use web_page::{REPORT, REPORT_HEAD, is_report};
 
 /// Error of writing a report; no part of it is on disk.
@@ -170,12 +175,11 @@ fn put_chart(
     name: &str,
     staging: &mut staging::Staging,
 ) -> Result<u64, OutputError> {
-    let Some(lines) = lines::Lines::new(source.product) else { return Ok(0) };
+    let Some(lines) = lines::Lines::new(source.product, source.sun()) else { return Ok(0) };
     let heading = chart::Heading {
-        title: format!("{}: {}", source.sensor, source.product.name.replace('_', " ")),
+        title: format!("{}: {}", source.sensor, product_title(&source.product.name)),
         scene: &source.report.scene,
-        quantity: &source.product.name,
-        unit: &source.product.unit,
+        values: value_axis_title(&source.product.name, &source.product.unit),
         provenance: &source.provenance_json(),
     };
     staging.file(name, |file| file.write_all(chart::draw(&lines, &heading)?.as_bytes()))
@@ -231,6 +235,12 @@ impl Source<'_> {
         }
         let (sensor, product) = (self.sensor.to_owned(), self.product.name.clone());
         Err(OutputError::Shape { sensor, product, what, expected, found })
+    }
+
+    /// Zenith angle and azimuth of the sun, if it is above the horizon.
+    fn sun(&self) -> Option<tracks::SunAngles> {
+        let Report { sun_zenith_deg, sun_azimuth_deg, .. } = self.report;
+        Some(tracks::SunAngles { zenith_deg: (*sun_zenith_deg)?, azimuth_deg: (*sun_azimuth_deg)? })
     }
 
     /// Centre wavelengths of an image's bands, nm; NaN for a band that the report does not list.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::colour::Mixture;
 use super::composite::{Composite, Stretch};
-use super::legend::{Entries, Legend};
+use super::legend::{Entries, PictureLegend};
 use super::picture_input::PictureInput;
 use crate::products::{Channels, Class, Rendering};
 
@@ -19,12 +19,12 @@ pub(super) const GAMMA: f32 = 2.2;
 
 /// An sRGB picture with opacity, painted some rows at a time.
 #[derive(Debug)]
-pub(super) struct Picture<'a> {
+pub(super) struct PicturePainter<'a> {
     input: &'a PictureInput<'a>,
     colours: Colours<'a>,
     /// Bands that are read.
     bands: Vec<usize>,
-    pub(super) legend: Legend,
+    pub(super) legend: PictureLegend,
 }
 
 /// Rule by which pixels are coloured.
@@ -39,7 +39,7 @@ enum Colours<'a> {
     Mixture(Mixture, f64),
 }
 
-impl<'a> Picture<'a> {
+impl<'a> PicturePainter<'a> {
     /// Picture as the rendering of an image says, with its legend.
     ///
     /// # Errors
@@ -51,12 +51,12 @@ impl<'a> Picture<'a> {
             Rendering::Quicklook => Self::composite(input, &Composite::new(wavelengths, &has_data)),
             Rendering::Map { zero } => Self::map(input, zero.as_deref()),
             Rendering::Classes(classes) => {
-                let legend = Legend::classes(classes, "largest share of a pixel");
+                let legend = PictureLegend::classes(classes, "largest share of a pixel");
                 Ok(Self { input, colours: Colours::Classes(classes), bands: vec![0], legend })
             }
             Rendering::Shares(classes) => {
                 let (colours, bands) = (Colours::Shares(classes), (0..image.bands.len()).collect());
-                let legend = Legend::classes(classes, "mixed by their shares");
+                let legend = PictureLegend::classes(classes, "mixed by their shares");
                 Ok(Self { input, colours, bands, legend })
             }
             Rendering::Colours { channels: Channels::Bands(bands), exposure: None, .. } => {
@@ -76,7 +76,8 @@ impl<'a> Picture<'a> {
                     Some(stops) => stops.exp2(),
                     None => mixture.automatic(input)?,
                 };
-                let (bands, legend) = (mixture.bands(), Legend::exposed(image, *channels, gain));
+                let (bands, legend) =
+                    (mixture.bands(), PictureLegend::exposed(image, *channels, gain));
                 Ok(Self { input, colours: Colours::Mixture(mixture, gain), bands, legend })
             }
         }
@@ -87,7 +88,7 @@ impl<'a> Picture<'a> {
     /// - `zero`: meaning of 0, if it has a colour of its own
     fn map(input: &'a PictureInput<'a>, zero: Option<&str>) -> io::Result<Self> {
         let stretch = Stretch::over_all(input, 0, zero.is_some())?;
-        let legend = Legend {
+        let legend = PictureLegend {
             entries: Entries::Bars(vec![stretch.bar(input.image.bands[0].clone())]),
             dark: Vec::new(),
             zero: zero.map(|name| Class { name: format!("0: {name}"), colour: ZERO }),
@@ -366,7 +367,7 @@ mod tests {
         let one = image(&["b", "g", "r"], (0..3 * 70).map(|i| (i * 37 % 101) as f32).collect());
         let tall = in_rows_of(2, one);
         let input = input(&tall, &[450.0, 550.0, 650.0]);
-        let picture = Picture::new(&input).expect("a picture");
+        let picture = PicturePainter::new(&input).expect("a picture");
         let whole = picture.paint(0..35).expect("rows");
         let parts = [0..16, 16..32, 32..35].map(|rows| picture.paint(rows).expect("rows"));
         assert_eq!(whole, parts.concat());

@@ -11,14 +11,14 @@ use crate::products::Image;
 
 /// Bands of an image that hold something to show.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct LitBands {
+pub(super) struct BandsWithData {
     /// True for each band with a value other than 0.
     is_lit: Vec<bool>,
     /// True if any value is finite.
     has_values: bool,
 }
 
-impl LitBands {
+impl BandsWithData {
     /// None of so many bands, before any pixel.
     pub(super) fn new(bands: usize) -> Self {
         Self { is_lit: vec![false; bands], has_values: false }
@@ -53,7 +53,7 @@ pub(super) struct PictureInput<'a> {
     pub(super) image: &'a Image,
     /// Centre wavelengths of its bands, nm; NaN where unknown.
     pub(super) wavelengths: Vec<f64>,
-    pub(super) lit: LitBands,
+    pub(super) lit: BandsWithData,
     /// Rasters of values, and of errors and coverage.
     pub(super) values: File,
     pub(super) errors: File,
@@ -86,8 +86,8 @@ impl PictureInput<'_> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 pub(super) mod tests {
-    use super::super::envi::Raster;
-    use super::super::picture::Picture;
+    use super::super::envi::ImageRaster;
+    use super::super::picture::PicturePainter;
     use super::*;
     use crate::products::{PixelRows, Rendering};
 
@@ -124,13 +124,13 @@ pub(super) mod tests {
 
     /// Input for the picture of an image, whose rasters are written to temporary files.
     pub(in crate::output) fn input<'a>(image: &'a Image, wavelengths: &[f64]) -> PictureInput<'a> {
-        let mut lit = LitBands::new(image.bands.len());
+        let mut lit = BandsWithData::new(image.bands.len());
         let [mut values, mut errors] = [(); 2].map(|()| tempfile::tempfile().unwrap());
         for rows in image.blocks() {
             let block = BandRows::new(image, rows.clone(), image.pixels.rows(rows).unwrap());
             lit.add(&block);
-            envi::write_rows(image, Raster::Values, &block, &mut values).unwrap();
-            envi::write_rows(image, Raster::Errors, &block, &mut errors).unwrap();
+            envi::write_rows(image, ImageRaster::Values, &block, &mut values).unwrap();
+            envi::write_rows(image, ImageRaster::Errors, &block, &mut errors).unwrap();
         }
         PictureInput { image, wavelengths: wavelengths.to_vec(), lit, values, errors }
     }
@@ -138,7 +138,7 @@ pub(super) mod tests {
     /// Pixels and dark bands of the picture of an image.
     pub(in crate::output) fn painted(image: &Image, wavelengths: &[f64]) -> (Vec<u8>, Vec<String>) {
         let input = input(image, wavelengths);
-        let picture = Picture::new(&input).unwrap();
+        let picture = PicturePainter::new(&input).unwrap();
         (picture.paint(0..image.height).unwrap(), picture.legend.dark.clone())
     }
 }

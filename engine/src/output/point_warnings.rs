@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 
+use crate::counts::counted;
 use crate::products::SweepPoint;
 
 /// Warnings of points of a sweep: equal ones are one text.
@@ -37,8 +38,7 @@ impl PointWarnings {
     pub fn texts(&self) -> impl Iterator<Item = String> {
         self.found.iter().map(|(warning, PointsWithWarning { first, others })| match others {
             0 => format!("at {first}: {warning}"),
-            1 => format!("at {first} and 1 more point: {warning}"),
-            _ => format!("at {first} and {others} more points: {warning}"),
+            _ => format!("at {first} and {}: {warning}", counted(others, "more point")),
         })
     }
 }

@@ -23,6 +23,8 @@ pub fn tick(value: f64) -> String {
 pub fn axis_title(name: &str) -> String {
     let (name, unit) = match name.rsplit_once('_') {
         Some((name, "deg")) => (name, "°"),
+        Some((name, "k")) => (name, "K"),
+        Some((name, "m2")) => (name, "m²"),
         Some((name, unit @ ("m" | "nm" | "s" | "sr"))) => (name, unit),
         _ => return name.replace('_', " "),
     };
@@ -46,6 +48,20 @@ pub fn range_of(values: impl IntoIterator<Item = f64>) -> std::ops::Range<f64> {
     low - room..high + room
 }
 
+/// Ratio of the largest values of lines from which on the smaller one is not legible on the axis of the larger one.
+const UNLIKE: f64 = 4.0;
+
+/// Returns whether values are so unlike in size that they need axes of their own.
+///
+/// - `peaks`: largest absolute value of each line; those of lines without values, or of 0 alone, do not count
+#[must_use]
+pub fn are_unlike(peaks: impl IntoIterator<Item = f64>) -> bool {
+    let known = peaks.into_iter().filter(|peak| peak.is_finite() && *peak > 0.0);
+    let (low, high) =
+        known.fold((f64::INFINITY, 0.0_f64), |(low, high), peak| (low.min(peak), high.max(peak)));
+    high > UNLIKE * low
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,6 +76,13 @@ mod tests {
     fn units_stand_behind_names() {
         assert_eq!(axis_title("zenith_deg"), "zenith (°)");
         assert_eq!(axis_title("relative_azimuth_deg"), "relative azimuth (°)");
+        assert_eq!(axis_title("soil_k"), "soil (K)");
         assert_eq!(axis_title("band"), "band");
+    }
+
+    #[test]
+    fn bands_of_a_tenth_need_an_axis_of_their_own() {
+        assert!(are_unlike([0.4, 0.04]) && !are_unlike([0.4, 0.11]));
+        assert!(!are_unlike([0.4, 0.0, f64::NAN]) && !are_unlike([]));
     }
 }

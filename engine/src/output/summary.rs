@@ -304,7 +304,7 @@ fn entry<'a>(report: &Report, product: &'a Product, names: &ProductNames) -> Ent
             (_, Some(_)) => vec![names.ply()],
             (Some(_), _) => names.image(&report.formats),
             (None, None) => {
-                let chart = Lines::new(product).map(|_| names.svg());
+                let chart = Lines::new(product, None).map(|_| names.svg());
                 std::iter::once(names.csv()).chain(chart).collect()
             }
         },

@@ -1,5 +1,6 @@
 use glam::DVec2;
 
+use crate::counts::counted;
 use crate::memory::Lack;
 
 /// Error of a rule that cannot place its stems.
@@ -32,14 +33,14 @@ pub enum PlacementError {
     #[error("{stems:.3e} stems take {lack}; use fewer")]
     NoMemory { stems: f64, lack: Lack },
     #[error(
-        "only {placed} of {wanted} stems stand {distance} m apart, then no place is left: at random \
+        "only {placed} of {} stand {distance} m apart, then no place is left: at random \
          about {at_random:.0} find a place here, and in the tightest order (rows of equilateral \
-         triangles) {at_most:.0}"
+         triangles) {at_most:.0}", counted(.wanted, "stem")
     )]
     NoRoom { placed: usize, wanted: usize, distance: f64, at_random: f64, at_most: f64 },
     #[error(
-        "the raster asks for {wanted} stems around ({:.1}, {:.1}), {distance} m apart: no place is left \
-         there", .at.x, .at.y
+        "the raster asks for {} around ({:.1}, {:.1}), {distance} m apart: no place is left \
+         there", counted(.wanted, "stem"), .at.x, .at.y
     )]
     NoRoomInMap { wanted: usize, at: DVec2, distance: f64 },
     #[error(

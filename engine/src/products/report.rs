@@ -177,6 +177,8 @@ pub struct Report {
     pub params: Vec<(String, Param)>,
     /// Azimuth of the sun, degrees clockwise from north, if there is one.
     pub sun_azimuth_deg: Option<f64>,
+    /// Zenith angle of the sun, degrees, if it is above the horizon.
+    pub sun_zenith_deg: Option<f64>,
     /// File that the scene was read from; `None` for a scene that was built.
     pub source: Option<SceneSource>,
     /// Coefficients of products of spectra, as a file that `respectrum` reads, if the run kept some.

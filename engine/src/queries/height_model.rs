@@ -17,6 +17,7 @@ use super::surfaces::{
     SurfaceTree, prototype_trees,
 };
 use crate::components::{Instance, TerrainPatch};
+use crate::counts::counted;
 
 /// Heights of a scene by cell of the ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,9 @@ pub struct HeightModel {
 /// Error of a height model of more cells than fit into memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{columns} columns and {rows} rows of heights take {needed} bytes of memory, and {free} are free: choose larger cells"
+    "{} and {} of heights take {needed} bytes of memory, and {free} are free: choose larger cells",
+    counted(.columns, "column"),
+    counted(.rows, "row")
 )]
 pub struct TooManyCells {
     /// Number of cells from west to east.

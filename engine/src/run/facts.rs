@@ -12,6 +12,7 @@ use crate::accel::Ray;
 use crate::components::{
     MaterialId, Name, ResolvedSensor, SceneId, StopCriterion, SunLight, SurfaceOptics, TerrainPatch,
 };
+use crate::counts::counted;
 use crate::document::{self, Diagnostic, PhotonMeasure, Scene, ScenePath};
 use crate::extract::Stage;
 use crate::products::{BandSources, Context};
@@ -399,6 +400,6 @@ fn ends(stop: &StopCriterion) -> String {
             format!("relative error of {}", texts.collect::<Vec<_>>().join(", "))
         }
         StopCriterion::Seconds(limit) => format!("{limit:?} s"),
-        StopCriterion::Samples(limit) => format!("{limit} samples"),
+        StopCriterion::Samples(limit) => counted(limit, "sample"),
     }
 }

@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use crate::counts::counted;
 use crate::document::{Diagnostic, Source, legible};
 use crate::queries::{LeafAreaError, TooManyCells};
 
@@ -33,7 +34,7 @@ pub enum Failure {
         /// Checkpoint that holds what was done.
         saved: Option<PathBuf>,
     },
-    #[error("could not start {threads} threads: {reason}")]
+    #[error("could not start {}: {reason}", counted(.threads, "thread"))]
     Threads { threads: usize, reason: String },
     #[error(transparent)]
     LeafArea(#[from] LeafAreaError),

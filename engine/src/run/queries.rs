@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::pool::in_pool;
 use super::provenance::{self, FileHashes};
 use super::{Failure, LoadedScene, Options, Progress, params, projection, scene_source};
+use crate::counts::counted;
 use crate::document::{Boundary, Sun};
 use crate::products::{
     Forecast, Product, Report, SensorReport, height_products, leaf_area_products,
@@ -102,9 +103,9 @@ pub fn height_model_file(
 /// Text about the cells and heights of a height model.
 fn height_notes(HeightModel { grid, .. }: &HeightModel) -> Vec<String> {
     let mut notes = vec![format!(
-        "{} columns x {} rows of {:.4} m x {:.4} m; the highest point of each triangle and disc above a cell, exactly",
-        grid.columns,
-        grid.rows,
+        "{} x {} of {:.4} m x {:.4} m; the highest point of each triangle and disc above a cell, exactly",
+        counted(grid.columns, "column"),
+        counted(grid.rows, "row"),
         grid.size.x / grid.columns as f64,
         grid.size.y / grid.rows as f64
     )];
@@ -172,6 +173,7 @@ fn report(
         sensors: vec![sensor],
         params: params(scene),
         sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
+        sun_zenith_deg: scene.sun.as_ref().and_then(Sun::angles_deg).map(|angles| angles.0),
         source: Some(scene_source(path, options)),
         coefficients: None,
         recipe: None,
@@ -179,9 +181,9 @@ fn report(
 }
 
 /// Text about the cells, and about what was counted.
-fn leaf_area_notes(counted: &LeafAreaGrid) -> Vec<String> {
-    let grid = &counted.grid;
-    let surfaces = counted.classes.join(", ");
+fn leaf_area_notes(areas: &LeafAreaGrid) -> Vec<String> {
+    let grid = &areas.grid;
+    let surfaces = areas.classes.join(", ");
     let heights = match grid.heights {
         HeightReference::Ground => "above the ground below the middle of each triangle or disc",
         HeightReference::Absolute => "of the local frame",
@@ -189,12 +191,12 @@ fn leaf_area_notes(counted: &LeafAreaGrid) -> Vec<String> {
     vec![
         format!("one-sided area of {surfaces}, per m² of the terrain's rectangle"),
         format!(
-            "{} columns x {} rows of {:.4} m x {:.4} m, {} layers of {:.4} m from {:.4} m; heights {heights}",
-            grid.columns,
-            grid.rows,
+            "{} x {} of {:.4} m x {:.4} m, {} of {:.4} m from {:.4} m; heights {heights}",
+            counted(grid.columns, "column"),
+            counted(grid.rows, "row"),
             grid.size.x / grid.columns as f64,
             grid.size.y / grid.rows as f64,
-            grid.layers,
+            counted(grid.layers, "layer"),
             grid.thickness,
             grid.bottom
         ),

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::assets::{AssetError, BandRaster, RasterBand, read_bands};
+use crate::counts::counted;
 use crate::document::{FileFormat, THERMAL_NM, nearest};
 use crate::output::RunRecord;
 use crate::products::{
@@ -44,7 +45,12 @@ pub enum RadianceError {
         file.display()
     )]
     NoUnit { file: PathBuf, option: &'static str },
-    #[error("{}: has {found} bands, and {option} has {given} values; write one for each band: {names}", file.display())]
+    #[error(
+        "{}: has {}, and {option} has {}; write one for each band: {names}",
+        file.display(),
+        counted(.found, "band"),
+        counted(.given, "value")
+    )]
     Count { file: PathBuf, found: usize, given: usize, option: &'static str, names: String },
     #[error(
         "{}: there is no `summary.json` beside it that says the {what} of band `{band}`{near}; write {option}",

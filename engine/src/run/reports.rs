@@ -96,6 +96,7 @@ pub(super) fn reports(scenes: &[SettledScene], mut common: CommonResults<'_>) ->
             sensors,
             params: params(scene),
             sun_azimuth_deg: scene.sun.as_ref().and_then(Sun::known_azimuth_deg),
+            sun_zenith_deg: scene.sun.as_ref().and_then(Sun::angles_deg).map(|angles| angles.0),
             source: None,
             coefficients: common.coefficients.clone(),
             recipe: recipe(settled),

@@ -7,6 +7,7 @@ use super::scene_world::SceneWorld;
 use super::setting::setting;
 use crate::accel::{BuildError, TwoLevelBvh};
 use crate::components::{InstanceCount, SceneExtents, SceneId};
+use crate::counts::counted;
 use crate::document::{Diagnostic, Scene, ScenePath};
 use crate::extract::{SceneOptics, Setting, Stage, extract};
 use crate::products::data_size;
@@ -102,11 +103,11 @@ fn check_memory(extents: &SceneExtents, free: u64) -> Option<Diagnostic> {
         return None;
     }
     let message = format!(
-        "the ray engine takes {} of memory for {} triangles and discs in meshes and {} instances, images \
+        "the ray engine takes {} of memory for {} in meshes and {}, images \
              in neighbouring tiles included, and {} are free",
         data_size(all),
-        extents.primitives,
-        extents.records,
+        counted(extents.primitives, "triangle or disc"),
+        counted(extents.records, "instance"),
         data_size(free)
     );
     let (path, help) = if records > meshes {

@@ -3,6 +3,7 @@ use hecs::World;
 use super::Resources;
 use super::measure_bounds::placed_meshes;
 use crate::components::{InstanceCount, TerrainPatch};
+use crate::counts::counted;
 use crate::document::{Diagnostic, Per, PhotonMeasure, ScenePath, Sensor};
 
 /// Memory of the sums of one triangle or instance in one band and of the products made of them, bytes.
@@ -38,8 +39,8 @@ fn problem(path: &ScenePath, per: Per, world: &World, resources: &Resources) -> 
         triangles += count * mesh.primitives;
     }
     let (count, what, help) = match per {
-        Per::Instance => (instances, "instances", "measure `Fapar`, by material"),
-        Per::Triangle => (triangles, "triangles", "measure `Absorbed(per: Instance)`"),
+        Per::Instance => (instances, "instance", "measure `Fapar`, by material"),
+        Per::Triangle => (triangles, "triangle", "measure `Absorbed(per: Instance)`"),
     };
     let bands = resources.bands.len();
     let gib = (count * bands * ABSORBED_BYTES) as f64 / f64::from(1 << 30);
@@ -47,7 +48,9 @@ fn problem(path: &ScenePath, per: Per, world: &World, resources: &Resources) -> 
         return None;
     }
     let message = format!(
-        "absorption by {count} {what} in {bands} bands takes {gib:.1} GiB; at most {MOST_GIB} are allowed"
+        "absorption by {} in {} takes {gib:.1} GiB; at most {MOST_GIB} are allowed",
+        counted(count, what),
+        counted(bands, "band")
     );
     Some(Diagnostic::error(path, message).help(format!("{help}, or fewer bands or trees")))
 }

@@ -11,7 +11,8 @@ use super::measure_bounds::{MeshSummary, placed_meshes};
 use crate::components::{
     Instance, InstanceQuery, Placement, Position, SceneExtents, SceneId, TerrainPatch,
 };
-use crate::document::{Diagnostic, HEIGHT, LENGTH, Range, SCALE, ScenePath};
+use crate::counts::{agreeing, counted};
+use crate::document::{Diagnostic, HEIGHT, LENGTH, LawfulRange, SCALE, ScenePath};
 use crate::geometry::Bounds;
 
 /// Tiles that a periodic scene may be high: scattered light crosses one and a half times as many on
@@ -246,7 +247,14 @@ fn check_duplicates(world: &World, meshes: &BTreeMap<u32, MeshSummary>, resource
         resources.report(Diagnostic::error(path, message).help(help));
     } else {
         let message = format!(
-            "{duplicates} instances stand exactly where others of the same mesh do, turned and scaled alike"
+            "{} exactly where {} of the same mesh {}, turned and scaled alike",
+            format_args!(
+                "{} {}",
+                counted(duplicates, "instance"),
+                agreeing(duplicates, "stands", "stand")
+            ),
+            agreeing(duplicates, "another one", "others"),
+            agreeing(duplicates, "does", "do")
         );
         let help = format!("{count} of `{name}` stand at ({x}, {y}, {z}): keep one");
         resources.report(Diagnostic::warning(path, message).help(help));
@@ -271,7 +279,7 @@ fn may_hold_duplicates(world: &World) -> bool {
 /// Problem with the place of an instance, and advice.
 fn problem_of_place(placement: &Placement) -> Option<(String, &'static str)> {
     let Placement { position, scale, .. } = placement;
-    let all: [(&Range, f64); 5] = [
+    let all: [(&LawfulRange, f64); 5] = [
         (&LENGTH, position.x),
         (&LENGTH, position.y),
         (&HEIGHT, position.z),

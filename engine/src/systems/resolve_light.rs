@@ -1,6 +1,6 @@
 use hecs::World;
 
-use super::spectra::{Quantity, resolve_spectrum};
+use super::spectra::{SpectrumQuantity, resolve_spectrum};
 use super::{Resources, set_component};
 use crate::components::{SkyLight, SunLight, View};
 use crate::document::{self, Spectrum};
@@ -17,7 +17,8 @@ pub(super) fn resolve_light(world: &mut World, resources: &mut Resources) {
 fn light(world: &World, resources: &mut Resources) -> (Option<SunLight>, Option<SkyLight>) {
     let sun = world.get::<&document::Sun>(resources.sun).ok().and_then(|sun| {
         let path = &["sun", "irradiance"].into();
-        let irradiance = resolve_spectrum(&sun.irradiance, Quantity::Irradiance, path, resources)?;
+        let irradiance =
+            resolve_spectrum(&sun.irradiance, SpectrumQuantity::Irradiance, path, resources)?;
         note_irradiance(&sun.irradiance, &irradiance, resources);
         // `document::check` asks for a position; below the horizon the sun gives no light.
         let (zenith, azimuth) = sun.angles_deg()?;
@@ -30,7 +31,8 @@ fn light(world: &World, resources: &mut Resources) -> (Option<SunLight>, Option<
         document::Sky::None => (sun, None),
         document::Sky::Isotropic { irradiance } => {
             let at = &["sky", "irradiance"].into();
-            let irradiance = resolve_spectrum(irradiance, Quantity::Irradiance, at, resources);
+            let irradiance =
+                resolve_spectrum(irradiance, SpectrumQuantity::Irradiance, at, resources);
             (sun, irradiance.map(|irradiance| SkyLight { irradiance }))
         }
         document::Sky::Fraction(fractions) => {

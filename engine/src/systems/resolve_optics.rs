@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use hecs::World;
 
-use super::spectra::{Quantity, reads_file, resolve_spectrum};
+use super::spectra::{SpectrumQuantity, reads_file, resolve_spectrum};
 use super::{Resources, set_component};
 use crate::components::{
     DirectionalOptics, EnergyGain, GlossyOptics, LambertianOptics, LeafCoating, MaterialId,
@@ -92,12 +92,12 @@ fn lambertian(
     let Sides { reflectance, back, transmittance } = sides;
     let mut resolve =
         |spectrum, quantity, key| resolve_spectrum(spectrum, quantity, &path.key(key), resources);
-    let front = resolve(reflectance, Quantity::Reflectance, "reflectance");
+    let front = resolve(reflectance, SpectrumQuantity::Reflectance, "reflectance");
     let back = match back {
-        Some(back) => resolve(back, Quantity::Reflectance, "back_reflectance"),
+        Some(back) => resolve(back, SpectrumQuantity::Reflectance, "back_reflectance"),
         None => front.clone(),
     };
-    let through = resolve(transmittance, Quantity::Transmittance, "transmittance");
+    let through = resolve(transmittance, SpectrumQuantity::Transmittance, "transmittance");
     let EnergyGain { band, reflectance, transmittance } =
         match LambertianOptics::new(&front?, &back?, &through?) {
             Ok(optics) => return Some(optics),
@@ -126,8 +126,10 @@ fn parameters(
     let spectra = material.spectra();
     for &(key, spectrum, quantity) in &spectra {
         let quantity = match quantity {
-            SurfaceQuantity::Fraction => Quantity::Reflectance,
-            SurfaceQuantity::Parameter { least, most } => Quantity::Parameter { least, most },
+            SurfaceQuantity::Fraction => SpectrumQuantity::Reflectance,
+            SurfaceQuantity::Parameter { least, most } => {
+                SpectrumQuantity::Parameter { least, most }
+            }
         };
         let values = resolve_spectrum(spectrum, quantity, &path.key(key), resources);
         found.extend(values.map(|values| (key, values)));

@@ -1,9 +1,10 @@
 use hecs::World;
 
 use super::resolve_temperatures::black_body_radiance;
-use super::spectra::{Quantity, resolve_spectrum};
+use super::spectra::{SpectrumQuantity, resolve_spectrum};
 use super::{Resources, set_component};
 use crate::components::Emission;
+use crate::counts::noun_of;
 use crate::document::{Band, ThermalSky};
 
 /// Resolves the emission of the sky if a sensor measures emission. Reads `document::ThermalSky` and the resources
@@ -23,9 +24,12 @@ fn radiance(world: &World, resources: &mut Resources) -> Option<Vec<f64>> {
             Some(vec![0.0; resources.bands.len()])
         }
         ThermalSky::BlackBody(kelvin) => Some(black_body_radiance(resources, *kelvin)),
-        ThermalSky::Radiance(radiance) => {
-            resolve_spectrum(radiance, Quantity::Irradiance, &"thermal_sky".into(), resources)
-        }
+        ThermalSky::Radiance(radiance) => resolve_spectrum(
+            radiance,
+            SpectrumQuantity::Irradiance,
+            &"thermal_sky".into(),
+            resources,
+        ),
     }
 }
 
@@ -37,7 +41,7 @@ fn note_cold_sky(resources: &mut Resources) {
         resources.messages.note(format!(
             "no `thermal_sky` is given: the sky emits nothing in {} {}, as if it were at 0 K, and surfaces \
              reflect none of it; a clear sky is about `thermal_sky: BlackBody(250.0)`",
-            if names.len() == 1 { "band" } else { "bands" },
+            noun_of(names.len(), "band"),
             names.join(", ")
         ));
     }

@@ -2,6 +2,7 @@ use hecs::World;
 
 use super::Resources;
 use crate::components::{SkyLight, SunLight};
+use crate::counts::noun_of;
 use crate::document::{Diagnostic, ImageMeasure, PhotonMeasure, Sensor};
 
 /// Warns of bands without light in which a sensor measures reflectance. Reads [`SunLight`], [`SkyLight`] and `document::Sensor`.
@@ -27,7 +28,7 @@ pub(super) fn warn_dark_bands(world: &mut World, resources: &mut Resources) {
     let message = format!(
         "no light falls on the scene in {} {}: radiance is 0 there, and reflectance factors, albedo and \
              absorbed fractions have no value",
-        if dark.len() == 1 { "band" } else { "bands" },
+        noun_of(dark.len(), "band"),
         dark.join(", ")
     );
     let help = "write an irradiance above 0, or take the bands out";

@@ -3,6 +3,7 @@ use hecs::World;
 
 use super::Resources;
 use crate::components::TerrainPatch;
+use crate::counts::{agreeing, counted};
 use crate::document::{Diagnostic, Terrain};
 use crate::terrain::Ground;
 
@@ -21,7 +22,12 @@ pub(super) fn warn_overhangs(world: &mut World, resources: &mut Resources) {
         (!is_wall && above > OVERHANG.max(1e-5 * patch.unit)).then_some(middle)
     });
     let Some(first) = under.next() else { return };
-    let message = format!("{} triangles of `{mesh}` lie under others", 1 + under.count());
+    let count = 1 + under.count();
+    let message = format!(
+        "{} of `{mesh}` {}",
+        counted(count, "triangle"),
+        agreeing(count, "lies under another one", "lie under others")
+    );
     let help = format!(
         "one lies at ({:.2}, {:.2}, {:.2}): what is placed there stands on the highest; of \
              overhangs that are not meant, or of closed bodies, keep the upper side alone",

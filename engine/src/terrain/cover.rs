@@ -2,7 +2,7 @@ use glam::DVec2;
 
 /// Material of the ground, by cells of a rectilinear grid over its rectangle.
 #[derive(Clone, Debug)]
-pub(super) struct LandCover {
+pub(super) struct CoverGrid {
     /// Borders of cells from west to east, m from the corner; the first and last are its sides.
     pub(super) xs: Vec<f64>,
     /// Borders of cells from south to north.
@@ -14,7 +14,7 @@ pub(super) struct LandCover {
 /// The part that is not there.
 pub(super) const HOLE: u16 = u16::MAX;
 
-impl LandCover {
+impl CoverGrid {
     /// One part all over.
     pub(super) fn whole(size: DVec2) -> Self {
         Self { xs: vec![0.0, size.x], ys: vec![0.0, size.y], parts: vec![0] }
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn borders_are_straight_lines_between_corners_and_junctions() {
         // From the south: 0 0 1 / 0 0 1 / 2 2 1.
-        let cover = LandCover {
+        let cover = CoverGrid {
             xs: vec![0.0, 1.0, 2.0, 3.0],
             ys: vec![0.0, 1.0, 2.0, 3.0],
             parts: vec![0, 0, 1, 0, 0, 1, 2, 2, 1],
@@ -123,8 +123,8 @@ mod tests {
 
     #[test]
     fn holes_are_laid_over_a_cover_of_other_cells() {
-        let cover = LandCover { xs: vec![0.0, 1.0, 3.0], ys: vec![0.0, 3.0], parts: vec![4, 5] };
-        let holes = LandCover { xs: vec![0.0, 2.0, 3.0], ys: vec![0.0, 3.0], parts: vec![0, HOLE] };
+        let cover = CoverGrid { xs: vec![0.0, 1.0, 3.0], ys: vec![0.0, 3.0], parts: vec![4, 5] };
+        let holes = CoverGrid { xs: vec![0.0, 2.0, 3.0], ys: vec![0.0, 3.0], parts: vec![0, HOLE] };
         let both = cover.with_holes_of(&holes);
         assert_eq!((both.xs, both.parts), (vec![0.0, 1.0, 2.0, 3.0], vec![4, 5, HOLE]));
     }

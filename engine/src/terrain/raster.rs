@@ -1,5 +1,5 @@
 use super::Cells;
-use super::cover::{HOLE, LandCover};
+use super::cover::{CoverGrid, HOLE};
 use super::grid::HeightGrid;
 use super::surface::{Parts, TerrainSurface};
 use super::tin::triangulate;
@@ -26,7 +26,7 @@ pub fn raster(
     let grid = HeightGrid::of_cells(heights.columns, heights.rows, &heights.values, size);
     let (low, high) = grid.range()?;
     let mut parts_of_cells =
-        cover.map_or_else(|| LandCover::whole(size), |cover| of(cover, heights));
+        cover.map_or_else(|| CoverGrid::whole(size), |cover| of(cover, heights));
     if heights.values.iter().any(|height| height.is_nan()) {
         let holes = heights.values.iter().map(|h| if h.is_nan() { HOLE } else { 0 }).collect();
         let holes = Cells { values: holes, ..heights.with(Vec::new()) };
@@ -40,7 +40,7 @@ pub fn raster(
 }
 
 /// A cover over the rectangle of the heights, clipped to it.
-fn of(cover: &Cells<u16>, heights: &Cells<f64>) -> LandCover {
+fn of(cover: &Cells<u16>, heights: &Cells<f64>) -> CoverGrid {
     let shift = cover.corner - heights.corner;
     let lines = |count: usize, axis: usize| -> (Vec<f64>, std::ops::Range<usize>) {
         let line = |i: usize| shift[axis] + cover.size[axis] * i as f64 / count as f64;
@@ -58,5 +58,5 @@ fn of(cover: &Cells<u16>, heights: &Cells<f64>) -> LandCover {
     let (ys, rows) = lines(cover.rows, 1);
     let row = |y: usize| (cover.rows - 1 - y) * cover.columns;
     let parts = rows.flat_map(|y| &cover.values[row(y)..][columns.clone()]).copied().collect();
-    LandCover { xs, ys, parts }
+    CoverGrid { xs, ys, parts }
 }

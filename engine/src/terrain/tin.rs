@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::cover::{HOLE, LandCover};
+use super::cover::{CoverGrid, HOLE};
 use super::grid::HeightGrid;
 
 /// A corner of triangles, m.
@@ -55,7 +55,7 @@ struct Candidate {
 ///
 /// Source: Garland and Heckbert (1995), Fast polygonal approximation of terrains and height fields,
 /// CMU-CS-95-181, algorithm III, over a constrained Delaunay triangulation.
-pub(super) fn triangulate(grid: &HeightGrid, cover: &LandCover, tolerance: f64) -> Tin {
+pub(super) fn triangulate(grid: &HeightGrid, cover: &CoverGrid, tolerance: f64) -> Tin {
     let mut tin = Insertion::new(grid, tolerance);
     tin.add_sides();
     for border in cover.borders() {
@@ -219,7 +219,7 @@ impl<'a> Insertion<'a> {
         }
     }
 
-    fn finish(self, cover: &LandCover) -> Tin {
+    fn finish(self, cover: &CoverGrid) -> Tin {
         let corners: Vec<DVec3> = self
             .delaunay
             .vertices()

@@ -74,9 +74,9 @@ impl SourceFile {
         absolute.filter_map(|path| Some((path.last()?.clone(), path))).collect()
     }
 
-    /// Names of the types that it makes public.
-    pub(crate) fn public_types(&self) -> Vec<String> {
-        self.syntax.items.iter().filter_map(public_type).collect()
+    /// Names of the types that other files may use.
+    pub(crate) fn shared_types(&self) -> Vec<String> {
+        self.syntax.items.iter().filter_map(shared_type).collect()
     }
 
     fn absolute(&self, path: &[String]) -> Option<ModulePath> {
@@ -94,8 +94,8 @@ impl SourceFile {
     }
 }
 
-/// Name of an item that is a public type, declared in plain Rust or by `record!` or `choice!`.
-fn public_type(item: &Item) -> Option<String> {
+/// Name of an item that is a type with a visibility of its own, declared in plain Rust or by `record!` or `choice!`.
+fn shared_type(item: &Item) -> Option<String> {
     let (visibility, name) = match item {
         Item::Struct(item) => (&item.vis, item.ident.to_string()),
         Item::Enum(item) => (&item.vis, item.ident.to_string()),
@@ -112,7 +112,7 @@ fn public_type(item: &Item) -> Option<String> {
         }
         _ => return None,
     };
-    matches!(visibility, Visibility::Public(_)).then_some(name)
+    (!matches!(visibility, Visibility::Inherited)).then_some(name)
 }
 
 /// Collects paths: of `use` declarations, re-exports or not, and paths that start with `crate` or `super`.

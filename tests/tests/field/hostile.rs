@@ -208,7 +208,7 @@ fn what_a_scene_makes_of_memory_is_counted_before() {
         },
         Case {
             scene: "70-hostile/near_alike.ron",
-            right: &[Right::Warns(&["1 instances stand exactly where others", "(4, 4, 0)"])],
+            right: &[Right::Warns(&["1 instance stands exactly where another one", "(4, 4, 0)"])],
         },
     ]);
     let little = Options { memory: Some(1 << 28), ..Options::default() };

@@ -6,7 +6,7 @@ use sunfleck::document::System;
 
 use super::curve::Curve;
 use crate::compare::tables::significant;
-use crate::plot::{Area, FAINT, INK, colour, heading, letters, placed};
+use crate::plot::{FAINT, INK, PlotArea, colour, heading, letters, placed};
 
 /// Panels side by side, and their size, px.
 const COLUMNS: usize = 2;
@@ -47,7 +47,7 @@ pub(super) fn draw(curves: &[Curve], title: &str) -> anyhow::Result<String> {
     Ok(svg)
 }
 
-fn draw_panel(area: &Area<'_>, curves: &[Curve]) -> anyhow::Result<()> {
+fn draw_panel(area: &PlotArea<'_>, curves: &[Curve]) -> anyhow::Result<()> {
     let points: Vec<(f64, f64)> = curves
         .iter()
         .flat_map(|curve| &curve.levels)

@@ -22,6 +22,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
+use sunfleck::counts::counted;
 use sunfleck::document;
 use sunfleck::output::Written;
 
@@ -123,7 +124,7 @@ pub(crate) fn message(error: &anyhow::Error) -> String {
 /// Text about files that were written: their number, their folder, and the results that they replace.
 pub(crate) fn told(written: &Written) -> String {
     let replaced = written.replaced.as_ref().map_or_else(String::new, |old| format!(" ({old})"));
-    format!("{} files in {}{replaced}", written.files.len(), written.folder.display())
+    format!("{} in {}{replaced}", counted(written.files.len(), "file"), written.folder.display())
 }
 
 fn verify(arguments: &Verify) -> anyhow::Result<()> {
@@ -161,5 +162,21 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
             Err(error).context("cannot print the results")
         }
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    #[test]
+    fn files_are_counted_with_their_noun() {
+        let told = |count: usize| {
+            let files = vec![PathBuf::from("out/a.csv"); count];
+            told(&Written { folder: PathBuf::from("out"), files, replaced: None })
+        };
+        assert_eq!([told(1), told(2)], ["1 file in out", "2 files in out"]);
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde_json::json;
+use sunfleck::counts::counted;
 use sunfleck::output::{DerivativeTable, PointTables, PointWarnings, Results, SweepTable, Written};
 use sunfleck::products::{Night, Report, SweepPoint};
 use sunfleck::{output, run};
@@ -40,9 +41,9 @@ pub(super) fn sweep(arguments: &Run) -> anyhow::Result<()> {
     let derivatives = derivatives.map(|table| derivatives_text(&table, &written));
     console.written(&written);
     console.say(&format!(
-        "{}: {ran} {} run, {}{} kept; geometry built {}\n{}",
+        "{}: {} run, {}{} kept; geometry built {}\n{}",
         written.folder.join("sweep.csv").display(),
-        if ran == 1 { "point" } else { "points" },
+        counted(ran, "point"),
         if dark > 0 { format!("{dark} without light, ") } else { String::new() },
         distinct - ran - dark,
         match sweep.builds() {
@@ -143,7 +144,7 @@ fn derivatives_text(table: &DerivativeTable, written: &Written) -> String {
             format!("; {} have none: they are not linear in what is counted", names.join(", "))
         }
     };
-    format!("{}: {} derivatives{without}\n", file.display(), table.len())
+    format!("{}: {}{without}\n", file.display(), counted(table.len(), "derivative"))
 }
 
 /// Heading of the bars of a group of points, the first of which has this place among all.

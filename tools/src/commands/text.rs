@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::bail;
+use sunfleck::counts::counted;
 use sunfleck::{document, output, run};
 
 use super::{NOTE, SKIPPED, print, warn};
@@ -30,8 +31,7 @@ pub(super) fn check(arguments: &Check) -> anyhow::Result<()> {
     warn(&warnings);
     let found = match warnings.iter().filter(|text| !text.starts_with(SKIPPED)).count() {
         0 => "no errors".to_owned(),
-        1 => "no errors, 1 warning".to_owned(),
-        n => format!("no errors, {n} warnings"),
+        n => format!("no errors, {}", counted(n, "warning")),
     };
     notes.extend(facts.as_ref().and_then(describe::note_without_sky));
     let facts = facts.as_ref().map(describe::text).unwrap_or_default();

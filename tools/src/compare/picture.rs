@@ -8,7 +8,8 @@ use sunfleck::document::System;
 use super::curves::Curves;
 use super::findings::Finding;
 use crate::plot::{
-    Area, FAINT, INK, SHADE, axis_title, colour, heading, letters, placed, range_of, tick, upwards,
+    FAINT, INK, PlotArea, SHADE, axis_title, colour, heading, letters, placed, range_of, tick,
+    upwards,
 };
 
 /// Size of the picture, px: the heading, and a row for each finding.
@@ -66,7 +67,7 @@ pub(super) fn draw(findings: &[Finding<'_>], title: &str) -> anyhow::Result<Stri
     Ok(svg)
 }
 
-fn draw_row(row: &Area<'_>, finding: &Finding<'_>) -> anyhow::Result<()> {
+fn draw_row(row: &PlotArea<'_>, finding: &Finding<'_>) -> anyhow::Result<()> {
     let (left, right) = row.split_horizontally(VALUES);
     let curves = Curves::new(finding.estimates[finding.reference].product);
     draw_values(&left, finding, &curves)?;
@@ -100,7 +101,7 @@ fn lines(words: &[String]) -> Vec<String> {
     lines
 }
 
-fn draw_values(area: &Area<'_>, finding: &Finding<'_>, curves: &Curves) -> anyhow::Result<()> {
+fn draw_values(area: &PlotArea<'_>, finding: &Finding<'_>, curves: &Curves) -> anyhow::Result<()> {
     let unit = match finding.unit {
         "" | "1" => String::new(),
         unit => format!(" ({})", unit.replace("-1", "⁻¹").replace("-2", "⁻²")),
@@ -145,7 +146,7 @@ fn draw_values(area: &Area<'_>, finding: &Finding<'_>, curves: &Curves) -> anyho
 
 /// Writes the name of each curve behind its end, none over another.
 fn name_curves(
-    area: &Area<'_>,
+    area: &PlotArea<'_>,
     chart: &Chart<'_, '_>,
     curves: &Curves,
     product: &sunfleck::products::Product,
@@ -176,7 +177,7 @@ fn name_curves(
     Ok(())
 }
 
-fn draw_scores(area: &Area<'_>, finding: &Finding<'_>, curves: &Curves) -> anyhow::Result<()> {
+fn draw_scores(area: &PlotArea<'_>, finding: &Finding<'_>, curves: &Curves) -> anyhow::Result<()> {
     let scores: Vec<(usize, Vec<f64>)> = (0..finding.estimates.len())
         .filter_map(|index| Some((index, finding.scores(index, false)?)))
         .collect();
@@ -209,7 +210,7 @@ const LARGEST: f64 = 12.0;
 const COLUMNS: usize = 40;
 
 /// Histogram of the pixels' z-scores beside the normal distribution.
-fn draw_histogram(area: &Area<'_>, finding: &Finding<'_>) -> anyhow::Result<()> {
+fn draw_histogram(area: &PlotArea<'_>, finding: &Finding<'_>) -> anyhow::Result<()> {
     let width = 10.0 / COLUMNS as f64;
     let density = |z: &[f64]| -> Vec<f64> {
         let mut columns = vec![0.0; COLUMNS];
@@ -274,7 +275,7 @@ fn shortened(label: &str) -> String {
 
 /// A panel with its title.
 fn frame<'a, 'b>(
-    area: &'a Area<'b>,
+    area: &'a PlotArea<'b>,
     title: &str,
     (x, y): (Range<f64>, Range<f64>),
     (right, below): (u32, u32),
@@ -292,7 +293,7 @@ fn frame<'a, 'b>(
 
 /// The same with axes for curves.
 fn panel<'a, 'b>(
-    area: &'a Area<'b>,
+    area: &'a PlotArea<'b>,
     title: &str,
     curves: &Curves,
     (y, right): (Range<f64>, u32),

@@ -8,6 +8,7 @@ mod spectrum;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use sunfleck::counts::counted;
 
 use anyhow::{Context as _, Result, bail};
 use serde_json::{Map, Value};
@@ -344,7 +345,7 @@ fn matrix(value: &Value, at: &str) -> Result<Matrix> {
     }
     let mut matrix = [[0.0; 4]; 3];
     if rows.len() != 4 {
-        bail!("{at}: expected a matrix of 4 x 4 numbers, found {} rows", rows.len());
+        bail!("{at}: expected a matrix of 4 x 4 numbers, found {}", counted(rows.len(), "row"));
     }
     for (row, value) in matrix.iter_mut().zip(rows) {
         let numbers = numbers(value, at)?;
@@ -382,7 +383,7 @@ fn shown(value: &Value) -> String {
     match value {
         Value::String(text) => text::excerpt(text),
         Value::Array(items) => format!("a list of {}", items.len()),
-        Value::Object(keys) => format!("an object of {} keys", keys.len()),
+        Value::Object(keys) => format!("an object of {}", counted(keys.len(), "key")),
         other => other.to_string(),
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::Path;
+use sunfleck::counts::counted;
 
 use anyhow::{Context as _, Result, bail};
 
@@ -138,9 +139,9 @@ impl Curve {
     pub(super) fn from_lists(wavelengths: &[f64], values: &[f64]) -> Result<Self> {
         if wavelengths.len() != values.len() {
             bail!(
-                "{} wavelengths and {} values: list one value for each",
-                wavelengths.len(),
-                values.len()
+                "{} and {}: list one value for each",
+                counted(wavelengths.len(), "wavelength"),
+                counted(values.len(), "value")
             );
         }
         let mut points: Vec<(f64, f64)> =

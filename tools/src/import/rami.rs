@@ -6,6 +6,7 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use sunfleck::counts::counted;
 
 use anyhow::{Context as _, Result, bail};
 
@@ -146,9 +147,9 @@ impl List {
                 [x, y, z] if count == 3 => places.push([x, y, z]),
                 _ if count == 7 && numbers.len() == 7 => {}
                 _ => bail!(
-                    "a row of {} numbers; lists hold discs, `r x y z nx ny nz`, or places, `x y z`. Convert lists of \
+                    "a row of {}; lists hold discs, `r x y z nx ny nz`, or places, `x y z`. Convert lists of \
                      triangles, cylinders and spheres to a PLY mesh",
-                    numbers.len()
+                    counted(numbers.len(), "number")
                 ),
             }
             Ok(())

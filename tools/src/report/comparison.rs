@@ -7,7 +7,7 @@ use super::context::Context;
 use super::figure::{Across, ErrorStyle, Figure, Line, NORMAL_95, Panel, Plot, Point};
 use super::long_table::{LongProduct, LongTable};
 use super::quantity::thinned;
-use super::words::{quantity, short, title, with_unit};
+use super::words::{axis_of_values, drawn, short, title};
 
 /// Maximum numbers of figures, of panels of each, and of points of a line.
 const FIGURES: usize = 24;
@@ -152,14 +152,14 @@ fn values(context: &Context<'_>, table: &LongTable, product: &LongProduct) -> Fi
             Line { name: system_name(table, system), colour: system, points: points.collect() }
         });
         let title = panel.map_or_else(String::new, |band| short(&product.bands[band]));
-        Panel { title, scale: 0, lines: lines.collect(), marks: Vec::new() }
+        Panel { title, scale: 0, x_title: None, lines: lines.collect(), marks: Vec::new() }
     };
     let plot = |scores: bool| Plot {
         x_title: along.title.clone(),
         y_title: if scores {
             "difference (standard errors)".to_owned()
         } else {
-            with_unit(&quantity(&product.name), &product.unit)
+            axis_of_values(&product.name, &product.unit)
         },
         across: along.across.clone(),
         is_profile: false,
@@ -174,11 +174,12 @@ fn values(context: &Context<'_>, table: &LongTable, product: &LongProduct) -> Fi
     };
     let (values, scores) = (plot(false), plot(true));
     let fewer = (along.bands.len() < product.bands.len() && !along.bands.is_empty())
-        .then(|| format!("{} of {} bands are drawn.", along.bands.len(), product.bands.len()));
+        .then(|| format!("{}.", drawn(along.bands.len(), product.bands.len(), "bands")));
     let note = values.error_note();
     Figure {
         panels: values.draw().into_iter().chain(scores.draw()).collect(),
         legend: (0..table.points.len()).map(|system| system_name(table, system)).collect(),
+        bar: None,
         title: format!("{}: {}", short(&product.sensor), title(&product.name)),
         caption: [note, fewer].into_iter().flatten().collect(),
         data: Some(context.link("compare.csv")),

@@ -5,6 +5,7 @@ use std::path::{Component, Path};
 use super::figure::Link;
 use super::quantity::Quantity;
 use super::summary::Results;
+use super::swept_scene::SweptScene;
 use super::words::short;
 
 /// A folder of results, and the way to it from the report.
@@ -14,6 +15,8 @@ pub(super) struct Context<'a> {
     pub(super) address: String,
     /// Zenith angle and azimuth of the sun, degrees, if they are known.
     pub(super) sun: Option<[f64; 2]>,
+    /// The scene at points of a sweep.
+    pub(super) swept: SweptScene,
 }
 
 impl Context<'_> {

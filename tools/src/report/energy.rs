@@ -1,6 +1,7 @@
 //! Where the light of a run of packets goes.
 
 use maud::{Markup, html};
+use sunfleck::counts::counted;
 
 use super::context::Context;
 use super::figure::{Bar, COLOURS, Figure, Segment, stack};
@@ -83,9 +84,9 @@ fn balance(context: &Context<'_>, quantity: &Quantity) -> Figure {
                 size: rest,
                 label: number(rest, 3),
                 tooltip: format!(
-                    "{}, {} more terms: {}",
+                    "{}, {}: {}",
                     band_name(quantity, band),
-                    others.len(),
+                    counted(others.len(), "more term"),
                     number(rest, 4)
                 ),
             });
@@ -97,7 +98,7 @@ fn balance(context: &Context<'_>, quantity: &Quantity) -> Figure {
     let bars: Vec<Bar> = bands.iter().filter(has_light).map(bar).collect();
     let mut legend: Vec<String> = terms.iter().map(|term| term.name.clone()).collect();
     if !others.is_empty() {
-        legend.push(format!("{} more terms", others.len()));
+        legend.push(counted(others.len(), "more term"));
     }
     let what =
         if quantity.name == "energy" { "energy balance" } else { "balance of emitted light" };
@@ -115,6 +116,7 @@ fn balance(context: &Context<'_>, quantity: &Quantity) -> Figure {
     });
     let title = format!("{}: {what}", short(&quantity.sensor));
     Figure {
+        bar: None,
         panels: vec![stack(&bars, &title)],
         legend,
         caption: [Some(what_is_drawn.to_owned()), closing, note].into_iter().flatten().collect(),

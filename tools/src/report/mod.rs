@@ -6,6 +6,7 @@
 mod comparison;
 mod context;
 mod csv_table;
+mod directions;
 mod energy;
 mod figure;
 mod long_table;
@@ -19,6 +20,7 @@ mod scene;
 mod sources;
 mod summary;
 mod sweep;
+mod swept_scene;
 mod tables;
 mod words;
 mod work;
@@ -37,6 +39,7 @@ use self::page::{Page, Section};
 use self::quantity::{Quantity, has_ending};
 use self::scene::SceneState;
 use self::summary::Results;
+use self::swept_scene::SweptScene;
 use self::words::{duration, name, number, short, title};
 
 /// Maximum number of figures of products, and of tables of all values.
@@ -67,8 +70,12 @@ pub(crate) fn report(
     check_place(&file)?;
     let state = SceneState::read(&results, progress);
     progress.stage("drawing");
-    let context =
-        Context { results: &results, address: address(&results.folder, &file)?, sun: state.sun() };
+    let context = Context {
+        results: &results,
+        address: address(&results.folder, &file)?,
+        sun: state.sun(),
+        swept: SweptScene::new(&results),
+    };
     let text = page(&context, &state)?.render();
     output::replace(&file, &text)?;
     Ok(Written { file, bytes: text.len() })

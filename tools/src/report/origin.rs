@@ -6,6 +6,7 @@ use super::scene::{Agreement, SceneState};
 use super::summary::Results;
 use super::words::{cut, name, number};
 use crate::commands::quoted;
+use sunfleck::counts::counted;
 
 /// Commands and a citation.
 pub(super) fn section(results: &Results, state: &SceneState) -> Markup {
@@ -86,7 +87,7 @@ pub(super) fn date(time: std::time::SystemTime) -> String {
 /// Rays of a run in a few letters: `12.4 million rays`.
 pub(super) fn rays(count: u64) -> String {
     if count < 1_000_000 {
-        format!("{count} rays")
+        counted(count, "ray")
     } else {
         format!("{} million rays", number(count as f64 / 1e6, 3))
     }

@@ -32,7 +32,7 @@ pub(super) fn section(context: &Context<'_>) -> Option<Markup> {
     }
     let mut budget = Budget::default();
     Some(html! {
-        p { "Each picture opens large; its colour bar says what the colours mean." }
+        p { "Each picture opens large; its colour bar says what the colours mean. A bar that ends in ≤ or ≥ is stretched between the 1st and the 99th percentile of the pixels: values beyond its ends have the colours of the ends." }
         div.gallery {
             @for (number, quantity) in quantities.iter().enumerate() { (picture(context, quantity, number, &mut budget)) }
         }

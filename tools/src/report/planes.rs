@@ -1,6 +1,6 @@
 //! Vertical planes that views lie in.
 
-use sunfleck::output::tick;
+use sunfleck::output::{ViewPlane, tick};
 
 use super::quantity::Quantity;
 
@@ -52,23 +52,21 @@ pub(super) fn planes(quantity: &Quantity, sun: Option<[f64; 2]>) -> Option<Vec<P
         let place = |index: usize| Place { signed_zenith: signed[index], index };
         let mut places: Vec<Place> = (0..zeniths.len()).filter(is_in).map(place).collect();
         places.sort_by(|a, b| a.signed_zenith.total_cmp(&b.signed_zenith));
-        let turn = sun.map(|[_, sun]| (azimuth - sun).rem_euclid(180.0));
-        let is_near = |to: f64| {
-            turn.is_some_and(|turn| (turn - to).abs() < 1e-3 || (turn - to).abs() > 179.999)
+        let plane = ViewPlane::new(*azimuth, sun.map(|[_, sun]| sun));
+        let name = match plane {
+            ViewPlane::Principal => "principal plane".to_owned(),
+            ViewPlane::Cross => "cross plane".to_owned(),
+            ViewPlane::Other { azimuth_deg } => {
+                format!(
+                    "plane of azimuths {}° and {}°",
+                    tick(azimuth_deg),
+                    tick(azimuth_deg + 180.0)
+                )
+            }
         };
-        let (name, axis) = if is_near(0.0) {
-            ("principal plane".to_owned(), "view zenith (°), + towards the sun")
-        } else if is_near(90.0) {
-            ("cross plane".to_owned(), "view zenith (°), + clockwise of the sun")
-        } else {
-            let azimuth = azimuth.rem_euclid(180.0);
-            (
-                format!("plane of azimuths {}° and {}°", tick(azimuth), tick(azimuth + 180.0)),
-                "view zenith (°), + towards the sun",
-            )
-        };
-        let hot_spot = sun.filter(|_| is_near(0.0)).map(|[zenith, _]| zenith);
-        Plane { name, axis, places, hot_spot }
+        let is_principal = plane == ViewPlane::Principal;
+        let hot_spot = sun.filter(|_| is_principal).map(|[zenith, _]| zenith);
+        Plane { name, axis: plane.axis_title(), places, hot_spot }
     };
     let all: Vec<Plane> = references.iter().map(plane).collect();
     (!all.is_empty()).then_some(all)

@@ -1,11 +1,11 @@
 //! Figures of products, chosen by their axes.
 
 use super::context::Context;
-use super::figure::{Across, ErrorStyle, Figure, Hemisphere, Line, Mark, Panel, Plot, Point, View};
-use super::planes::{Plane, planes};
+use super::directions::directions;
+use super::figure::{Across, ErrorStyle, Figure, Line, Panel, Plot, Point};
 use super::quantity::{Quantity, thinned};
 use super::summary::Points;
-use super::words::{self, definition, number, short, title, with_unit};
+use super::words::{axis_of_values, definition, drawn, short, title};
 use sunfleck::output::tick;
 
 /// Maximum numbers of lines of a panel, of panels, and of bands where there are several places.
@@ -14,9 +14,7 @@ pub(super) const PANELS: usize = 12;
 /// Number of bands from which on values are drawn as a spectrum.
 const SPECTRUM: usize = 5;
 /// Maximum number of points of a line.
-const POINTS: usize = 400;
-/// Maximum number of views of a hemisphere that are drawn.
-const VIEWS: usize = 1500;
+pub(super) const POINTS: usize = 400;
 
 /// Figures of a product; none of one that a table tells better.
 pub(super) fn figures(context: &Context<'_>, quantity: &Quantity) -> Vec<Figure> {
@@ -75,7 +73,7 @@ pub(super) fn shown_bands(quantity: &Quantity, most: usize) -> (Vec<usize>, Opti
     let known: Vec<usize> = (0..quantity.band_count()).filter(is_known).collect();
     let shown: Vec<usize> = thinned(known.len(), most).into_iter().map(|at| known[at]).collect();
     let left_out = known.len() - shown.len();
-    let note = format!("{} of {} bands are drawn; the table has all.", shown.len(), known.len());
+    let note = format!("{}; the table has all.", drawn(shown.len(), known.len(), "bands"));
     (shown, (left_out > 0).then_some(note))
 }
 
@@ -84,107 +82,24 @@ pub(super) fn band_name(quantity: &Quantity, band: usize) -> String {
     quantity.bands().map_or_else(String::new, |bands| short(&bands[band]))
 }
 
-fn caption(quantity: &Quantity, notes: impl IntoIterator<Item = Option<String>>) -> Vec<String> {
+pub(super) fn caption(
+    quantity: &Quantity,
+    notes: impl IntoIterator<Item = Option<String>>,
+) -> Vec<String> {
     let defined = definition(&quantity.name).map(str::to_owned);
     std::iter::once(defined).chain(notes).flatten().collect()
 }
 
-fn heading(quantity: &Quantity, what: &str) -> String {
+pub(super) fn heading(quantity: &Quantity, what: &str) -> String {
     format!("{}: {}{what}", short(&quantity.sensor), title(&quantity.name))
 }
 
-fn directions(context: &Context<'_>, quantity: &Quantity) -> Vec<Figure> {
-    match planes(quantity, context.sun) {
-        Some(planes) => in_planes(context, quantity, &planes).into_iter().collect(),
-        None => hemisphere(context, quantity).into_iter().collect(),
-    }
-}
-
-/// Values in vertical planes through the nadir: a panel a plane, a line a band.
-fn in_planes(context: &Context<'_>, quantity: &Quantity, planes: &[Plane]) -> Option<Figure> {
-    if planes.iter().all(|plane| plane.places.len() < 2) {
-        return None;
-    }
-    let (bands, note) = shown_bands(quantity, LINES);
-    let panel = |plane: &Plane| Panel {
-        scale: 0,
-        title: if planes.len() > 1 { plane.name.clone() } else { String::new() },
-        marks: plane
-            .hot_spot
-            .map(|at| Mark { at, name: "hot spot".to_owned() })
-            .into_iter()
-            .collect(),
-        lines: bands
-            .iter()
-            .enumerate()
-            .map(|(colour, &band)| {
-                let points = thinned(plane.places.len(), POINTS).into_iter().map(|at| {
-                    let place = &plane.places[at];
-                    let (value, error) = quantity.at(place.index, band);
-                    Point { at: place.signed_zenith, value, error }
-                });
-                Line { name: band_name(quantity, band), colour, points: points.collect() }
-            })
-            .collect(),
-    };
-    let plot = Plot {
-        x_title: planes[0].axis.to_owned(),
-        y_title: with_unit(&words::quantity(&quantity.name), &quantity.unit),
-        across: Across::Numbers,
-        is_profile: false,
-        errors: ErrorStyle::Areas,
-        panels: planes.iter().map(panel).collect(),
-        guides: Vec::new(),
-    };
-    let what = if let [plane] = planes { format!(" in the {}", plane.name) } else { String::new() };
-    let notes = [note, plot.error_note()];
-    Some(Figure {
-        panels: plot.draw(),
-        legend: legend(quantity, &bands),
-        title: heading(quantity, &what),
-        caption: caption(quantity, notes),
-        data: context.table(quantity),
-    })
-}
-
 /// Names of bands as a legend; none for a single line.
-fn legend(quantity: &Quantity, bands: &[usize]) -> Vec<String> {
+pub(super) fn legend(quantity: &Quantity, bands: &[usize]) -> Vec<String> {
     if bands.len() < 2 && quantity.band_count() < 2 {
         return Vec::new();
     }
     bands.iter().map(|&band| band_name(quantity, band)).collect()
-}
-
-/// Values all over the hemisphere: a panel a band.
-fn hemisphere(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
-    let (zeniths, azimuths) = (quantity.numbers("zenith_deg")?, quantity.numbers("azimuth_deg")?);
-    if zeniths.len() > VIEWS || quantity.places().len() > 1 {
-        return None;
-    }
-    let (bands, note) = shown_bands(quantity, 3);
-    let are_cells = quantity.name.contains("_cells");
-    let panel = |&band: &usize| {
-        let views = zeniths.iter().zip(azimuths).enumerate().map(|(place, (&zenith, &azimuth))| {
-            let (value, error) = quantity.at(place, band);
-            View { zenith, azimuth, value, error }
-        });
-        let title = band_name(quantity, band);
-        Hemisphere { title, views: views.collect(), sun: context.sun, are_cells }.draw()
-    };
-    let sun = context
-        .sun
-        .map(|_| "The ring with a dot is the sun's direction, where the hot spot is.".to_owned());
-    let error = quantity.relative_error().map(|error| {
-        format!("Median standard error: {} % of the value.", number(100.0 * error, 2))
-    });
-    let seen = "Distance from the centre is the view zenith angle, north is at the top.".to_owned();
-    Some(Figure {
-        panels: bands.iter().map(panel).collect(),
-        legend: Vec::new(),
-        title: heading(quantity, " by view direction"),
-        caption: caption(quantity, [Some(seen), sun, error, note]),
-        data: context.table(quantity),
-    })
 }
 
 /// Values by height: a panel a band, a line a material.
@@ -220,6 +135,7 @@ fn profile(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
     let panel = |&band: &usize| Panel {
         title: band_name(quantity, band),
         scale: 0,
+        x_title: None,
         marks: Vec::new(),
         lines: shown
             .iter()
@@ -235,7 +151,7 @@ fn profile(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
     };
     let plot = Plot {
         x_title: "height (m)".to_owned(),
-        y_title: with_unit(&words::quantity(&quantity.name), &quantity.unit),
+        y_title: axis_of_values(&quantity.name, &quantity.unit),
         across: Across::Numbers,
         is_profile: true,
         errors: ErrorStyle::Areas,
@@ -249,7 +165,7 @@ fn profile(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
             format!("Not drawn, as it is in one layer alone: {}.", names.join(", "))
         });
     let missing = (lit.len() > shown.len())
-        .then(|| format!("{} of {} lines are drawn; the table has all.", shown.len(), lit.len()));
+        .then(|| format!("{}; the table has all.", drawn(shown.len(), lit.len(), "lines")));
     Some(Figure {
         panels: plot.draw(),
         legend: if groups > 1 {
@@ -257,8 +173,9 @@ fn profile(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
         } else {
             Vec::new()
         },
+        bar: None,
         title: heading(quantity, ", middles of layers"),
-        caption: caption(quantity, [single, note, missing, plot.error_note()]),
+        caption: caption(quantity, [single, note, missing, plot.scale_note(), plot.error_note()]),
         data: context.table(quantity),
     })
 }
@@ -292,27 +209,24 @@ fn spectrum(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
     };
     let plot = Plot {
         x_title: if waves.is_some() { "wavelength (nm)" } else { "band" }.to_owned(),
-        y_title: with_unit(&words::quantity(&quantity.name), &quantity.unit),
+        y_title: axis_of_values(&quantity.name, &quantity.unit),
         across,
         is_profile: false,
         errors: ErrorStyle::Areas,
         panels: vec![Panel {
             title: String::new(),
             scale: 0,
+            x_title: None,
             lines: places.iter().enumerate().map(line).collect(),
             marks: Vec::new(),
         }],
         guides: Vec::new(),
     };
     let missing = (places.len() < quantity.place_count()).then(|| {
-        format!(
-            "{} of {} lines are drawn; the table has all.",
-            places.len(),
-            quantity.place_count()
-        )
+        format!("{}; the table has all.", drawn(places.len(), quantity.place_count(), "lines"))
     });
     let fewer = (order.len() < bands.len())
-        .then(|| format!("{} of {} bands are drawn; the table has all.", order.len(), bands.len()));
+        .then(|| format!("{}; the table has all.", drawn(order.len(), bands.len(), "bands")));
     let mean = quantity.is_image().then(|| "Means of the images.".to_owned());
     Some(Figure {
         panels: plot.draw(),
@@ -321,6 +235,7 @@ fn spectrum(context: &Context<'_>, quantity: &Quantity) -> Option<Figure> {
         } else {
             Vec::new()
         },
+        bar: None,
         title: heading(quantity, ", spectrum"),
         caption: caption(quantity, [mean, missing, fewer, plot.error_note()]),
         data: context.table(quantity),

@@ -58,20 +58,8 @@ impl SceneState {
         let Some(file) = results.scene_file() else {
             return missing("The scene file is not where it was at the time of the run");
         };
-        let set = |(name, value): (&String, &serde_json::Value)| {
-            let value = match value {
-                serde_json::Value::Number(number) => Param::Number(number.as_f64()?),
-                serde_json::Value::String(text) => Param::Text(text.clone()),
-                _ => return None,
-            };
-            Some((name.clone(), value))
-        };
         let summary = &results.summary;
-        let document = ReadOptions {
-            set: summary.set.iter().filter_map(set).collect(),
-            variant: summary.variant.clone(),
-            ..ReadOptions::default()
-        };
+        let document = read_options(results);
         let is_run = summary.command == "run" || summary.command == "respectrum";
         // A run may have been one of some sensors alone, which is another scene.
         let sensors = if is_run { summary.runs.keys().cloned().collect() } else { Vec::new() };
@@ -99,6 +87,23 @@ impl SceneState {
     pub(super) fn sun(&self) -> Option<[f64; 2]> {
         let sun = self.facts.as_ref().filter(|_| self.is != Agreement::Changed)?.sun.as_ref()?;
         Some([sun.zenith_deg, sun.azimuth_deg])
+    }
+}
+
+/// Options that the scene of some results was read with.
+pub(super) fn read_options(results: &Results) -> ReadOptions {
+    let set = |(name, value): (&String, &serde_json::Value)| {
+        let value = match value {
+            serde_json::Value::Number(number) => Param::Number(number.as_f64()?),
+            serde_json::Value::String(text) => Param::Text(text.clone()),
+            _ => return None,
+        };
+        Some((name.clone(), value))
+    };
+    ReadOptions {
+        set: results.summary.set.iter().filter_map(set).collect(),
+        variant: results.summary.variant.clone(),
+        ..ReadOptions::default()
     }
 }
 

@@ -1,14 +1,15 @@
 //! Results of a sweep: values against its parameters.
 
 use maud::{Markup, html};
-use sunfleck::output::{axis_title, tick};
+use sunfleck::output::{ViewPlane, tick};
 
 use super::context::Context;
-use super::figure::{Across, ErrorStyle, Figure, Line, Panel, Plot, Point};
+use super::directions::{SUN_NOTE, sun_mark};
+use super::figure::{Across, ErrorStyle, Figure, Line, Mark, Panel, Plot, Point};
 use super::long_table::{LongProduct, LongTable};
 use super::products::{LINES, PANELS};
 use super::quantity::thinned;
-use super::words::{definition, quantity, short, title, with_unit};
+use super::words::{axis_of_values, definition, drawn, short, title};
 
 /// Maximum numbers of figures, and of points of a line.
 const FIGURES: usize = 40;
@@ -122,9 +123,9 @@ fn figure(
     }
     let is_along = product.axes.iter().any(|name| ALONG.contains(&name.as_str()));
     let (plot, legend, notes) = if is_along && product.places.len() > 2 {
-        along(axis, product)?
+        along(context, table, axis, product)?
     } else {
-        against(axis, product)
+        against(context, axis, product)
     };
     let has_value = |panel: &Panel| {
         panel.lines.iter().flat_map(|line| &line.points).any(|point| point.value.is_finite())
@@ -134,13 +135,15 @@ fn figure(
         return None;
     }
     let thin = (table.points.len() < table.point_count).then(|| {
-        format!("{} of {} points of the sweep are drawn.", table.points.len(), table.point_count)
+        format!("{}.", drawn(table.points.len(), table.point_count, "points of the sweep"))
     });
     let defined = definition(&product.name).map(str::to_owned);
-    let caption = [defined, thin, plot.error_note()].into_iter().flatten().chain(notes);
+    let caption =
+        [defined, thin, plot.scale_note(), plot.error_note()].into_iter().flatten().chain(notes);
     Some(Figure {
         panels: plot.draw(),
         legend,
+        bar: None,
         title: format!("{}: {}", short(&product.sensor), title(&product.name)),
         caption: caption.collect(),
         data: Some(context.link("sweep.csv")),
@@ -151,7 +154,7 @@ fn figure(
 type Drawn = (Plot, Vec<String>, Vec<String>);
 
 /// Values against the parameter: a panel a band and place, a line a combination of the other parameters.
-fn against(axis: &SweepAxis, product: &LongProduct) -> Drawn {
+fn against(context: &Context<'_>, axis: &SweepAxis, product: &LongProduct) -> Drawn {
     let groups = thinned(axis.groups.len(), LINES);
     let chosen = Grid::new(product.places.len(), product.bands.len());
     let panel = |&(place, band): &(usize, usize)| {
@@ -165,11 +168,11 @@ fn against(axis: &SweepAxis, product: &LongProduct) -> Drawn {
             Line { name: axis.groups[group].clone(), colour, points: points.collect() }
         });
         let title = place_and_band(product, place, band);
-        Panel { title, scale: place, lines: lines.collect(), marks: Vec::new() }
+        Panel { title, scale: place, x_title: None, lines: lines.collect(), marks: Vec::new() }
     };
     let plot = Plot {
-        x_title: axis_title(&short(&axis.name)),
-        y_title: with_unit(&quantity(&product.name), &product.unit),
+        x_title: context.swept.param_title(&axis.name),
+        y_title: axis_of_values(&product.name, &product.unit),
         across: axis.across(),
         is_profile: false,
         errors: ErrorStyle::Bars,
@@ -212,7 +215,7 @@ impl Grid {
 }
 
 fn fewer(shown: usize, all: usize, what: &str) -> Option<String> {
-    (shown < all).then(|| format!("{shown} of {all} {what} are drawn."))
+    (shown < all).then(|| format!("{}.", drawn(shown, all, what)))
 }
 
 fn place_and_band(product: &LongProduct, place: usize, band: usize) -> String {
@@ -225,7 +228,12 @@ fn place_and_band(product: &LongProduct, place: usize, band: usize) -> String {
 }
 
 /// Values along a plane or a profile: a panel a band and material, a line a value of the parameter.
-fn along(axis: &SweepAxis, product: &LongProduct) -> Option<Drawn> {
+fn along(
+    context: &Context<'_>,
+    table: &LongTable,
+    axis: &SweepAxis,
+    product: &LongProduct,
+) -> Option<Drawn> {
     let number_of = |name: &str| {
         let column = product.axis(name)?;
         product
@@ -253,6 +261,12 @@ fn along(axis: &SweepAxis, product: &LongProduct) -> Option<Drawn> {
         Some(labels) => labels[axis.places[point] as usize].clone(),
         None => format!("{} = {}", short(&axis.name), tick(axis.places[point])),
     };
+    let suns: Vec<Option<[f64; 2]>> = chosen
+        .iter()
+        .map(|&at| context.swept.sun(&table.params, &table.points[points[at]]))
+        .collect();
+    let plane = plane_of(product, &suns);
+    let marks = if plane == Some(ViewPlane::Principal) { sun_marks(&suns) } else { Vec::new() };
     let panel = |&(part, band): &(usize, usize)| {
         let lines = chosen.iter().enumerate().map(|(colour, &at)| {
             let point = points[at];
@@ -264,12 +278,16 @@ fn along(axis: &SweepAxis, product: &LongProduct) -> Option<Drawn> {
         });
         let names = [parts.names[part].clone(), short(&product.bands[band])];
         let names: Vec<String> = names.into_iter().filter(|name| !name.is_empty()).collect();
-        Panel { title: names.join(", "), scale: part, lines: lines.collect(), marks: Vec::new() }
+        let title = names.join(", ");
+        Panel { title, scale: part, x_title: None, lines: lines.collect(), marks: marks.clone() }
     };
     let plot = Plot {
-        x_title: if is_profile { "height (m)" } else { "view zenith (°), + towards the sun" }
-            .to_owned(),
-        y_title: with_unit(&quantity(&product.name), &product.unit),
+        x_title: if is_profile {
+            "height (m)".to_owned()
+        } else {
+            plane.map_or("view zenith (°), + towards the sun", ViewPlane::axis_title).to_owned()
+        },
+        y_title: axis_of_values(&product.name, &product.unit),
         across: Across::Numbers,
         is_profile,
         errors: ErrorStyle::Areas,
@@ -277,9 +295,41 @@ fn along(axis: &SweepAxis, product: &LongProduct) -> Option<Drawn> {
         guides: Vec::new(),
     };
     let others = (axis.groups.len() > 1).then(|| format!("For {}.", axis.groups[axis.group_of[0]]));
-    let notes = [others, fewer(chosen.len(), points.len(), "values of the parameter"), grid.note()];
+    let sun = (!marks.is_empty()).then(|| SUN_NOTE.to_owned());
+    let notes =
+        [others, sun, fewer(chosen.len(), points.len(), "values of the parameter"), grid.note()];
     let legend = chosen.iter().map(|&at| line_name(points[at])).collect();
     Some((plot, legend, notes.into_iter().flatten().collect()))
+}
+
+/// The plane of the views of a product; `None` if they lie in several, or in another one at each point.
+fn plane_of(product: &LongProduct, suns: &[Option<[f64; 2]>]) -> Option<ViewPlane> {
+    let (zenith, azimuth) = (product.axis("zenith_deg")?, product.axis("azimuth_deg")?);
+    let slanted = product.places.iter().filter_map(|texts| {
+        let zenith = texts[zenith].parse::<f64>().ok().filter(|zenith| zenith.abs() > 1e-9)?;
+        let azimuth = texts[azimuth].parse::<f64>().ok()?;
+        zenith.is_finite().then_some(azimuth)
+    });
+    let mut planes = slanted.flat_map(|azimuth| {
+        suns.iter().map(move |sun| ViewPlane::new(azimuth, sun.map(|[_, azimuth]| azimuth)))
+    });
+    let first = planes.next()?;
+    planes.all(|plane| plane == first).then_some(first)
+}
+
+/// Marks of the sun: one for all lines, or one in the colour of each line.
+fn sun_marks(suns: &[Option<[f64; 2]>]) -> Vec<Mark> {
+    let zeniths: Vec<f64> = suns.iter().flatten().map(|[zenith, _]| *zenith).collect();
+    let is_one = zeniths.windows(2).all(|pair| (pair[0] - pair[1]).abs() < 1e-9);
+    if let (true, Some(zenith)) = (is_one, zeniths.first()) {
+        return vec![sun_mark(*zenith)];
+    }
+    let of_line = |(colour, sun): (usize, &Option<[f64; 2]>)| {
+        let [zenith, _] = (*sun)?;
+        let name = if colour == 0 { "sun" } else { "" };
+        Some(Mark { at: zenith, name: name.to_owned(), colour: Some(colour) })
+    };
+    suns.iter().enumerate().filter_map(of_line).collect()
 }
 
 /// Returns true if two places are at the same position.

@@ -1,6 +1,8 @@
 //! Names, numbers and units as a reader sees them.
 
 use maud::{Markup, html};
+use sunfleck::counts::agreeing;
+use sunfleck::output::{product_title, unit_text, value_axis_title};
 
 /// Longest name that is shown, letters.
 const LONGEST: usize = 120;
@@ -62,16 +64,17 @@ pub(super) fn name(text: &str) -> Markup {
 
 /// A unit with raised exponents: `W m⁻² nm⁻¹`.
 pub(super) fn unit(text: &str) -> String {
-    short(text).replace("-1", "⁻¹").replace("-2", "⁻²")
+    unit_text(&short(text))
 }
 
-/// A quantity with its unit for an axis: `albedo`, `exitance (W m⁻² nm⁻¹)`.
-pub(super) fn with_unit(quantity: &str, of: &str) -> String {
-    if of == "1" || of.is_empty() {
-        quantity.to_owned()
-    } else {
-        format!("{quantity} ({})", unit(of))
-    }
+/// Title of an axis of a product's values: `albedo (–)`, `exitance (W m⁻² nm⁻¹)`.
+pub(super) fn axis_of_values(product: &str, unit: &str) -> String {
+    value_axis_title(&short(product), &short(unit))
+}
+
+/// Text about things that are drawn among more of them: `1 of 4 bands is drawn`.
+pub(super) fn drawn(shown: usize, all: usize, things: &str) -> String {
+    format!("{shown} of {all} {things} {} drawn", agreeing(shown, "is", "are"))
 }
 
 /// A number with so many significant digits.
@@ -138,54 +141,7 @@ pub(super) fn duration(seconds: f64) -> String {
 
 /// A product's name for a person: `four_components` as `four components`.
 pub(super) fn title(product: &str) -> String {
-    let plain = match product {
-        "brf" => "BRF",
-        "hdrf" => "HDRF",
-        "fapar" => "fAPAR by layer",
-        "fapar_material" => "fAPAR by material",
-        "fapar_vegetation" => "fAPAR of the vegetation",
-        "ftran" => "transmittance to the ground",
-        "lai_beer" => "LAI (Beer)",
-        "lai_miller" => "LAI (Miller)",
-        "lai_2000" => "LAI (LAI-2000)",
-        _ => "",
-    };
-    if !plain.is_empty() {
-        return plain.to_owned();
-    }
-    let name = short(product);
-    let (stem, denoised) = match name.strip_suffix("_denoised") {
-        Some(stem) => (stem, ", denoised"),
-        None => (name.as_str(), ""),
-    };
-    let parts = [
-        ("_uc", ", uncollided"),
-        ("_co_sgl", ", scattered once"),
-        ("_mlt", ", scattered more often"),
-    ];
-    let (stem, part) = parts
-        .iter()
-        .find_map(|(end, text)| Some((stem.strip_suffix(end)?, *text)))
-        .unwrap_or((stem, ""));
-    let places = [("_cells", " in cells"), ("_views", " towards views"), ("_cones", " in cones")];
-    let (stem, place) = places
-        .iter()
-        .find_map(|(end, text)| Some((stem.strip_suffix(end)?, *text)))
-        .unwrap_or((stem, ""));
-    let stem = match stem {
-        "brf" => "BRF".to_owned(),
-        "hdrf" => "HDRF".to_owned(),
-        other => other.replace('_', " "),
-    };
-    format!("{stem}{place}{part}{denoised}")
-}
-
-/// A product's name without the place where it is measured, for an axis.
-pub(super) fn quantity(product: &str) -> String {
-    let name = title(product);
-    [" in cells", " towards views", " in cones"]
-        .iter()
-        .fold(name, |name, place| name.replace(place, ""))
+    product_title(&short(product))
 }
 
 /// Definition of a product in one sentence; `None` of one whose name says it.
@@ -262,9 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn products_have_titles() {
-        assert_eq!(title("hdrf_co_sgl"), "HDRF, scattered once");
-        assert_eq!(title("brightness_temperature_views"), "brightness temperature towards views");
+    fn parts_of_products_have_their_definition() {
         assert!(definition("brf_cells_uc").is_some());
     }
 }

@@ -58,6 +58,7 @@ fn stages(context: &Context<'_>) -> Figure {
             .iter()
             .map(|(name, seconds)| format!("{} {}", short(name), duration(*seconds)))
             .collect(),
+        bar: None,
         title: "Wall time by stage".to_owned(),
         caption: Vec::new(),
         data: None,

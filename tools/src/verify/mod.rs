@@ -15,6 +15,7 @@ mod turbid;
 
 use std::fmt::Write as _;
 use std::time::Instant;
+use sunfleck::counts::counted;
 
 use serde_json::json;
 
@@ -161,8 +162,7 @@ pub(crate) fn verify(
         });
         show(&format!("{report:#}\n"))?;
     } else if failed.is_empty() {
-        let plural = if outcomes.len() == 1 { "" } else { "s" };
-        show(&format!("{} check{plural} passed in {seconds:.1} s\n", outcomes.len()))?;
+        show(&format!("{} passed in {seconds:.1} s\n", counted(outcomes.len(), "check")))?;
     } else {
         show(&format!("failed: {}; {seconds:.1} s in all\n", failed.join(", ")))?;
     }

@@ -1,3 +1,4 @@
+use crate::counts::counted;
 use crate::memory::Lack;
 
 /// Error of a crown that cannot be generated.
@@ -24,14 +25,16 @@ pub enum CrownError {
     #[error("leaf_area_m2 is {area}, less than half of one leaf of {leaf} m²; use smaller leaves")]
     LessThanALeaf { area: f64, leaf: f64 },
     #[error(
-        "overlap is false, and only {placed} of {count} leaves find a place where they intersect no other; \
-         use smaller leaves, less leaf_area_m2, a larger crown or larger clumps, or leave out overlap"
+        "overlap is false, and only {placed} of {} find a place where they intersect no other; \
+         use smaller leaves, less leaf_area_m2, a larger crown or larger clumps, or leave out overlap",
+        counted(.count, "leaf")
     )]
     NoRoom { placed: u64, count: u64 },
     #[error(
-        "min_distance_m is {distance}, and only {placed} of {count} leaves find a place so far from all others; \
+        "min_distance_m is {distance}, and only {placed} of {} find a place so far from all others; \
          about {possible} m is possible here: use that, less leaf_area_m2, larger leaves, a larger \
-         crown or larger clumps"
+         crown or larger clumps",
+        counted(.count, "leaf")
     )]
     NoRoomAtDistance { placed: u64, count: u64, distance: f64, possible: f64 },
     #[error("trunk.tip_diameter_m is {tip}; write 0 up to trunk.diameter_m = {foot}")]

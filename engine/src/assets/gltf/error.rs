@@ -1,3 +1,4 @@
+use crate::counts::existing;
 use std::io;
 
 use ::gltf::binary;
@@ -35,7 +36,7 @@ pub enum GltfError {
     NoData { accessor: usize },
     #[error("accessor {accessor} does not hold {wanted}; export the file again")]
     WrongType { accessor: usize, wanted: &'static str },
-    #[error("index {index} names none of the {count} vertices; export the file again")]
+    #[error("index {index} names no vertex, and there {}; export the file again", existing(.count, "vertex"))]
     NoSuchVertex { index: u32, count: usize },
     #[error("coordinate {value:e} m is too large to keep; check the file and its unit")]
     TooFar { value: f64 },

@@ -1,4 +1,6 @@
 /// Error of a PLY file; vertices and faces count from 0.
+use crate::counts::counted;
+
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "each variant's message names its fields")]
@@ -20,7 +22,8 @@ pub enum PlyError {
     )]
     FarVertex { vertex: usize, value: f64 },
     #[error(
-        "face {face} has the vertex {index}, but the file has {count} vertices (counted from 0)"
+        "face {face} has the vertex {index}, but the file has {} (counted from 0)",
+        counted(.count, "vertex")
     )]
     NoSuchVertex { face: usize, index: i64, count: usize },
     #[error("face {face} has {found} corners; write at least three")]

@@ -51,13 +51,13 @@ pub(super) struct Directory {
     /// Flags of the picture's relation to others in the file.
     subfile: u64,
     /// Photometric interpretation, and the byte of the file where it is written.
-    pub(super) photometric: Option<TagValue>,
+    pub(super) photometric: Option<TagNumber>,
     next: u64,
 }
 
 /// A number of 16 bits in a file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TagValue {
+pub(super) struct TagNumber {
     pub(super) value: u64,
     pub(super) at: u64,
 }
@@ -178,7 +178,7 @@ fn directory(
             TILE_WIDTH => &mut found.tile_width,
             TILE_HEIGHT => &mut found.tile_height,
             PHOTOMETRIC if is_here && size == 2 => {
-                found.photometric = Some(TagValue { value, at });
+                found.photometric = Some(TagNumber { value, at });
                 continue;
             }
             _ => continue,
@@ -217,7 +217,7 @@ impl<R: Read + Seek> PhotometricPatch<R> {
             .iter()
             .filter_map(|directory| directory.photometric)
             .filter(|written| matches!(written.value, WHITE_IS_ZERO | PALETTE | MASK))
-            .flat_map(|TagValue { at, .. }| {
+            .flat_map(|TagNumber { at, .. }| {
                 let low = u64::from(is_big);
                 [(at + low, BLACK_IS_ZERO), (at + 1 - low, 0)]
             })

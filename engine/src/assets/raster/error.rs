@@ -1,3 +1,4 @@
+use crate::counts::counted;
 use glam::DVec2;
 
 use super::RasterExtent;
@@ -22,7 +23,8 @@ pub enum RasterError {
     #[error("has no {key}; write it above the values, as in `{example}`")]
     AsciiMissing { key: &'static str, example: &'static str },
     #[error(
-        "says {columns} x {rows} cells, but holds only {found} values; the file is cut off, or its header is wrong"
+        "says {columns} x {rows} cells, but holds only {}; the file is cut off, or its header is wrong",
+        counted(.found, "value")
     )]
     Short { columns: usize, rows: usize, found: usize },
     #[error(
@@ -36,8 +38,9 @@ pub enum RasterError {
     )]
     TooMany { columns: u64, rows: u64, most: u64 },
     #[error(
-        "its {columns} x {rows} cells of {layers} bands take {lack}; cut it to the scene, or resample it \
-         to larger cells (gdal_translate -outsize)"
+        "its {columns} x {rows} cells of {} take {lack}; cut it to the scene, or resample it \
+         to larger cells (gdal_translate -outsize)",
+        counted(.layers, "band")
     )]
     Memory { columns: usize, rows: usize, layers: usize, lack: crate::memory::Lack },
     #[error(

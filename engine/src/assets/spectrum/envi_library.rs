@@ -3,6 +3,7 @@
 //! Source: ENVI header fields (NV5 Geospatial documentation): `samples` channels, `lines` spectra, `wavelength`,
 //! `wavelength units`, `spectra names`, `reflectance scale factor`, `bbl`, `data ignore value`.
 
+use crate::counts::counted;
 use std::path::Path;
 
 use super::super::AssetError;
@@ -38,8 +39,9 @@ pub(super) fn read(
         match read {
             Some(numbers) if numbers.len() == channels => Ok(Some(numbers)),
             Some(numbers) => Err(wrong(format!(
-                "lists {} numbers as `{key}` for {channels} channels; list one for each",
-                numbers.len()
+                "lists {} as `{key}` for {}; list one for each",
+                counted(numbers.len(), "number"),
+                counted(channels, "channel")
             ))),
             None => {
                 Err(wrong(format!("has something else than numbers in `{key}`; write numbers")))

@@ -1,3 +1,4 @@
+use crate::counts::counted;
 use std::path::{Path, PathBuf};
 
 use super::super::AssetError;
@@ -24,7 +25,12 @@ pub enum SpectrumProblem {
         "holds wavelengths of the USGS library; name a file of values as `file`, and this one as `wavelengths`"
     )]
     WavelengthsAlone,
-    #[error("holds {values} values, and {} {wavelengths} wavelengths; name those of the same spectrometer", .other.display())]
+    #[error(
+        "holds {}, and {} {}; name those of the same spectrometer",
+        counted(.values, "value"),
+        .other.display(),
+        counted(.wavelengths, "wavelength")
+    )]
     UnlikeLengths { values: usize, wavelengths: usize, other: PathBuf },
     #[error(
         "is an ENVI spectral library of {count} spectra; write the one that is meant, `value: {example:?}`; it holds {names}"

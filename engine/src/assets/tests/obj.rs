@@ -167,17 +167,17 @@ fn errors_name_the_line_and_say_what_to_write() {
         ("v 0 0 0\nf 1 2\n", ":2: this face has 2 corners; write at least three"),
         (
             "v 0 0 0\nf 0 1 1\n",
-            ":2: corner 0 names none of the 1 vertices; count from 1 at the first, or from -1 \
+            ":2: corner 0 names no vertex, and there is 1 vertex above it; count from 1 at the first, or from -1 \
              backwards",
         ),
         (
             "v 0 0 0\nf 1 1 9\n",
-            ":2: corner 9 names none of the 1 vertices; count from 1 at the first, or from -1 \
+            ":2: corner 9 names no vertex, and there is 1 vertex above it; count from 1 at the first, or from -1 \
              backwards",
         ),
         (
             "v 0 0 0\nf -1 -1 -2\n",
-            ":2: corner -2 names none of the 1 vertices; count from 1 at the first, or from -1 \
+            ":2: corner -2 names no vertex, and there is 1 vertex above it; count from 1 at the first, or from -1 \
              backwards",
         ),
         (

@@ -113,7 +113,7 @@ fn polygons_are_cut_as_those_of_obj_are() {
     let from_ply = read_ply(file(ply).path(), &import).unwrap();
     assert_eq!(from_ply.value, from_obj.value);
     assert_eq!(from_ply.warnings.len(), 1, "{:?}", from_ply.warnings);
-    assert!(from_ply.warnings[0].contains("cross themselves (first: face 2)"));
+    assert!(from_ply.warnings[0].contains("crosses itself (first: face 2)"));
 }
 
 #[test]

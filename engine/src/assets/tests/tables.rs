@@ -147,7 +147,7 @@ fn bad_instances_are_errors_with_their_line_and_the_nearest_name() {
             ":1: column \"y_m\" is missing among [\"x_m\", \"z_m\"]; add it, or list the names of all columns \
              under `columns` in the scene",
         ),
-        ("x_m,y_m\n1,2\n1\n", ":3: has 1 values for 2 columns"),
+        ("x_m,y_m\n1,2\n1\n", ":3: has 1 value for 2 columns"),
         ("x_m,y_m,x_m\n1,2,3\n", ":1: columns \"x_m\" and \"x_m\" say the same; keep one"),
         (
             "x_m,y_m,yaw_deg,yaw_rad\n1,2,3,4\n",

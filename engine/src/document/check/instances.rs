@@ -1,5 +1,6 @@
 //! Checks of instances.
 
+use crate::counts::counted;
 use indexmap::IndexMap;
 
 use super::super::diagnostic::{Diagnostic, suggestion};
@@ -7,7 +8,7 @@ use super::super::scene::{
     Area, CanopyHeights, Distribution, INSTANCE_COLUMNS, InstanceList, InstanceTable, Instances,
     Prototype, Ref, Rule, Scatter, Scene, SpeciesMeshes, Stems, meant_column,
 };
-use super::{Report, ScenePath, count};
+use super::{Report, ScenePath};
 
 pub(super) fn check_instances(scene: &Scene, report: &mut Report<'_>) {
     for (index, instances) in scene.instances.iter().enumerate() {
@@ -190,7 +191,7 @@ fn check_area(area: &Area, path: &ScenePath, report: &mut Report<'_>) {
 
 fn check_ring(ring: &[(f64, f64)], path: &ScenePath, report: &mut Report<'_>) {
     if ring.len() < 3 && report.is_whole(path) {
-        let message = format!("{} enclose no area", count(ring.len(), "corner"));
+        let message = format!("{} enclose no area", counted(ring.len(), "corner"));
         report.error(path, message, "write at least three: `[(10.0, 10.0), (90.0, 10.0), ..]`");
     }
     if let Some(index) = ring.iter().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
@@ -299,7 +300,7 @@ fn check_count(
     report: &mut Report<'_>,
 ) {
     if values != 0 && values != places && report.is_readable(path.key("at_m")) {
-        let values = count(values, "value");
+        let values = counted(values, "value");
         let message = format!("`{key}` has {values}, but `at_m` has {places}");
         let help = "write one for each place, or leave the key out";
         report.error(path.key(key), message, help);

@@ -1,7 +1,7 @@
 //! Sun and sky.
 
 use super::super::scene::{Scene, Sky, Sun};
-use super::spectrum::{Quantity, check_band_count, check_spectrum};
+use super::spectrum::{CheckedQuantity, check_band_count, check_spectrum};
 use super::thermal::needs_light;
 use super::{Report, ScenePath};
 
@@ -9,7 +9,7 @@ pub(super) fn check_sun(scene: &Scene, report: &mut Report<'_>) {
     let Some(sun) = &scene.sun else { return };
     check_position(sun, scene, report);
     let path = ["sun", "irradiance"].into();
-    check_spectrum(&path, &sun.irradiance, Quantity::Irradiance, scene, report);
+    check_spectrum(&path, &sun.irradiance, CheckedQuantity::Irradiance, scene, report);
 }
 
 fn check_position(sun: &Sun, scene: &Scene, report: &mut Report<'_>) {
@@ -69,7 +69,7 @@ pub(super) fn check_sky(scene: &Scene, report: &mut Report<'_>) {
         }
         Sky::Isotropic { irradiance } => {
             let path = ["sky", "irradiance"].into();
-            check_spectrum(&path, irradiance, Quantity::Irradiance, scene, report);
+            check_spectrum(&path, irradiance, CheckedQuantity::Irradiance, scene, report);
         }
     }
 }

@@ -20,9 +20,10 @@ use super::diagnostic::{Diagnostic, unknown_name};
 use super::leaves::{LeafValue, visit_leaves};
 use super::path::ScenePath;
 use super::scene::{Map, Scene, Transport};
+use crate::counts::counted;
 
 pub(crate) use pixels::{rounded_up, too_many_pixels};
-pub(crate) use range::{HEIGHT, IRRADIANCE, LENGTH, Range, SCALE};
+pub(crate) use range::{HEIGHT, IRRADIANCE, LENGTH, LawfulRange, SCALE};
 pub(crate) use sensor::check_maps;
 
 /// No more errors than this are kept: nobody reads them.
@@ -109,7 +110,7 @@ impl Report<'_> {
 
     fn finish(mut self) -> Vec<Diagnostic> {
         if self.dropped > 0 {
-            let message = format!("and {} more errors", self.dropped);
+            let message = format!("and {}", counted(self.dropped, "more error"));
             self.found.push(Diagnostic::error(ScenePath::root(), message));
         }
         self.found
@@ -229,11 +230,6 @@ fn check_references(scene: &Scene, report: &mut Report<'_>) {
             report.push(unknown_name(path, target.kind, name, known));
         }
     });
-}
-
-/// `1 value`, `2 values`.
-fn count(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 fn check_transport(transport: &Transport, report: &mut Report<'_>) {

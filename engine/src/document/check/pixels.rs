@@ -6,6 +6,7 @@ use super::super::diagnostic::Diagnostic;
 use super::super::scene::Scene;
 use super::sensor::VALUES;
 use super::{Report, ScenePath};
+use crate::counts::counted;
 use crate::geometry::PixelGrid;
 
 /// Pixels that an image may have in a row or a column.
@@ -28,8 +29,8 @@ pub(super) fn check_size(
     let values = f64::from(columns) * f64::from(rows) * scene.bands.len() as f64;
     if values > VALUES {
         let message = format!(
-            "{columns} x {rows} pixels in {} bands are more than an image may hold",
-            scene.bands.len()
+            "{columns} x {rows} pixels in {} are more than an image may hold",
+            counted(scene.bands.len(), "band")
         );
         report.error(at, message, format!("keep the product below {VALUES}"));
     }
@@ -90,7 +91,8 @@ pub(crate) fn too_many_pixels(
         format!("{columns} x {rows} pixels of {side} m: expected 1 to {most} each way")
     } else if columns * rows * bands as f64 > VALUES {
         format!(
-            "{columns} x {rows} pixels of {side} m in {bands} bands are more than an image may hold"
+            "{columns} x {rows} pixels of {side} m in {} are more than an image may hold",
+            counted(bands, "band")
         )
     } else {
         return None;

@@ -2,7 +2,8 @@
 
 use super::super::diagnostic::{Diagnostic, suggestion};
 use super::super::scene::{DerivativeSteps, Param, Scene, Sweep};
-use super::{Report, ScenePath, count};
+use super::{Report, ScenePath};
+use crate::counts::counted;
 
 /// A sweep may have so many points.
 const POINTS: usize = 100_000;
@@ -92,8 +93,8 @@ pub(super) fn check_sweep(scene: &Scene, report: &mut Report<'_>) {
         if let Some((name, other)) = other {
             let message = format!(
                 "`{first}` has {}, `{name}` has {}",
-                count(values.len(), "value"),
-                count(other.len(), "value")
+                counted(values.len(), "value"),
+                counted(other.len(), "value")
             );
             let help = "`Zip` takes one value of each at every point; `Grid` combines all of them";
             report.error(ScenePath::from("sweep").name(name), message, help);

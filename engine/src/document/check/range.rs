@@ -7,7 +7,7 @@ use super::Report;
 
 /// Lawful values of a quantity; the ends are lawful.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Range {
+pub(crate) struct LawfulRange {
     /// Name of the quantity with an article.
     quantity: &'static str,
     /// Unit behind a number; empty for none.
@@ -19,7 +19,7 @@ pub(crate) struct Range {
 }
 
 /// Coordinates and lengths. Eastings that start with the number of their zone reach 3.3e7 m.
-pub(crate) const LENGTH: Range = Range {
+pub(crate) const LENGTH: LawfulRange = LawfulRange {
     quantity: "a coordinate or a length",
     unit: "m",
     least: -1e8,
@@ -28,7 +28,7 @@ pub(crate) const LENGTH: Range = Range {
 };
 
 /// Heights, and heights of sensors: satellites among them.
-pub(crate) const HEIGHT: Range = Range {
+pub(crate) const HEIGHT: LawfulRange = LawfulRange {
     quantity: "a height",
     unit: "m",
     least: -1e8,
@@ -36,7 +36,7 @@ pub(crate) const HEIGHT: Range = Range {
     help: "heights are in metres",
 };
 
-const AREA: Range = Range {
+const AREA: LawfulRange = LawfulRange {
     quantity: "an area, or a number per area",
     unit: "",
     least: 0.0,
@@ -44,7 +44,7 @@ const AREA: Range = Range {
     help: "areas are in m², densities per m²",
 };
 
-const ANGLE: Range = Range {
+const ANGLE: LawfulRange = LawfulRange {
     quantity: "an angle",
     unit: "°",
     least: -1e6,
@@ -52,7 +52,7 @@ const ANGLE: Range = Range {
     help: "angles are in degrees",
 };
 
-const WAVELENGTH: Range = Range {
+const WAVELENGTH: LawfulRange = LawfulRange {
     quantity: "a wavelength",
     unit: "nm",
     least: 0.0,
@@ -61,7 +61,7 @@ const WAVELENGTH: Range = Range {
 };
 
 /// Temperatures. Flames and lamps are below 4000 K.
-pub(super) const TEMPERATURE: Range = Range {
+pub(super) const TEMPERATURE: LawfulRange = LawfulRange {
     quantity: "a temperature",
     unit: "K",
     least: 0.0,
@@ -69,7 +69,7 @@ pub(super) const TEMPERATURE: Range = Range {
     help: "temperatures are in kelvins: 20 °C is 293.15",
 };
 
-const TEMPERATURE_DIFFERENCE: Range = Range {
+const TEMPERATURE_DIFFERENCE: LawfulRange = LawfulRange {
     quantity: "a difference of temperatures",
     unit: "K",
     least: -1e4,
@@ -78,7 +78,7 @@ const TEMPERATURE_DIFFERENCE: Range = Range {
 };
 
 /// Irradiance, and radiance of the thermal sky. The surface of the sun has some 1e5 W m⁻² nm⁻¹.
-pub(crate) const IRRADIANCE: Range = Range {
+pub(crate) const IRRADIANCE: LawfulRange = LawfulRange {
     quantity: "an irradiance or a radiance",
     unit: "W m⁻² nm⁻¹",
     least: 0.0,
@@ -87,7 +87,7 @@ pub(crate) const IRRADIANCE: Range = Range {
 };
 
 /// Sizes of instances over that of their mesh.
-pub(crate) const SCALE: Range = Range {
+pub(crate) const SCALE: LawfulRange = LawfulRange {
     quantity: "a scale",
     unit: "",
     least: 0.0,
@@ -95,7 +95,7 @@ pub(crate) const SCALE: Range = Range {
     help: "a scale of 1 leaves the mesh as it is",
 };
 
-const SECONDS: Range = Range {
+const SECONDS: LawfulRange = LawfulRange {
     quantity: "a time",
     unit: "s",
     least: 0.0,
@@ -103,7 +103,7 @@ const SECONDS: Range = Range {
     help: "the time of a measurement is in seconds",
 };
 
-impl Range {
+impl LawfulRange {
     /// Fault of a value, with advice; `None` if it is lawful.
     pub(crate) fn problem(&self, value: f64) -> Option<(String, &'static str)> {
         let Self { quantity, unit, least, most, help } = self;
@@ -148,7 +148,7 @@ pub(super) fn check_ranges(scene: &Scene, report: &mut Report<'_>) {
 }
 
 /// The range of the quantity that a number at this path is of.
-fn range_of(path: &ScenePath) -> Option<&'static Range> {
+fn range_of(path: &ScenePath) -> Option<&'static LawfulRange> {
     let steps = path.steps();
     // Numbers that authors have named may be anything.
     if let Some(Step::Key(key)) = steps.first()

@@ -8,7 +8,8 @@ use super::super::scene::{
     SurfaceQuantity,
 };
 use super::reflectance_map::check_reflectance_map;
-use super::{Report, ScenePath, count};
+use super::{Report, ScenePath};
+use crate::counts::counted;
 use crate::spectral::{SHORTEST_NM, library_names, library_spectrum};
 
 /// A spectrum may name one that names one, and so on, so often.
@@ -16,7 +17,7 @@ const CHAIN: usize = 16;
 
 /// Quantity of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Quantity {
+pub(super) enum CheckedQuantity {
     /// Reflectance, transmittance or parameter of a surface.
     Surface(SurfaceQuantity),
     /// 0 or above.
@@ -99,7 +100,7 @@ pub(super) fn check_spectra(scene: &Scene, report: &mut Report<'_>) {
     report.own_names("spectra", "a spectrum", &scene.spectra);
     for (index, (name, spectrum)) in scene.spectra.iter().enumerate() {
         let path = ScenePath::from("spectra").name(name);
-        check_spectrum(&path, spectrum, Quantity::Any, scene, report);
+        check_spectrum(&path, spectrum, CheckedQuantity::Any, scene, report);
         check_chain(index, &path, scene, report);
     }
 }
@@ -112,7 +113,7 @@ pub(super) fn check_materials(scene: &Scene, report: &mut Report<'_>) {
         }
         for (key, spectrum, quantity) in material.spectra() {
             let path = ScenePath::from("materials").name(name).key(key);
-            check_spectrum(&path, spectrum, Quantity::Surface(quantity), scene, report);
+            check_spectrum(&path, spectrum, CheckedQuantity::Surface(quantity), scene, report);
         }
         if let Material::Leaf(Leaf { coating: Some(coating), .. }) = material {
             check_coating(&ScenePath::from("materials").name(name).key("coating"), coating, report);
@@ -157,16 +158,16 @@ fn warn_two_leaves(name: &str, spectra: [&Spectrum; 2], scene: &Scene, report: &
 pub(super) fn check_spectrum(
     path: &ScenePath,
     spectrum: &Spectrum,
-    quantity: Quantity,
+    quantity: CheckedQuantity,
     scene: &Scene,
     report: &mut Report<'_>,
 ) {
     let value = |report: &mut Report<'_>, path: &ScenePath, value: f64| match quantity {
-        Quantity::Surface(SurfaceQuantity::Fraction) => report.fraction(path, value),
-        Quantity::Surface(SurfaceQuantity::Parameter { least, most }) => {
+        CheckedQuantity::Surface(SurfaceQuantity::Fraction) => report.fraction(path, value),
+        CheckedQuantity::Surface(SurfaceQuantity::Parameter { least, most }) => {
             report.within(path, value, least, most);
         }
-        Quantity::Irradiance | Quantity::Any => report.at_least(path, value, 0.0),
+        CheckedQuantity::Irradiance | CheckedQuantity::Any => report.at_least(path, value, 0.0),
     };
     match spectrum {
         Spectrum::Constant(constant) => value(report, path, *constant),
@@ -184,7 +185,7 @@ pub(super) fn check_spectrum(
         }
         Spectrum::Table(table) => report.above_zero(path.key("scale"), table.scale),
         Spectrum::AstmG173 | Spectrum::AstmE490 => {
-            if matches!(quantity, Quantity::Surface(_)) {
+            if matches!(quantity, CheckedQuantity::Surface(_)) {
                 let message =
                     "a spectrum of the sun is an irradiance, no reflectance or transmittance";
                 let help = "write `Constant(..)`, `Bands(..)`, `Points(..)`, `Table(..)` or `Prospect(..)`";
@@ -211,20 +212,20 @@ pub(super) fn check_spectrum(
         }
         Spectrum::Named(name) => {
             let is_leaf = matches!(resolve(name, scene), Some(Spectrum::Prospect(_)));
-            if quantity == Quantity::Irradiance && is_leaf {
+            if quantity == CheckedQuantity::Irradiance && is_leaf {
                 refuse_leaf_as_light(path, report);
             }
         }
         Spectrum::Prospect(leaf) => {
             check_prospect(path, leaf, report);
             match quantity {
-                Quantity::Irradiance => refuse_leaf_as_light(path, report),
-                Quantity::Surface(SurfaceQuantity::Parameter { .. }) => {
+                CheckedQuantity::Irradiance => refuse_leaf_as_light(path, report),
+                CheckedQuantity::Surface(SurfaceQuantity::Parameter { .. }) => {
                     let message = "`Prospect` is the spectrum of a leaf, no parameter of a model";
                     let help = "write `Constant(..)`, `Bands(..)`, `Points(..)` or `Table(..)`";
                     report.error(path, message, help);
                 }
-                Quantity::Surface(SurfaceQuantity::Fraction) | Quantity::Any => {}
+                CheckedQuantity::Surface(SurfaceQuantity::Fraction) | CheckedQuantity::Any => {}
             }
         }
     }
@@ -242,7 +243,7 @@ pub(super) fn check_band_count(
     if values == bands || bands == 0 || !report.is_readable("bands") {
         return;
     }
-    let (values, shown) = (count(values, "value"), count(bands, "band"));
+    let (values, shown) = (counted(values, "value"), counted(bands, "band"));
     let message = format!("`{what}` has {values}, but the scene has {shown}");
     let names: Vec<_> = scene.bands.iter().take(20).map(|band| band.name.as_str()).collect();
     let more = if bands > names.len() { ", .." } else { "" };
@@ -268,8 +269,8 @@ fn check_wavelengths(path: &ScenePath, points: &[(f64, f64)], report: &mut Repor
     }
 }
 
-fn refuse_surface_as_light(path: &ScenePath, quantity: Quantity, report: &mut Report<'_>) {
-    if quantity == Quantity::Irradiance {
+fn refuse_surface_as_light(path: &ScenePath, quantity: CheckedQuantity, report: &mut Report<'_>) {
+    if quantity == CheckedQuantity::Irradiance {
         let help = "write `AstmG173`, `Constant(..)`, `Bands(..)`, `Points(..)` or `Table(..)`";
         report.error(path, "this is the reflectance of a surface, no light", help);
     }

@@ -4,7 +4,7 @@ use super::super::scene::{
     Band, BandSource, ImageMeasure, PhotonMeasure, Scene, Temperature, ThermalSky,
 };
 use super::range::TEMPERATURE;
-use super::spectrum::{Quantity, check_spectrum};
+use super::spectrum::{CheckedQuantity, check_spectrum};
 use super::{Report, ScenePath};
 
 pub(super) fn check_thermal_sky(scene: &Scene, report: &mut Report<'_>) {
@@ -12,7 +12,13 @@ pub(super) fn check_thermal_sky(scene: &Scene, report: &mut Report<'_>) {
         ThermalSky::None => {}
         ThermalSky::BlackBody(value) => kelvin(&"thermal_sky".into(), *value, report),
         ThermalSky::Radiance(radiance) => {
-            check_spectrum(&"thermal_sky".into(), radiance, Quantity::Irradiance, scene, report);
+            check_spectrum(
+                &"thermal_sky".into(),
+                radiance,
+                CheckedQuantity::Irradiance,
+                scene,
+                report,
+            );
         }
     }
 }

@@ -47,7 +47,7 @@ macro_rules! key {
     };
 
     (@describe $out:ident, $book:ident, $default:expr, $example:expr, $doc:expr; $field:ident: $type:ty) => {
-        $out.push(crate::document::describe::Key::new::<$type>(
+        $out.push(crate::document::describe::SchemaKey::new::<$type>(
             stringify!($field),
             $doc,
             $default,

@@ -30,7 +30,7 @@ use serde::de::{
 use serde::ser::{SerializeStruct as _, Serializer};
 
 use super::decode::{Decode, Fields, Reader};
-use super::describe::{self, Book, Key};
+use super::describe::{self, Book, SchemaKey};
 use super::encode::Encode;
 use super::leaves::Walk;
 use super::ron_text::{Item, Node, Text};
@@ -69,7 +69,7 @@ pub(super) trait Record: ReadKeys + Clone + PartialEq {
     fn examples(base: Option<&Self>) -> Vec<(&'static str, String)>;
 
     /// Descriptions of the keys.
-    fn describe_keys(base: Option<&Self>, book: &mut Book) -> Vec<Key>;
+    fn describe_keys(base: Option<&Self>, book: &mut Book) -> Vec<SchemaKey>;
 
     /// Reads the keys.
     fn decode_keys<'a>(fields: &Fields<'a>, base: Option<&Self>, reader: &mut Reader<'a>) -> Self;

@@ -67,7 +67,7 @@ macro_rules! record {
             fn describe_keys(
                 base: Option<&Self>,
                 book: &mut crate::document::describe::Book,
-            ) -> Vec<crate::document::describe::Key> {
+            ) -> Vec<crate::document::describe::SchemaKey> {
                 let mut out = Vec::new();
                 $(key!(
                     @describe out, book,

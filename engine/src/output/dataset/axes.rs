@@ -9,7 +9,7 @@ use crate::products::{AxisPoints, Georeference, Image, ProductAxis, Report};
 const SEVERAL_AXES: [(&str, &str); 2] = [("zenith_deg", "view"), ("bottom_m", "layer")];
 
 /// Dimensions of a data set, with their coordinates, that grow while products ask for them.
-pub(super) struct Axes<'a> {
+pub(super) struct DatasetAxes<'a> {
     report: &'a Report,
     /// True if views have zenith angles with a sign too: the sun has one azimuth.
     has_signs: bool,
@@ -36,7 +36,7 @@ enum Points {
     Columns(usize, Option<[f64; 2]>),
 }
 
-impl<'a> Axes<'a> {
+impl<'a> DatasetAxes<'a> {
     pub(super) fn new(report: &'a Report, names: VariableNames) -> Self {
         Self {
             report,

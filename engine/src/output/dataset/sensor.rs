@@ -5,7 +5,7 @@ use std::io;
 use super::super::names::SensorNames;
 use super::super::provenance::{self, RecipeForm, RecipeTexts};
 use super::super::{OfSensor, length};
-use super::axes::{AlongDimension, Axes};
+use super::axes::{AlongDimension, DatasetAxes};
 use super::grid_mapping::grid_mapping;
 use super::names::{VariableNames, describe, in_words, standard_name};
 use super::pixels::ImageRasters;
@@ -32,7 +32,7 @@ pub(in crate::output) fn of_sensor<'a>(
         planned.products.iter().map(|product| ProductKeys::new(&product.key, &mut names)).collect();
     let mapping = sensor.products.iter().any(has_place).then(|| grid_mapping(report)).flatten();
     let mapping = mapping.map(|attributes| (names.take("crs"), attributes));
-    let mut axes = Axes::new(report, names);
+    let mut axes = DatasetAxes::new(report, names);
     let mut variables = Vec::new();
     for ((product, keys), rasters) in sensor.products.iter().zip(&keys).zip(rasters) {
         if product.values.is_empty() {
@@ -48,7 +48,7 @@ pub(in crate::output) fn of_sensor<'a>(
             _ => of_product.add_table(),
         }
     }
-    let Axes { dimensions, coordinates, .. } = axes;
+    let DatasetAxes { dimensions, coordinates, .. } = axes;
     let mapping = mapping.into_iter().map(|(name, attributes)| Variable {
         name,
         dimensions: Vec::new(),
@@ -108,7 +108,7 @@ impl ProductKeys {
 pub(super) struct ProductVariables<'a, 'v, 'p, 'r> {
     pub(super) product: &'a Product,
     pub(super) keys: &'p ProductKeys,
-    pub(super) axes: &'p mut Axes<'r>,
+    pub(super) axes: &'p mut DatasetAxes<'r>,
     pub(super) variables: &'p mut Vec<Variable<'v>>,
 }
 

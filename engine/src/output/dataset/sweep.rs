@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 
 use super::super::provenance::RecipeTexts;
-use super::axes::{AlongDimension, Axes};
+use super::axes::{AlongDimension, DatasetAxes};
 use super::names::{VariableNames, in_words};
 use super::sensor::{ProductKeys, ProductVariables, global};
 use super::values::{StoredForm, StoredValues};
@@ -44,7 +44,7 @@ pub(in crate::output) fn of_sweep(
     };
     let keys: Vec<ProductKeys> =
         products.iter().map(|swept| ProductKeys::new(&key(swept), &mut names)).collect();
-    let mut axes = Axes::of_sweep(report, names);
+    let mut axes = DatasetAxes::of_sweep(report, names);
     let swept = along_points(points, &mut axes);
     let mut variables = Vec::new();
     for (SweptProduct { product, is_mean, starts }, keys) in products.iter().zip(&keys) {
@@ -61,7 +61,7 @@ pub(in crate::output) fn of_sweep(
         let names = [keys.values.clone(), keys.errors.clone()];
         of_product.add_pair(names, &long_name, &along, values, "");
     }
-    let Axes { dimensions, coordinates, .. } = axes;
+    let DatasetAxes { dimensions, coordinates, .. } = axes;
     let attributes = global(report, sensor, &RecipeTexts::default());
     let variables = coordinates.into_iter().chain(variables).collect();
     Ok(Dataset { dimensions, attributes, variables })
@@ -69,7 +69,7 @@ pub(in crate::output) fn of_sweep(
 
 /// Dimensions of the points: one per parameter, if the points are all combinations of their values in order, the last
 /// parameter fastest; else one, `point`, along which all parameters run.
-fn along_points(points: &[SweepPoint], axes: &mut Axes<'_>) -> Vec<AlongDimension> {
+fn along_points(points: &[SweepPoint], axes: &mut DatasetAxes<'_>) -> Vec<AlongDimension> {
     let Some(first) = points.first() else { return Vec::new() };
     let values = |place: usize| -> Vec<&Param> {
         points.iter().filter_map(|point| Some(&point.params.get(place)?.1)).collect()

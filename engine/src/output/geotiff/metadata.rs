@@ -3,15 +3,16 @@
 use std::fmt::Write as _;
 
 use super::super::Source;
-use super::super::envi::Raster;
+use super::super::envi::ImageRaster;
 use super::super::provenance::{RECIPE, RecipeForm};
 use crate::products::{Class, Image};
 
 /// Provenance in one line, as in the other formats, without the recipe.
-pub(super) fn description(source: &Source<'_>, raster: Raster) -> String {
+pub(super) fn description(source: &Source<'_>, raster: ImageRaster) -> String {
     let all = source.provenance(RecipeForm::Packed).into_iter();
     let all = all.filter(|(key, _)| *key != RECIPE).map(|(key, value)| format!("{key}: {value}"));
-    let heading = (raster == Raster::Errors).then(|| "standard errors and coverage".to_owned());
+    let heading =
+        (raster == ImageRaster::Errors).then(|| "standard errors and coverage".to_owned());
     heading.into_iter().chain(all).collect::<Vec<_>>().join("; ")
 }
 
@@ -24,7 +25,7 @@ pub(super) fn software(source: &Source<'_>) -> String {
 pub(super) fn gdal(
     source: &Source<'_>,
     image: &Image,
-    raster: Raster,
+    raster: ImageRaster,
     classes: Option<&[Class]>,
 ) -> String {
     let mut text = "<GDALMetadata>\n".to_owned();
@@ -42,8 +43,8 @@ pub(super) fn gdal(
     let unit = &source.product.unit;
     for (band, (name, nm)) in image.bands.iter().zip(source.wavelengths(image)).enumerate() {
         let name = match raster {
-            Raster::Values => name.clone(),
-            Raster::Errors => format!("{name}_se"),
+            ImageRaster::Values => name.clone(),
+            ImageRaster::Errors => format!("{name}_se"),
         };
         item(&format!("name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\""), &name);
         item(&format!("name=\"UNITTYPE\" sample=\"{band}\" role=\"unittype\""), unit);
@@ -55,7 +56,7 @@ pub(super) fn gdal(
             item(&format!("name=\"CENTRAL_WAVELENGTH_UM\" {domain}"), &micrometres);
         }
     }
-    if raster == Raster::Errors {
+    if raster == ImageRaster::Errors {
         let band = image.bands.len();
         item(&format!("name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\""), "coverage");
         item(&format!("name=\"UNITTYPE\" sample=\"{band}\" role=\"unittype\""), "1");

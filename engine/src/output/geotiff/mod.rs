@@ -23,7 +23,7 @@ pub(super) use self::tiles::TILE;
 use self::tiles::{TileIndex, write_tiles};
 use super::Source;
 use super::classification::classes_of;
-use super::envi::Raster;
+use super::envi::ImageRaster;
 use crate::products::{Class, Image};
 
 /// Size of all uncompressed tiles from which a file has offsets of 64 bits, bytes. Tiles that do not compress grow by less
@@ -37,7 +37,7 @@ const BIG: u64 = 4_000_000_000;
 pub(super) fn write(
     source: &Source<'_>,
     image: &Image,
-    raster: Raster,
+    raster: ImageRaster,
     pixels: File,
     new_scratch: &dyn Fn() -> io::Result<File>,
     file: &mut (impl Write + Seek),
@@ -50,7 +50,7 @@ pub(super) fn write(
 struct Writer<'a> {
     source: &'a Source<'a>,
     image: &'a Image,
-    raster: Raster,
+    raster: ImageRaster,
     /// See [`BIG`].
     big_from: u64,
 }
@@ -62,10 +62,10 @@ impl Writer<'_> {
         new_scratch: &dyn Fn() -> io::Result<File>,
         file: &mut (impl Write + Seek),
     ) -> io::Result<()> {
-        let classes = classes_of(self.image).filter(|_| self.raster == Raster::Values);
+        let classes = classes_of(self.image).filter(|_| self.raster == ImageRaster::Values);
         let bands = match self.raster {
-            Raster::Values => self.image.bands.len(),
-            Raster::Errors => self.image.bands.len() + 1,
+            ImageRaster::Values => self.image.bands.len(),
+            ImageRaster::Errors => self.image.bands.len() + 1,
         };
         let base = Level {
             file: pixels,

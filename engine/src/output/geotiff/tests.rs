@@ -50,7 +50,7 @@ fn report_of(product: crate::products::Product) -> Report {
 }
 
 /// A `GeoTIFF` of a report of one product.
-fn written(report: &Report, raster: Raster, big_from: u64) -> Vec<u8> {
+fn written(report: &Report, raster: ImageRaster, big_from: u64) -> Vec<u8> {
     let product = &report.sensors[0].products[0];
     let image = product.image.as_ref().unwrap();
     let mut pixels = tempfile::tempfile().unwrap();
@@ -110,7 +110,7 @@ fn another_reader_finds_the_pixels_bit_for_bit() {
     let report = report_of(large());
     let pixels = report.sensors[0].products[0].image.as_ref().unwrap().load().unwrap();
     for (big_from, magic) in [(BIG, 42), (0, 43)] {
-        for raster in [Raster::Values, Raster::Errors] {
+        for raster in [ImageRaster::Values, ImageRaster::Errors] {
             let bytes = written(&report, raster, big_from);
             assert_eq!(bytes[2], magic);
             let mut decoder = Decoder::new(Cursor::new(&bytes[..])).unwrap();
@@ -120,14 +120,14 @@ fn another_reader_finds_the_pixels_bit_for_bit() {
             assert_eq!(number(Tag::Compression), u32::from(CompressionMethod::Deflate.to_u16()));
             assert_eq!(number(Tag::Predictor), u32::from(Predictor::FloatingPoint.to_u16()));
             let all = match raster {
-                Raster::Values => &pixels.values,
-                Raster::Errors => &pixels.standard_error,
+                ImageRaster::Values => &pixels.values,
+                ImageRaster::Errors => &pixels.standard_error,
             };
             for number in 0..2 {
                 let expected: Vec<f32> = all.iter().skip(number).step_by(2).copied().collect();
                 assert_eq!(bits(&band(&mut decoder, number)), bits(&expected), "{raster:?}");
             }
-            if raster == Raster::Errors {
+            if raster == ImageRaster::Errors {
                 assert_eq!(bits(&band(&mut decoder, 2)), bits(&pixels.coverage));
             }
         }
@@ -139,7 +139,7 @@ fn another_reader_finds_the_pixels_bit_for_bit() {
 #[test]
 fn overviews_are_means_and_come_first() {
     let report = report_of(large());
-    let bytes = written(&report, Raster::Values, BIG);
+    let bytes = written(&report, ImageRaster::Values, BIG);
     assert_eq!(bytes[4..8], [8, 0, 0, 0], "the first directory follows the header");
     let mut decoder = Decoder::new(Cursor::new(&bytes[..])).unwrap();
     let (mut below, mut first) = (band(&mut decoder, 1), u32::MAX);
@@ -177,7 +177,8 @@ fn overviews_are_means_and_come_first() {
 #[test]
 fn size_of_noise_is_estimated() {
     let report = report_of(large());
-    let files = [Raster::Values, Raster::Errors].map(|raster| written(&report, raster, BIG).len());
+    let files = [ImageRaster::Values, ImageRaster::Errors]
+        .map(|raster| written(&report, raster, BIG).len());
     let size = ProductSize::Image {
         width: 600,
         pixels: 180_000,
@@ -192,7 +193,7 @@ fn size_of_noise_is_estimated() {
 #[test]
 fn tags_hold_place_system_names_and_provenance() {
     let report = report_of(large());
-    let bytes = written(&report, Raster::Errors, BIG);
+    let bytes = written(&report, ImageRaster::Errors, BIG);
     let mut decoder = Decoder::new(Cursor::new(&bytes[..])).unwrap();
     let mut doubles = |tag| decoder.get_tag_f64_vec(tag).unwrap();
     assert_eq!(doubles(Tag::ModelPixelScaleTag), [0.5, 0.25, 0.0]);
@@ -244,7 +245,7 @@ fn classes_are_bytes_with_colours() {
     let image = product.image.unwrap();
     product.image = Some(Image { width, height, bands, pixels, rendering, ..image });
     let report = report_of(product);
-    let bytes = written(&report, Raster::Values, BIG);
+    let bytes = written(&report, ImageRaster::Values, BIG);
     let mut decoder = Decoder::new(Cursor::new(&bytes[..])).unwrap();
     assert_eq!(bytes_of_tile(&mut decoder, &bytes)[..4], [0, 2, 1, 2]);
     let colours = decoder.get_tag_u16_vec(Tag::ColorMap).unwrap();

@@ -106,6 +106,7 @@ pub(in crate::output) fn report(sensors: Vec<SensorReport>) -> Report {
         irradiance: vec![1.0; 2],
         responses: Vec::new(),
         sun_azimuth_deg: Some(250.0),
+        sun_zenith_deg: Some(30.0),
         source: None,
         coefficients: None,
         recipe: None,

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use hecs::World;
 
-use super::drawing::{Ink, Item, Paint, PixelLayer, Stroke};
-use super::page::Projection;
+use super::drawing::{DrawnItem, Ink, Paint, PixelLayer, Stroke};
+use super::page::PageProjection;
 use crate::components::{
     Instance, InstanceCount, MeshBounds, Name, Placement, PrototypeId, SceneId,
 };
@@ -102,7 +102,7 @@ impl MeshClasses {
 
 /// Crowns as items of a drawing.
 pub(super) struct DrawnCrowns {
-    pub(super) items: Vec<Item>,
+    pub(super) items: Vec<DrawnItem>,
     /// True if they are pixels, which show mean colours.
     pub(super) are_pixels: bool,
 }
@@ -113,7 +113,7 @@ pub(super) fn crowns(
     classes: &MeshClasses,
     tile: Rectangle,
     is_periodic: bool,
-    projection: &Projection,
+    projection: &PageProjection,
 ) -> DrawnCrowns {
     let widest = 0.5 * tile.size().min_element();
     let instances = Instance::in_order(world);
@@ -131,7 +131,11 @@ pub(super) fn crowns(
                     if are_pixels {
                         layer.add_disc(centre, radius, colour);
                     } else {
-                        items.push(Item::Circle { centre, radius, paint: crown_paint(colour) });
+                        items.push(DrawnItem::Circle {
+                            centre,
+                            radius,
+                            paint: crown_paint(colour),
+                        });
                     }
                 }
                 CrownOutline::Plot(corners) => {
@@ -139,14 +143,14 @@ pub(super) fn crowns(
                     // Many plots would hide everything.
                     if items.len() < MOST_CIRCLES {
                         let paint = crown_paint(colour);
-                        items.push(Item::Path { lines: vec![ring], is_closed: true, paint });
+                        items.push(DrawnItem::Path { lines: vec![ring], is_closed: true, paint });
                     }
                 }
             }
         }
     }
     if are_pixels {
-        items.push(Item::Pixels(layer.layer()));
+        items.push(DrawnItem::Pixels(layer.layer()));
     } else {
         // Small crowns lie on large ones, else they were hidden.
         items.sort_by(|a, b| radius_of(b).total_cmp(&radius_of(a)));
@@ -154,9 +158,9 @@ pub(super) fn crowns(
     DrawnCrowns { items, are_pixels }
 }
 
-fn radius_of(item: &Item) -> f64 {
+fn radius_of(item: &DrawnItem) -> f64 {
     match item {
-        Item::Circle { radius, .. } => *radius,
+        DrawnItem::Circle { radius, .. } => *radius,
         _ => f64::INFINITY,
     }
 }
@@ -206,7 +210,7 @@ struct CrownPixels {
 }
 
 impl CrownPixels {
-    fn new(projection: &Projection) -> Self {
+    fn new(projection: &PageProjection) -> Self {
         let [corner, high] = projection.frame;
         let extent = high - corner;
         let (columns, rows) =

@@ -50,7 +50,7 @@ pub(super) struct PixelLayer {
 
 /// Part of a drawing; places in pixels from the upper left corner of the page.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Item {
+pub(super) enum DrawnItem {
     Circle {
         centre: DVec2,
         radius: f64,
@@ -80,9 +80,9 @@ pub(super) struct Drawing {
     /// Rectangle that `clipped` items are cut to: upper left and lower right corner.
     pub(super) frame: [DVec2; 2],
     /// Items inside the frame, lowest first.
-    pub(super) clipped: Vec<Item>,
+    pub(super) clipped: Vec<DrawnItem>,
     /// Items above those, anywhere on the page.
-    pub(super) over: Vec<Item>,
+    pub(super) over: Vec<DrawnItem>,
 }
 
 impl Ink {
@@ -109,7 +109,7 @@ impl Paint {
     }
 }
 
-impl Item {
+impl DrawnItem {
     /// A straight line.
     pub(super) fn line(from: DVec2, to: DVec2, paint: Paint) -> Self {
         Self::Path { lines: vec![vec![from, to]], is_closed: false, paint }

@@ -3,11 +3,12 @@
 use glam::{DVec2, DVec3};
 
 use super::crowns::{MeshClasses, MeshEntry};
-use super::drawing::{Anchor, Ink, Item, Paint, Stroke};
+use super::drawing::{Anchor, DrawnItem, Ink, Paint, Stroke};
 use super::relief::DrawnRelief;
 use super::sensors::{SensorMark, SensorShape};
 use super::{INSIDE, MapContents, OUTSIDE, sky};
 use crate::components::View;
+use crate::counts::counted;
 use crate::output::{INK, Letters, tick};
 
 /// Letters of a line of the column.
@@ -17,7 +18,7 @@ const LETTERS: usize = 34;
 const MOST_SENSORS: usize = 12;
 
 /// Meaning of the colours and lines of a map.
-pub(super) struct Legend {
+pub(super) struct MapLegend {
     meshes: Vec<MeshEntry>,
     are_pixels: bool,
     lines: Vec<(Swatch, String)>,
@@ -36,7 +37,7 @@ enum Swatch {
     Outside,
 }
 
-impl Legend {
+impl MapLegend {
     pub(super) fn new(
         contents: &MapContents,
         classes: &MeshClasses,
@@ -100,7 +101,7 @@ impl Legend {
     }
 
     /// Draws the column with its upper left corner at a place; returns the height of its end on the page too.
-    pub(super) fn draw(&self, at: DVec2, letters: Letters) -> (Vec<Item>, f64) {
+    pub(super) fn draw(&self, at: DVec2, letters: Letters) -> (Vec<DrawnItem>, f64) {
         let line = 1.3 * letters.height() as f64;
         let mut column =
             Column { items: Vec::new(), at: at + DVec2::new(0.0, 0.5 * line), letters, line };
@@ -168,14 +169,14 @@ fn sensor_lines(sensors: &[SensorMark]) -> Vec<String> {
     if lines.len() > MOST_SENSORS {
         let more = lines.len() - (MOST_SENSORS - 1);
         lines.truncate(MOST_SENSORS - 1);
-        lines.push(format!("and {more} more sensors"));
+        lines.push(format!("and {}", counted(more, "more sensor")));
     }
     lines
 }
 
 /// Rows of the column from its top to its bottom.
 struct Column {
-    items: Vec<Item>,
+    items: Vec<DrawnItem>,
     /// Place of the next row: its left end and the middle of its height.
     at: DVec2,
     letters: Letters,
@@ -186,53 +187,53 @@ impl Column {
     /// Room for a sample.
     const SAMPLE: f64 = 22.0;
 
-    fn row(&mut self, sample: Vec<Item>, text: &str) {
+    fn row(&mut self, sample: Vec<DrawnItem>, text: &str) {
         self.items.extend(sample);
         let start = self.at + DVec2::new(Self::SAMPLE + 8.0, 0.0);
         let letters = LETTERS - (Self::SAMPLE as usize + 8).div_ceil(self.letters.width());
         let text = self.letters.fitted(text, letters * self.letters.width());
-        self.items.push(Item::text(start, text, Anchor::Start));
+        self.items.push(DrawnItem::text(start, text, Anchor::Start));
         self.at.y += self.line;
     }
 
     fn text(&mut self, text: &str) {
         let text = self.letters.fitted(text, LETTERS * self.letters.width());
-        self.items.push(Item::text(self.at, text, Anchor::Start));
+        self.items.push(DrawnItem::text(self.at, text, Anchor::Start));
         self.at.y += self.line;
     }
 
-    fn disc(&self, colour: [u8; 3]) -> Vec<Item> {
+    fn disc(&self, colour: [u8; 3]) -> Vec<DrawnItem> {
         let dark = colour.map(|channel| (u16::from(channel) * 3 / 5) as u8);
         let paint = Paint {
             fill: Some(Ink::solid(colour)),
             stroke: Some(Stroke { ink: Ink::solid(dark), width: 0.8, is_dashed: false }),
         };
         let centre = self.at + DVec2::new(0.5 * Self::SAMPLE, 0.0);
-        vec![Item::Circle { centre, radius: 6.0, paint }]
+        vec![DrawnItem::Circle { centre, radius: 6.0, paint }]
     }
 
-    fn sample(&self, swatch: Swatch) -> Vec<Item> {
+    fn sample(&self, swatch: Swatch) -> Vec<DrawnItem> {
         let (left, right) = (self.at, self.at + DVec2::new(Self::SAMPLE, 0.0));
         let half = DVec2::new(0.0, 6.0);
         match swatch {
             Swatch::Border { is_dashed: true } => {
-                vec![Item::line(left, right, Paint::dashes(Ink::solid(INK), 2.0))]
+                vec![DrawnItem::line(left, right, Paint::dashes(Ink::solid(INK), 2.0))]
             }
             Swatch::Border { is_dashed: false } => {
-                vec![Item::line(left, right, Paint::line(Ink::solid(INK), 1.2))]
+                vec![DrawnItem::line(left, right, Paint::line(Ink::solid(INK), 1.2))]
             }
             Swatch::Contour => {
-                vec![Item::line(left, right, Paint::line(Ink::solid([120, 90, 50]), 1.2))]
+                vec![DrawnItem::line(left, right, Paint::line(Ink::solid([120, 90, 50]), 1.2))]
             }
             Swatch::Hole => {
-                vec![Item::rectangle(
+                vec![DrawnItem::rectangle(
                     left - half,
                     right + half,
                     Paint::fill(Ink::solid([205, 205, 215])),
                 )]
             }
             Swatch::Inside => {
-                vec![Item::rectangle(
+                vec![DrawnItem::rectangle(
                     left - half,
                     right + half,
                     Paint::line(Ink::solid(INSIDE), 1.6),
@@ -243,7 +244,7 @@ impl Column {
                     fill: Some(Ink::with_opacity(OUTSIDE, 0.12)),
                     ..Paint::line(Ink::solid(OUTSIDE), 1.6)
                 };
-                vec![Item::rectangle(left - half, right + half, paint)]
+                vec![DrawnItem::rectangle(left - half, right + half, paint)]
             }
         }
     }

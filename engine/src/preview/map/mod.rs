@@ -25,9 +25,9 @@ use crate::run::LoadedScene;
 use crate::terrain::Ground;
 
 use self::crowns::{MeshClasses, crowns};
-use self::drawing::{Anchor, Drawing, Ink, Item, Paint};
-use self::legend::Legend;
-use self::page::{Projection, coordinates, north_arrow, scale_bar, widest_coordinate};
+use self::drawing::{Anchor, Drawing, DrawnItem, Ink, Paint};
+use self::legend::MapLegend;
+use self::page::{PageProjection, coordinates, north_arrow, scale_bar, widest_coordinate};
 use self::relief::ReliefGrid;
 use self::sensors::{SensorMark, SensorShape};
 
@@ -153,12 +153,12 @@ impl SceneMap {
         let (line, letter) = (letters.height() as f64, letters.width() as f64);
         let digits = widest_coordinate(contents.shown, contents.origin) as f64;
         let corner = DVec2::new((digits + 3.0) * letter, 2.4 * line);
-        let projection = Projection::new(contents.shown, corner, size.into());
+        let projection = PageProjection::new(contents.shown, corner, size.into());
         let classes = MeshClasses::new(&loaded.world.world);
         let relief = contents.relief.draw(&projection);
         let world = &loaded.world.world;
         let drawn = crowns(world, &classes, contents.tile, contents.is_periodic, &projection);
-        let legend = Legend::new(&contents, &classes, &relief, drawn.are_pixels);
+        let legend = MapLegend::new(&contents, &classes, &relief, drawn.are_pixels);
         let mut clipped = vec![relief.ground];
         // Contours are visible through circles, and would be hidden by pixels.
         let (below, above) =
@@ -170,7 +170,7 @@ impl SceneMap {
         if !contents.is_periodic {
             let Rectangle { min, max } = contents.tile;
             let paint = Paint::line(Ink::solid(INK), 1.0);
-            clipped.push(Item::rectangle(projection.page(min), projection.page(max), paint));
+            clipped.push(DrawnItem::rectangle(projection.page(min), projection.page(max), paint));
         }
         clipped.extend(sensors::draw(&contents.sensors, &projection, letters));
 
@@ -181,7 +181,7 @@ impl SceneMap {
         } else {
             Paint::line(Ink::solid(INK), 1.4)
         };
-        let mut over = vec![Item::rectangle(low, high, frame)];
+        let mut over = vec![DrawnItem::rectangle(low, high, frame)];
         over.extend(coordinates(&projection, contents.origin, letters));
         let foot = high.y + 2.6 * line;
         over.extend(scale_bar(&projection, DVec2::new(low.x, foot)));
@@ -191,14 +191,14 @@ impl SceneMap {
             None if contents.origin == DVec3::ZERO => "m, local frame".to_owned(),
             None => "m, map coordinates of the frame".to_owned(),
         };
-        over.push(Item::text(DVec2::new(low.x, foot + 1.5 * line), axes, Anchor::Start));
+        over.push(DrawnItem::text(DVec2::new(low.x, foot + 1.5 * line), axes, Anchor::Start));
         let side = DVec2::new(high.x + 2.0 * letter, low.y);
         let (column, end) = legend.draw(side, letters);
         over.extend(column);
-        let width = (side.x + Legend::width(letters) + letter).ceil();
+        let width = (side.x + MapLegend::width(letters) + letter).ceil();
         let title = &loaded.scene().title;
         let heading = letters.fitted(title, (width - low.x - letter).max(0.0) as usize);
-        over.push(Item::text(DVec2::new(low.x, 1.2 * line), heading, Anchor::Start));
+        over.push(DrawnItem::text(DVec2::new(low.x, 1.2 * line), heading, Anchor::Start));
         let height = (foot + 3.2 * line).max(end + line).ceil();
         let drawing = Drawing {
             width: width as usize,
@@ -225,10 +225,10 @@ impl SceneMap {
     }
 }
 
-fn area_items(areas: &PlantingAreas, projection: &Projection) -> Vec<Item> {
+fn area_items(areas: &PlantingAreas, projection: &PageProjection) -> Vec<DrawnItem> {
     let item = |polygon: &Polygon, paint: Paint| {
         let ring = |ring: &Vec<DVec2>| ring.iter().map(|&at| projection.page(at)).collect();
-        Item::Path { lines: polygon.rings.iter().map(ring).collect(), is_closed: true, paint }
+        DrawnItem::Path { lines: polygon.rings.iter().map(ring).collect(), is_closed: true, paint }
     };
     let inside = Paint::line(Ink::solid(INSIDE), 1.6);
     let outside = Paint {

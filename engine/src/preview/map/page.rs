@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::drawing::{Anchor, Ink, Item, Paint};
+use super::drawing::{Anchor, DrawnItem, Ink, Paint};
 use crate::geometry::Rectangle;
 use crate::output::{INK, Letters};
 
 /// Places of the local frame to places on the page.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Projection {
+pub(super) struct PageProjection {
     /// Part of the local frame that the map shows, m.
     pub(super) shown: Rectangle,
     /// Upper left and lower right corner on the page, pixels.
@@ -17,7 +17,7 @@ pub(super) struct Projection {
     pub(super) scale: f64,
 }
 
-impl Projection {
+impl PageProjection {
     /// Map of a part of the local frame whose longer side is `side` pixels long.
     pub(super) fn new(shown: Rectangle, corner: DVec2, side: f64) -> Self {
         let scale = side / shown.size().max_element();
@@ -53,8 +53,12 @@ pub(super) fn metres(value: f64, step: f64) -> String {
 }
 
 /// Ticks with coordinates along the western and the southern side; `origin` is added to those of the local frame.
-pub(super) fn coordinates(projection: &Projection, origin: DVec3, letters: Letters) -> Vec<Item> {
-    let Projection { shown, frame: [low, high], .. } = *projection;
+pub(super) fn coordinates(
+    projection: &PageProjection,
+    origin: DVec3,
+    letters: Letters,
+) -> Vec<DrawnItem> {
+    let PageProjection { shown, frame: [low, high], .. } = *projection;
     let size = shown.size();
     let room = 12.0 * letters.width() as f64;
     let mut items = Vec::new();
@@ -76,8 +80,8 @@ pub(super) fn coordinates(projection: &Projection, origin: DVec3, letters: Lette
                 let end = page - DVec2::new(6.0, 0.0);
                 (end, end - DVec2::new(4.0, 0.0), Anchor::End)
             };
-            items.push(Item::line(page, end, paint));
-            items.push(Item::text(text, metres(value, step), anchor));
+            items.push(DrawnItem::line(page, end, paint));
+            items.push(DrawnItem::text(text, metres(value, step), anchor));
             number += 1.0;
         }
     }
@@ -92,7 +96,7 @@ pub(super) fn widest_coordinate(shown: Rectangle, origin: DVec3) -> usize {
 }
 
 /// A scale bar with its left end at a place.
-pub(super) fn scale_bar(projection: &Projection, at: DVec2) -> Vec<Item> {
+pub(super) fn scale_bar(projection: &PageProjection, at: DVec2) -> Vec<DrawnItem> {
     let mut length = round_step(projection.shown.size().x / 5.0);
     // On a narrow map the next rounder number can be too long.
     while length * projection.scale > 0.5 * (projection.frame[1] - projection.frame[0]).x {
@@ -103,9 +107,9 @@ pub(super) fn scale_bar(projection: &Projection, at: DVec2) -> Vec<Item> {
     let thick = DVec2::new(0.0, 6.0);
     let outline = Paint { fill: Some(Ink::solid([255; 3])), ..Paint::line(Ink::solid(INK), 1.0) };
     vec![
-        Item::rectangle(at, at + 2.0 * half + thick, outline),
-        Item::rectangle(at, at + half + thick, Paint::fill(Ink::solid(INK))),
-        Item::text(
+        DrawnItem::rectangle(at, at + 2.0 * half + thick, outline),
+        DrawnItem::rectangle(at, at + half + thick, Paint::fill(Ink::solid(INK))),
+        DrawnItem::text(
             at + 2.0 * half + DVec2::new(8.0, 3.0),
             format!("{} m", metres(length, length)),
             Anchor::Start,
@@ -114,11 +118,11 @@ pub(super) fn scale_bar(projection: &Projection, at: DVec2) -> Vec<Item> {
 }
 
 /// An arrow to the north with its foot at a place.
-pub(super) fn north_arrow(at: DVec2, letters: Letters) -> Vec<Item> {
+pub(super) fn north_arrow(at: DVec2, letters: Letters) -> Vec<DrawnItem> {
     let tip = at - DVec2::new(0.0, 2.2 * letters.height() as f64);
-    let mut items = Item::arrow(at, tip, Ink::solid(INK), 2.0);
+    let mut items = DrawnItem::arrow(at, tip, Ink::solid(INK), 2.0);
     let above = tip - DVec2::new(0.0, 0.6 * letters.height() as f64);
-    items.push(Item::text(above, "N", Anchor::Middle));
+    items.push(DrawnItem::text(above, "N", Anchor::Middle));
     items
 }
 
@@ -144,7 +148,7 @@ mod tests {
     #[test]
     fn north_is_up_and_east_is_right() {
         let shown = Rectangle { min: DVec2::new(10.0, 20.0), max: DVec2::new(30.0, 30.0) };
-        let projection = Projection::new(shown, DVec2::new(5.0, 7.0), 100.0);
+        let projection = PageProjection::new(shown, DVec2::new(5.0, 7.0), 100.0);
         assert_eq!(projection.page(DVec2::new(10.0, 30.0)), DVec2::new(5.0, 7.0));
         assert_eq!(projection.page(DVec2::new(30.0, 20.0)), DVec2::new(105.0, 57.0));
     }

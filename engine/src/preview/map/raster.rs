@@ -6,7 +6,7 @@ use tiny_skia::{
     Rect, Shader, SpreadMode, Stroke as SkiaStroke, StrokeDash, Transform,
 };
 
-use super::drawing::{Anchor, Drawing, Ink, Item, Paint, PixelLayer};
+use super::drawing::{Anchor, Drawing, DrawnItem, Ink, Paint, PixelLayer};
 use crate::output::Canvas;
 
 /// Pixels of a drawing, red, green and blue, shape `[rows, columns, 3]`; `None` if there is no memory for so many.
@@ -28,14 +28,14 @@ pub(super) fn rgb(drawing: &Drawing) -> Option<Vec<u8>> {
     Some(canvas.rgb)
 }
 
-fn draw(item: &Item, page: &mut Pixmap, mask: Option<&Mask>) {
+fn draw(item: &DrawnItem, page: &mut Pixmap, mask: Option<&Mask>) {
     match item {
-        Item::Circle { centre, radius, paint } => {
+        DrawnItem::Circle { centre, radius, paint } => {
             let mut path = PathBuilder::new();
             path.push_circle(centre.x as f32, centre.y as f32, *radius as f32);
             path.finish().iter().for_each(|path| stroke_and_fill(path, paint, page, mask));
         }
-        Item::Path { lines, is_closed, paint } => {
+        DrawnItem::Path { lines, is_closed, paint } => {
             let mut path = PathBuilder::new();
             for line in lines {
                 for (index, point) in line.iter().enumerate() {
@@ -48,8 +48,8 @@ fn draw(item: &Item, page: &mut Pixmap, mask: Option<&Mask>) {
             }
             path.finish().iter().for_each(|path| stroke_and_fill(path, paint, page, mask));
         }
-        Item::Pixels(layer) => drop(pixels(layer, page, mask)),
-        Item::Text { .. } => {}
+        DrawnItem::Pixels(layer) => drop(pixels(layer, page, mask)),
+        DrawnItem::Text { .. } => {}
     }
 }
 
@@ -93,8 +93,8 @@ fn pixels(layer: &PixelLayer, page: &mut Pixmap, mask: Option<&Mask>) -> Option<
     Some(())
 }
 
-fn write(item: &Item, drawing: &Drawing, canvas: &mut Canvas) {
-    let Item::Text { at, text, anchor } = item else { return };
+fn write(item: &DrawnItem, drawing: &Drawing, canvas: &mut Canvas) {
+    let DrawnItem::Text { at, text, anchor } = item else { return };
     let letters = drawing.letters;
     let width = letters.width_of(text) as f64;
     let left = match anchor {

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::drawing::{Ink, Item, Paint, PixelLayer};
-use super::page::{Projection, round_step};
+use super::drawing::{DrawnItem, Ink, Paint, PixelLayer};
+use super::page::{PageProjection, round_step};
 use crate::geometry::Rectangle;
 use crate::terrain::Ground;
 
@@ -35,9 +35,9 @@ pub(super) struct ReliefGrid {
 /// Relief as items of a drawing.
 pub(super) struct DrawnRelief {
     /// Hillshade.
-    pub(super) ground: Item,
+    pub(super) ground: DrawnItem,
     /// Contours.
-    pub(super) contours: Option<Item>,
+    pub(super) contours: Option<DrawnItem>,
     /// Difference in height between contours, m; `None` without contours.
     pub(super) interval: Option<f64>,
     pub(super) has_holes: bool,
@@ -76,9 +76,9 @@ impl ReliefGrid {
         self.range.map_or(0.0, |[low, high]| high - low)
     }
 
-    pub(super) fn draw(&self, projection: &Projection) -> DrawnRelief {
+    pub(super) fn draw(&self, projection: &PageProjection) -> DrawnRelief {
         let has_holes = self.heights.iter().any(|height| height.is_nan());
-        let ground = Item::Pixels(self.hillshade(projection));
+        let ground = DrawnItem::Pixels(self.hillshade(projection));
         if self.is_level() {
             return DrawnRelief { ground, contours: None, interval: None, has_holes };
         }
@@ -89,11 +89,11 @@ impl ReliefGrid {
             lines = self.contours(interval, projection);
         }
         let ink = Ink::with_opacity([120, 90, 50], 0.55);
-        let contours = Item::Path { lines, is_closed: false, paint: Paint::line(ink, 0.8) };
+        let contours = DrawnItem::Path { lines, is_closed: false, paint: Paint::line(ink, 0.8) };
         DrawnRelief { ground, contours: Some(contours), interval: Some(interval), has_holes }
     }
 
-    fn hillshade(&self, projection: &Projection) -> PixelLayer {
+    fn hillshade(&self, projection: &PageProjection) -> PixelLayer {
         let is_level = self.is_level();
         let colour = |&shade: &f64| {
             if shade.is_nan() {
@@ -113,7 +113,7 @@ impl ReliefGrid {
     }
 
     /// Pieces of the lines of equal height, by marching squares; one piece in each cell that a line crosses.
-    fn contours(&self, interval: f64, projection: &Projection) -> Vec<Vec<DVec2>> {
+    fn contours(&self, interval: f64, projection: &PageProjection) -> Vec<Vec<DVec2>> {
         let Some([low, high]) = self.range else { return Vec::new() };
         let first = (low / interval).ceil() as i64;
         let last = (high / interval).floor() as i64;
@@ -134,7 +134,7 @@ impl ReliefGrid {
         row: usize,
         column: usize,
         level: f64,
-        projection: &Projection,
+        projection: &PageProjection,
         pieces: &mut Vec<Vec<DVec2>>,
     ) {
         let corners = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(r, c)| (row + r, column + c));
@@ -156,7 +156,7 @@ impl ReliefGrid {
     }
 
     /// Place on the page of grid coordinates.
-    fn page(&self, at: DVec2, projection: &Projection) -> DVec2 {
+    fn page(&self, at: DVec2, projection: &PageProjection) -> DVec2 {
         let size = self.rectangle.size();
         let part = at / DVec2::new(self.columns as f64, self.rows as f64);
         let Rectangle { min, max } = self.rectangle;

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 use hecs::World;
 
-use super::drawing::{Anchor, Ink, Item, Paint};
-use super::page::Projection;
+use super::drawing::{Anchor, DrawnItem, Ink, Paint};
+use super::page::PageProjection;
 use crate::components::{
     CameraPlacement, CountingPlane, Footprint, Name, Optics, OrthographicOptics, ResolvedSensor,
     SceneId, View,
@@ -156,7 +156,11 @@ fn plane(plane: Option<&CountingPlane>) -> SensorShape {
 }
 
 /// Draws the sensors that have a place, each with its number in the list.
-pub(super) fn draw(marks: &[SensorMark], projection: &Projection, letters: Letters) -> Vec<Item> {
+pub(super) fn draw(
+    marks: &[SensorMark],
+    projection: &PageProjection,
+    letters: Letters,
+) -> Vec<DrawnItem> {
     let mut items = Vec::new();
     let mut labels: Vec<(DVec2, String)> = Vec::new();
     for (index, mark) in marks.iter().enumerate() {
@@ -166,7 +170,7 @@ pub(super) fn draw(marks: &[SensorMark], projection: &Projection, letters: Lette
                 let ring: Vec<DVec2> = corners.iter().map(|&at| projection.page(at)).collect();
                 let at = ring.iter().copied().reduce(leftmost).unwrap_or_default();
                 let paint = Paint::line(Ink::solid(SENSOR), 1.8);
-                items.push(Item::Path { lines: vec![ring], is_closed: true, paint });
+                items.push(DrawnItem::Path { lines: vec![ring], is_closed: true, paint });
                 at
             }
             SensorShape::Camera { at, ahead, field } => {
@@ -194,8 +198,8 @@ fn camera_items(
     at: DVec2,
     ahead: DVec2,
     field: &[DVec2],
-    projection: &Projection,
-    items: &mut Vec<Item>,
+    projection: &PageProjection,
+    items: &mut Vec<DrawnItem>,
 ) -> DVec2 {
     let ink = Ink::solid(SENSOR);
     let eye = projection.page(at);
@@ -203,17 +207,17 @@ fn camera_items(
         let ring: Vec<DVec2> = field.iter().map(|&at| projection.page(at)).collect();
         let edges = ring.iter().map(|&corner| vec![eye, corner]).collect();
         let faint = Paint::line(Ink::with_opacity(SENSOR, 0.5), 0.9);
-        items.push(Item::Path { lines: edges, is_closed: false, paint: faint });
+        items.push(DrawnItem::Path { lines: edges, is_closed: false, paint: faint });
         let paint =
             Paint { fill: Some(Ink::with_opacity(SENSOR, 0.05)), ..Paint::dashes(ink, 1.4) };
-        items.push(Item::Path { lines: vec![ring], is_closed: true, paint });
+        items.push(DrawnItem::Path { lines: vec![ring], is_closed: true, paint });
     }
     if ahead.length() > 0.05 {
         let along = DVec2::new(ahead.x, -ahead.y).normalize();
-        items.extend(Item::arrow(eye, eye + 26.0 * along, ink, 2.0));
+        items.extend(DrawnItem::arrow(eye, eye + 26.0 * along, ink, 2.0));
     }
     let white = Some(Ink::solid([255; 3]));
-    items.push(Item::Circle {
+    items.push(DrawnItem::Circle {
         centre: eye,
         radius: 5.0,
         paint: Paint { fill: white, ..Paint::line(ink, 2.0) },
@@ -222,7 +226,7 @@ fn camera_items(
 }
 
 /// A text beside a place, on a plate, within the frame.
-fn plate(at: DVec2, text: &str, projection: &Projection, letters: Letters) -> Vec<Item> {
+fn plate(at: DVec2, text: &str, projection: &PageProjection, letters: Letters) -> Vec<DrawnItem> {
     let half = 0.5 * DVec2::new((letters.width_of(text) + 6) as f64, letters.height() as f64);
     let [low, high] = projection.frame;
     let middle = (at + half + 6.0).clamp(low + half, (high - half).max(low + half));
@@ -231,7 +235,7 @@ fn plate(at: DVec2, text: &str, projection: &Projection, letters: Letters) -> Ve
         ..Paint::line(Ink::solid(SENSOR), 1.0)
     };
     vec![
-        Item::rectangle(middle - half, middle + half, plate),
-        Item::text(middle, text, Anchor::Middle),
+        DrawnItem::rectangle(middle - half, middle + half, plate),
+        DrawnItem::text(middle, text, Anchor::Middle),
     ]
 }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 
-use super::drawing::{Anchor, Ink, Item, Paint};
+use super::drawing::{Anchor, DrawnItem, Ink, Paint};
 use crate::components::View;
 use crate::output::{INK, Letters};
 
@@ -22,19 +22,19 @@ pub(super) fn draw(
     sun: Option<DVec3>,
     views: &[View],
     letters: Letters,
-) -> Vec<Item> {
+) -> Vec<DrawnItem> {
     let thin = Paint::line(Ink::with_opacity(INK, 0.35), 0.8);
-    let mut items: Vec<Item> = [1.0 / 3.0, 2.0 / 3.0]
-        .map(|part| Item::Circle { centre, radius: part * radius, paint: thin })
+    let mut items: Vec<DrawnItem> = [1.0 / 3.0, 2.0 / 3.0]
+        .map(|part| DrawnItem::Circle { centre, radius: part * radius, paint: thin })
         .into();
     let rim = Paint::line(Ink::solid(INK), 1.2);
-    items.push(Item::Circle { centre, radius, paint: rim });
+    items.push(DrawnItem::Circle { centre, radius, paint: rim });
     for direction in [DVec2::X, DVec2::Y] {
-        items.push(Item::line(centre - radius * direction, centre + radius * direction, thin));
+        items.push(DrawnItem::line(centre - radius * direction, centre + radius * direction, thin));
     }
     let beyond = radius + 0.7 * letters.height() as f64;
     for (name, x, y) in [("N", 0.0, -1.0), ("E", 1.0, 0.0), ("S", 0.0, 1.0), ("W", -1.0, 0.0)] {
-        items.push(Item::text(centre + beyond * DVec2::new(x, y), name, Anchor::Middle));
+        items.push(DrawnItem::text(centre + beyond * DVec2::new(x, y), name, Anchor::Middle));
     }
     let place = |zenith: f64, azimuth: f64| {
         let (sin, cos) = azimuth.sin_cos();
@@ -44,20 +44,20 @@ pub(super) fn draw(
     let ink = Ink::solid(VIEW);
     for &at in &places {
         if places.len() <= MOST_ARROWS && at.distance(centre) > 12.0 {
-            items.extend(Item::arrow(centre, at, ink, 1.6));
+            items.extend(DrawnItem::arrow(centre, at, ink, 1.6));
         } else {
-            items.push(Item::Circle { centre: at, radius: 2.2, paint: Paint::fill(ink) });
+            items.push(DrawnItem::Circle { centre: at, radius: 2.2, paint: Paint::fill(ink) });
         }
     }
     if let Some(direction) = sun {
         let at = place(direction.z.clamp(-1.0, 1.0).acos(), direction.x.atan2(direction.y));
         if at.distance(centre) > 24.0 {
             let along = (centre - at).normalize_or_zero();
-            items.extend(Item::arrow(at, centre - 4.0 * along, Ink::solid(SUN), 2.4));
+            items.extend(DrawnItem::arrow(at, centre - 4.0 * along, Ink::solid(SUN), 2.4));
         }
         let paint =
             Paint { fill: Some(Ink::solid([255, 205, 40])), ..Paint::line(Ink::solid(SUN), 1.5) };
-        items.push(Item::Circle { centre: at, radius: 7.0, paint });
+        items.push(DrawnItem::Circle { centre: at, radius: 7.0, paint });
     }
     items
 }

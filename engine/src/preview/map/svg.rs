@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
 
-use super::drawing::{Anchor, Drawing, Ink, Item, Paint, PixelLayer};
+use super::drawing::{Anchor, Drawing, DrawnItem, Ink, Paint, PixelLayer};
 use crate::output::{INK, escaped, png_bytes};
 
 /// Text of the SVG.
@@ -45,9 +45,9 @@ fn push(out: &mut String, text: std::fmt::Arguments<'_>) {
     out.write_fmt(text).expect("a string takes any text");
 }
 
-fn draw(item: &Item, out: &mut String) {
+fn draw(item: &DrawnItem, out: &mut String) {
     match item {
-        Item::Circle { centre, radius, paint } => {
+        DrawnItem::Circle { centre, radius, paint } => {
             push(
                 out,
                 format_args!(
@@ -58,7 +58,7 @@ fn draw(item: &Item, out: &mut String) {
             attributes(paint, out);
             out.push_str("/>\n");
         }
-        Item::Path { lines, is_closed, paint } => {
+        DrawnItem::Path { lines, is_closed, paint } => {
             out.push_str("<path d=\"");
             for line in lines {
                 outline(line, *is_closed, out);
@@ -67,8 +67,8 @@ fn draw(item: &Item, out: &mut String) {
             attributes(paint, out);
             out.push_str("/>\n");
         }
-        Item::Pixels(layer) => pixels(layer, out),
-        Item::Text { at, text, anchor } => {
+        DrawnItem::Pixels(layer) => pixels(layer, out),
+        DrawnItem::Text { at, text, anchor } => {
             let anchor = match anchor {
                 Anchor::Start => "start",
                 Anchor::Middle => "middle",

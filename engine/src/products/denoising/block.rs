@@ -28,7 +28,7 @@ const LEAST_VARIANCE: f64 = 1e-3;
 const PAIRS: usize = FILTERS * (FILTERS + 1) / 2;
 
 /// Values of a band, their variances, and the weights of the pixels.
-pub(super) struct Block {
+pub(super) struct FilterBlock {
     pub(super) size: Size,
     /// NaN where nothing was seen.
     pub(super) values: Vec<f32>,
@@ -47,8 +47,8 @@ struct Pixels {
 }
 
 impl Pixels {
-    fn new(block: &Block) -> Self {
-        let Block { size, values, errors, coverage } = block;
+    fn new(block: &FilterBlock) -> Self {
+        let FilterBlock { size, values, errors, coverage } = block;
         let takes_part = |at: usize| coverage[at] > 0.0 && (values[at] + errors[at]).is_finite();
         let (mut sum, mut count) = (0.0, 0_u32);
         for at in (0..values.len()).filter(|&at| takes_part(at)) {
@@ -307,7 +307,7 @@ struct Fit {
 }
 
 /// Filters a block: returns its values and standard errors. Pixels without an error stay as they are.
-pub(super) fn denoise(block: &Block) -> (Vec<f32>, Vec<f32>) {
+pub(super) fn denoise(block: &FilterBlock) -> (Vec<f32>, Vec<f32>) {
     let pixels = Pixels::new(block);
     let filters = SIGMAS.map(|sigma| Filtered::new(&pixels, sigma));
     let sums = CellSums::new(&pixels, &filters);

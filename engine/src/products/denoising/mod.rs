@@ -29,7 +29,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use self::block::{Block, denoise};
+use self::block::{FilterBlock, denoise};
 use self::plane::Size;
 use super::image::block_rows;
 use super::{Image, PixelRows, Pixels, Product};
@@ -237,7 +237,7 @@ fn denoise_block(
     let pixels: Vec<usize> =
         (0..height).flat_map(|row| seen.clone().map(move |at| row * plain.width + at)).collect();
     let of_band = |values: &[f32]| pixels.iter().map(|at| values[at * bands + band]).collect();
-    let (filtered, errors) = denoise(&Block {
+    let (filtered, errors) = denoise(&FilterBlock {
         size,
         values: of_band(&plain.values),
         errors: of_band(&plain.standard_error),

@@ -1,6 +1,7 @@
 //! Requests for leaf area, and the cells that they ask for.
 
 use crate::components::TerrainPatch;
+use crate::counts::counted;
 use crate::queries::cell_grid::{CellCount, CellGrid, HeightReference, round_number};
 
 /// Surfaces that are counted.
@@ -54,8 +55,11 @@ pub enum LeafAreaError {
     )]
     NoLeaves,
     #[error(
-        "{columns} columns, {rows} rows and {layers} layers of {classes} classes take {needed} bytes of memory, \
-         and {free} are free: choose fewer or larger cells"
+        "{}, {} and {} of {} take {needed} bytes of memory, and {free} are free: choose fewer or larger cells",
+        counted(.columns, "column"),
+        counted(.rows, "row"),
+        counted(.layers, "layer"),
+        counted(.classes, "class")
     )]
     TooManyCells {
         columns: u128,

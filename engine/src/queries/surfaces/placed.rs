@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::planted::Prototype;
+use super::planted::PlantedMesh;
 use super::{FlatPatch, SurfaceTree};
 use crate::components::{MaterialId, Placement};
 
@@ -19,10 +19,10 @@ pub(in crate::queries) struct MaterialTree<'a> {
 
 /// Trees of each mesh prototype, by its id, over the surfaces that have a class.
 pub(in crate::queries) fn prototype_trees<'a>(
-    meshes: &[Prototype<'a>],
+    meshes: &[PlantedMesh<'a>],
     class_of: impl Fn(MaterialId) -> Option<usize> + Sync,
 ) -> BTreeMap<u32, Vec<MaterialTree<'a>>> {
-    let trees = |&(id, mesh, materials): &Prototype<'a>| {
+    let trees = |&(id, mesh, materials): &PlantedMesh<'a>| {
         let parts = || mesh.parts.iter().zip(&materials.0);
         let mut classes: Vec<usize> = parts().filter_map(|part| class_of(*part.1)).collect();
         classes.sort_unstable();

@@ -7,13 +7,13 @@ use crate::components::{Instance, InstanceCount, Mesh, PartMaterials, SceneId, T
 use crate::terrain::Ground;
 
 /// A mesh prototype with its id and materials.
-pub(in crate::queries) type Prototype<'a> = (&'a SceneId, &'a Mesh, &'a PartMaterials);
+pub(in crate::queries) type PlantedMesh<'a> = (&'a SceneId, &'a Mesh, &'a PartMaterials);
 
 /// Ground of a world, mesh prototypes that are placed, and their instances.
 pub(in crate::queries) struct PlantedGround<'a> {
     pub(in crate::queries) patch: &'a TerrainPatch,
     pub(in crate::queries) ground: GroundHeights<'a>,
-    pub(in crate::queries) meshes: Vec<Prototype<'a>>,
+    pub(in crate::queries) meshes: Vec<PlantedMesh<'a>>,
     /// Instances in document order.
     pub(in crate::queries) instances: Vec<Instance>,
 }

@@ -9,6 +9,7 @@ use crate::assets::{
     AssetError, Assumed, Axes, Heights, Length, Raster, RasterError, RasterExtent,
     RasterGeoreference, read_raster,
 };
+use crate::counts::{agreeing, counted};
 use crate::document::{Coordinates, Diagnostic, ScenePath};
 use crate::geometry::Rectangle;
 use crate::systems::Resources;
@@ -214,8 +215,11 @@ fn warn_assumed(raster: &Raster, source: &RasterSource<'_>, resources: &mut Reso
     let Some(Assumed { value, count }) = raster.assumed else { return };
     let all = raster.columns * raster.rows;
     let message = format!(
-        "{count} of its {all} cells hold {value}, which stands for no data in other files but is not \
-             named in this one; they are taken as cells without data"
+        "{count} of its {} {} {value}, which stands for no data in other files but is not \
+             named in this one; {} without data",
+        counted(all, "cell"),
+        agreeing(count, "holds", "hold"),
+        agreeing(count, "it is taken as a cell", "they are taken as cells")
     );
     let help = format!(
         "name it in the file: `NODATA_value {value}`, `data ignore value = {value}`, or \

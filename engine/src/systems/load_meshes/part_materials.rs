@@ -1,6 +1,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::components::{MaterialId, Mesh};
+use crate::counts::{agreeing, counted};
 use crate::document::{
     self, Diagnostic, GeneratedCrown, Map, Material, Obj, PartsBy, Ply, Ref, ScenePath,
     unknown_name,
@@ -117,7 +118,11 @@ fn check_part_names(
         resources.report(Diagnostic { help, ..error });
     }
     if let Some(more) = unknown.len().checked_sub(MOST_SHOWN).filter(|more| *more > 0) {
-        let message = format!("{more} more names in `parts` are names of no part");
+        let message = format!(
+            "{} in `parts` {} of no part",
+            counted(more, "more name"),
+            agreeing(more, "is the name", "are names")
+        );
         resources.report(Diagnostic::error(path.key("parts"), message));
     }
 }
@@ -155,7 +160,7 @@ fn missing_parts(mesh: &document::Prototype, missing: &[&str], path: &ScenePath)
     };
     let message = match missing.len() {
         1 => format!("part {list} has no material"),
-        count => format!("{count} parts have no material: {list}{more}"),
+        count => format!("{} have no material: {list}{more}", counted(count, "part")),
     };
     let entries = shown.map(|name| format!("{name:?}: \"..\"")).collect::<Vec<_>>().join(", ");
     let entries = if more.is_empty() { entries } else { format!("{entries}, ..") };

@@ -1,4 +1,5 @@
 use crate::assets::{BandDescription, LayerTerm};
+use crate::counts::counted;
 use crate::document::{Diagnostic, Param, RasterBands, ReflectanceMap, ScenePath, suggestion};
 use crate::spectral::BandResponse;
 use crate::systems::Resources;
@@ -79,8 +80,7 @@ fn band_of(
     resources: &mut Resources,
 ) -> Option<usize> {
     let count = match raster.len() {
-        1 => "1 band".to_owned(),
-        count => format!("{count} bands"),
+        count => counted(count, "band"),
     };
     let name = match band {
         Param::Number(number) => {

@@ -117,7 +117,7 @@ impl Site<'_> {
         if self.resources.bands.is_empty() {
             return None;
         }
-        let quantity = spectra::Quantity::Reflectance;
+        let quantity = spectra::SpectrumQuantity::Reflectance;
         let elsewhere = match &map.elsewhere {
             None => None,
             Some(spectrum) => {

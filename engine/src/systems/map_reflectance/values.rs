@@ -1,5 +1,6 @@
 use crate::assets::Scaling;
 use crate::components::CellLayout;
+use crate::counts::{agreeing, counted};
 use crate::document::Band;
 use crate::geometry::place_text;
 use crate::terrain::Cells;
@@ -55,7 +56,11 @@ pub(super) fn check_values(
     }
     if missing > 0 && elsewhere.is_none() {
         return Err(ValueProblem {
-            message: format!("{missing} of its {cells} cells on the terrain have no data"),
+            message: format!(
+                "{missing} of its {} on the terrain {} no data",
+                counted(cells, "cell"),
+                agreeing(missing, "has", "have")
+            ),
             help: "write `elsewhere: Constant(0.2)` for their reflectance".to_owned(),
         });
     }
@@ -95,8 +100,11 @@ impl WrongValues {
         let grid = Cells { columns, rows, values: Vec::<()>::new(), corner, size };
         let others = match count - 1 {
             0 => String::new(),
-            1 => ", and 1 more cell has such a value".to_owned(),
-            more => format!(", and {more} more cells have such values"),
+            more => format!(
+                ", and {} {}",
+                counted(more, "more cell"),
+                agreeing(more, "has such a value", "have such values")
+            ),
         };
         format!(
             "the cell at {} m (column {}, row {} of those on the terrain) has a reflectance of {value} in \

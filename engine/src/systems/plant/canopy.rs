@@ -1,5 +1,6 @@
 use super::{Site, rectangle_of};
 use crate::components::Placement;
+use crate::counts::{agreeing, counted};
 use crate::document::{CanopyHeights, Diagnostic, Prototype, Ref};
 use crate::geometry::{millimetres, place_text};
 use crate::placement::canopy::{Crown, Model, Window, crowns, fit};
@@ -62,7 +63,11 @@ pub(super) fn plant_canopy(
         site.report(Diagnostic::error(at, message).help(help));
     } else if trees.len() < found.len() {
         let beside = found.len() - trees.len();
-        let message = format!("{beside} of {} trees have no terrain below", found.len());
+        let message = format!(
+            "{beside} of {} {} no terrain below",
+            counted(found.len(), "tree"),
+            agreeing(beside, "has", "have")
+        );
         let help = "they are left out";
         site.report(Diagnostic::warning(at, message).help(help));
     }

@@ -25,6 +25,7 @@ use crate::components::{
     Instance, InstanceRange, Lean, Mesh, MeshBounds, Placement, PlantingAreas, PlantingId,
     PrototypeId, Scale, SceneId, ShownMeshes,
 };
+use crate::counts::{agreeing, counted};
 use crate::document::{Diagnostic, Instances, ScenePath, Terrain};
 use crate::geometry::{Rectangle, place_text};
 use crate::sampling::Key;
@@ -234,7 +235,12 @@ fn plant_rows(
         })
         .collect();
     if let (Some(first), Some(ground)) = (beside.first(), ground) {
-        let message = format!("{} of {} places have no terrain below", beside.len(), rows.len());
+        let message = format!(
+            "{} of {} {} no terrain below",
+            beside.len(),
+            counted(rows.len(), "place"),
+            agreeing(beside.len(), "has", "have")
+        );
         let place = AdvicePlace { terrain: site.terrain, map: &site.map, ground };
         let advice = other_coordinates(instances, &beside, &place, site.resources)
             .unwrap_or_else(|| "move it, or take out `on_terrain`".to_owned());

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use super::areas::region;
 use super::{Site, rectangle_of};
 use crate::components::Placement;
+use crate::counts::counted;
 use crate::document::{Diagnostic, Prototype, Ref, Scatter, Stems};
 use crate::geometry::{Rectangle, place_text};
 use crate::placement::{Amount, Habit, Species, instantiate_trees, places};
@@ -28,7 +29,8 @@ pub(super) fn scatter(scatter: &Scatter, ground: &Ground, site: &mut Site<'_>) -
     let trees = instantiate_trees(&places, &species, &habit, |place| ground.height(place), stream);
     if trees.len() < places.len() && !species.is_empty() {
         let count = places.len() - trees.len();
-        let message = format!("{count} of {} stems fell on holes of the terrain", places.len());
+        let message =
+            format!("{count} of {} fell on holes of the terrain", counted(places.len(), "stem"));
         let help = "none stands there; `outside` keeps an area free and the number as it is";
         site.report(Diagnostic::warning(site.path.clone(), message).help(help));
     }

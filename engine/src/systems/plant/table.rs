@@ -3,6 +3,7 @@ use glam::{DVec2, Vec3Swizzles as _};
 use super::{HeightBase, Site, plant_rows};
 use crate::assets::{StemRow, StemTable, degrees_to_metres, read_instances};
 use crate::components::{Placement, PrototypeId};
+use crate::counts::{agreeing, counted};
 use crate::document::{
     Diagnostic, InstanceTable, Instances, ScenePath, SpeciesMeshes, TableCoordinates, suggestion,
 };
@@ -238,9 +239,9 @@ fn guess_coordinates(
         }
         (true, true) => (
             format!(
-                "{file}: {local} of {} rows lie on the terrain as they are written, {mapped} if \
-                     `frame.origin_m` is subtracted",
-                rows.len()
+                "{file}: {local} of {} {} on the terrain as written, {mapped} if `frame.origin_m` is subtracted",
+                counted(rows.len(), "row"),
+                agreeing(local, "lies", "lie")
             ),
             "write `coordinates: Local` if they are those of the scene, `coordinates: Map` if they \
                  are those of the map"

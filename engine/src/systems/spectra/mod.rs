@@ -26,7 +26,7 @@ const VARIED: f64 = 0.25;
 
 /// Quantity that a spectrum holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Quantity {
+pub(super) enum SpectrumQuantity {
     Reflectance,
     Transmittance,
     Irradiance,
@@ -37,7 +37,7 @@ pub(super) enum Quantity {
     },
 }
 
-impl Quantity {
+impl SpectrumQuantity {
     const fn is_fraction(self) -> bool {
         matches!(self, Self::Reflectance | Self::Transmittance)
     }
@@ -55,12 +55,12 @@ pub(super) struct LastLeaf {
 /// Value of a spectrum in each band, shape `[bands]`; `None` after an error.
 pub(super) fn resolve_spectrum(
     spectrum: &Spectrum,
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<Vec<f64>> {
     let resolved = resolve(spectrum, quantity, path, &mut BTreeSet::new(), resources);
-    if quantity == Quantity::Irradiance && !reads_file(spectrum, resources) {
+    if quantity == SpectrumQuantity::Irradiance && !reads_file(spectrum, resources) {
         warn_strong_light(resolved.as_deref().unwrap_or_default(), path, resources);
     }
     match resolved.and_then(|values| lawful(values, quantity, path)) {
@@ -134,7 +134,7 @@ fn named<'a>(mut spectrum: &'a Spectrum, resources: &'a Resources) -> &'a Spectr
 
 fn resolve(
     spectrum: &Spectrum,
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     visited: &mut BTreeSet<String>,
     resources: &mut Resources,
@@ -177,7 +177,7 @@ fn resolve(
 /// Reflectance or transmittance of a leaf by PROSPECT in each band.
 fn prospect_means(
     leaf: &Prospect,
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
@@ -206,11 +206,13 @@ fn prospect_means(
         }
     };
     let means = match quantity {
-        Quantity::Reflectance => mean_over_bands(&spectrum.reflectance, quantity, path, resources),
-        Quantity::Transmittance => {
+        SpectrumQuantity::Reflectance => {
+            mean_over_bands(&spectrum.reflectance, quantity, path, resources)
+        }
+        SpectrumQuantity::Transmittance => {
             mean_over_bands(&spectrum.transmittance, quantity, path, resources)
         }
-        Quantity::Irradiance | Quantity::Parameter { .. } => {
+        SpectrumQuantity::Irradiance | SpectrumQuantity::Parameter { .. } => {
             let what = "Prospect gives reflectance and transmittance, no irradiance";
             let help = "write AstmG173, Constant, Bands, Points or Table";
             Err(Box::new(Diagnostic::error(path, what).help(help)))
@@ -223,11 +225,11 @@ fn prospect_means(
 /// The sun's irradiance in each band.
 fn solar_means(
     sun: &SolarSpectrum,
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
-    if quantity != Quantity::Irradiance {
+    if quantity != SpectrumQuantity::Irradiance {
         let message = "a spectrum of the sun is an irradiance, no reflectance or transmittance";
         let help = "write Constant, Bands, Points, Table or Prospect";
         return Err(Box::new(Diagnostic::error(path, message).help(help)));
@@ -265,11 +267,11 @@ fn solar_means(
 /// Mean in each band of a reflectance.
 fn reflectance_means(
     points: &[(f64, f64)],
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
-    if quantity == Quantity::Irradiance {
+    if quantity == SpectrumQuantity::Irradiance {
         let message = "this is the reflectance of a surface, no light";
         let help = "write AstmG173, Constant, Bands, Points or Table";
         return Err(Box::new(Diagnostic::error(path, message).help(help)));
@@ -280,7 +282,7 @@ fn reflectance_means(
 /// Mean in each band of a spectrum given by points.
 fn mean_over_bands(
     points: &[(f64, f64)],
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
@@ -300,7 +302,7 @@ fn mean_over_bands(
 fn band_mean(
     response: &BandResponse,
     points: &[(f64, f64)],
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     resources: &Resources,
 ) -> Result<f64, OutsideSpectrum> {
     if quantity.is_fraction() {
@@ -332,16 +334,16 @@ pub(super) fn irradiance_points(
 /// The values, if they can be those of the quantity.
 fn lawful(
     values: Vec<f64>,
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
     let error = match quantity {
-        Quantity::Reflectance | Quantity::Transmittance => None,
-        Quantity::Irradiance => {
+        SpectrumQuantity::Reflectance | SpectrumQuantity::Transmittance => None,
+        SpectrumQuantity::Irradiance => {
             let beyond = values.iter().find_map(|&value| IRRADIANCE.problem(value));
             beyond.map(|(message, help)| Diagnostic::error(path, message).help(help))
         }
-        Quantity::Parameter { least, most } => {
+        SpectrumQuantity::Parameter { least, most } => {
             let beyond = values.iter().find(|value| !(least..=most).contains(value));
             beyond.map(|value| {
                 let message = format!("expected numbers from {least} to {most}, found {value}");

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::file::read_columns;
-use super::{Quantity, STRONG, band_mean, warn_wide_bands};
+use super::{STRONG, SpectrumQuantity, band_mean, warn_wide_bands};
 use crate::assets::{SpectrumPoint, SpectrumTable};
+use crate::counts::agreeing;
 use crate::document::{Diagnostic, ScenePath, TabulatedSpectrum, ValueUnit, WavelengthUnit};
 use crate::spectral::BandResponse;
 use crate::systems::Resources;
@@ -48,7 +49,7 @@ struct Values<'a> {
 /// Mean in each band of a spectrum that a table holds.
 pub(super) fn table_means(
     spectrum: &TabulatedSpectrum,
-    quantity: Quantity,
+    quantity: SpectrumQuantity,
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Result<Vec<f64>, Box<Diagnostic>> {
@@ -73,7 +74,7 @@ pub(super) fn table_means(
         values.warn_small(&mut warnings);
         values.check_scale()?;
         values.warn_noise(&mut warnings);
-    } else if quantity == Quantity::Irradiance {
+    } else if quantity == SpectrumQuantity::Irradiance {
         values.warn_strong(&mut warnings);
     }
     let bands = resources.bands.iter().zip(resources.responses.all());
@@ -162,7 +163,8 @@ impl Values<'_> {
             self.place(largest),
             match high.len() {
                 1 => String::new(),
-                more => format!(", and {} more are above 1", more - 1),
+                more =>
+                    format!(", and {} more {} above 1", more - 1, agreeing(more - 1, "is", "are")),
             }
         );
         let help = match self.scaled[largest] {
@@ -186,7 +188,10 @@ impl Values<'_> {
         if let Some(&worst) = worst {
             let others = match odd.len() {
                 1 => String::new(),
-                more => format!(", and {} more lie outside 0 to 1", more - 1),
+                more => {
+                    let lie = agreeing(more - 1, "lies", "lie");
+                    format!(", and {} more {lie} outside 0 to 1", more - 1)
+                }
             };
             let message = format!("{}{others}: taken for noise", self.place(worst));
             let help = "a mean over a band is kept within 0 to 1; if it is none, correct the table or \

@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use crate::assets::Raster;
+use crate::counts::counted;
 use crate::document::{Diagnostic, LandCover, ScenePath, unknown_name};
 use crate::geometry::{Rectangle, millimetres, place_text};
 use crate::systems::Resources;
@@ -107,7 +108,9 @@ fn refuse_missing(mut missing: Vec<f64>, raster: &Raster, resources: &mut Resour
     };
     let message = match missing.len() {
         1 => format!("class {} has no material", shown[0]),
-        count => format!("{count} classes have no material: {}{more}", shown.join(", ")),
+        count => {
+            format!("{} have no material: {}{more}", counted(count, "class"), shown.join(", "))
+        }
     };
     let help = if missing.iter().any(|class| class.fract() != 0.0) {
         "classes are whole numbers: is this a raster of heights or of another quantity?".to_owned()

@@ -1,4 +1,5 @@
 use crate::assets::Raster;
+use crate::counts::{agreeing, counted};
 use crate::document::{Diagnostic, NoData};
 use crate::systems::Resources;
 
@@ -19,7 +20,11 @@ pub(super) fn fill_no_data(
                 "write `no_data: Neighbours` to fill them from around, `Height(0.0)` to level \
                      them, or `Hole` to leave them out",
             );
-            let message = format!("{missing} of its {all} cells have no data");
+            let message = format!(
+                "{missing} of its {} {} no data",
+                counted(all, "cell"),
+                agreeing(missing, "has", "have")
+            );
             resources.report(Diagnostic::error(["terrain", "file"], message).help(help));
             return None;
         }

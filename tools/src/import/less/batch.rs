@@ -1,6 +1,7 @@
 //! Batch files: lists of values for settings, zipped within a group, combined between groups.
 
 use std::path::Path;
+use sunfleck::counts::counted;
 
 use anyhow::{Context as _, Result, bail};
 
@@ -88,9 +89,11 @@ fn read(file: &Path) -> Result<Batch> {
         let axes: Vec<Axis> =
             group.entries().iter().map(|(name, node)| axis(name, node)).collect::<Result<_>>()?;
         if let Some(other) = axes.iter().find(|axis| axis.items.len() != axes[0].items.len()) {
-            let (first, n, m) = (&axes[0].name, axes[0].items.len(), other.items.len());
+            let (first, m) = (&axes[0], other.items.len());
             return Err(group.wrong(&format!(
-                "`{first}` has {n} values and `{}` has {m}: those of a group go together",
+                "`{}` has {} and `{}` has {m}: those of a group go together",
+                first.name,
+                counted(first.items.len(), "value"),
                 other.name
             )));
         }

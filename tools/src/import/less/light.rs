@@ -1,6 +1,7 @@
 //! Bands, sun and sky.
 
 use std::fmt::Write as _;
+use sunfleck::counts::counted;
 
 use anyhow::{Context as _, Result};
 
@@ -185,9 +186,10 @@ impl Project {
         if count != bands {
             let is_even = values.windows(2).all(|pair| pair[0].total_cmp(&pair[1]).is_eq());
             if count > bands && !is_even {
-                return Err(
-                    node.wrong(&format!("has {}, `sensor.bands` has {bands}", counted(count)))
-                );
+                return Err(node.wrong(&format!(
+                    "has {}, `sensor.bands` has {bands}",
+                    counted(count, "value")
+                )));
             }
             let what = match count {
                 _ if count > bands => {
@@ -248,7 +250,7 @@ impl Project {
     fn irradiance(&self, node: &Node) -> Result<Vec<f64>> {
         let values = node.numbers()?;
         if values.len() != self.bands.len() {
-            let (values, bands) = (counted(values.len()), self.bands.len());
+            let (values, bands) = (counted(values.len(), "value"), self.bands.len());
             return Err(node.wrong(&format!("has {values}, `sensor.bands` has {bands}")));
         }
         match values.iter().find(|value| **value < 0.0) {
@@ -261,9 +263,4 @@ impl Project {
     pub(super) fn visible_bands(&self) -> usize {
         self.bands.iter().filter(|band| (380.0..=780.0).contains(&band.center)).count()
     }
-}
-
-/// `1 value`, `2 values`.
-pub(super) fn counted(count: usize) -> String {
-    format!("{count} value{}", if count == 1 { "" } else { "s" })
 }

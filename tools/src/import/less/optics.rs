@@ -1,13 +1,13 @@
 //! Optical properties and temperatures to materials.
 
 use std::fmt::Write as _;
+use sunfleck::counts::counted;
 
 use anyhow::{Result, anyhow, bail};
 use indexmap::IndexMap;
 use sunfleck::document::nearest;
 
 use super::conf::{self, Node};
-use super::light::counted;
 use super::report::Report;
 use super::soil::Soil;
 use super::text::{list, quoted};
@@ -235,14 +235,14 @@ fn optics(name: &str, node: &Node, bands: usize) -> Result<Optics> {
     let text = value.text()?;
     let parts: Vec<&str> = text.split(';').collect();
     let [front, back, through] = parts[..] else {
-        let n = parts.len();
-        return Err(value.wrong(&format!("{n} parts, not three: `front;back;transmittance`")));
+        let parts = counted(parts.len(), "part");
+        return Err(value.wrong(&format!("{parts}, not three: `front;back;transmittance`")));
     };
     let read = |what: &str, part: &str| -> Result<Vec<f64>> {
         let values = conf::numbers(part)
             .map_err(|part| value.wrong(&format!("{part:?} is not a number")))?;
         if values.len() != bands {
-            let values = counted(values.len());
+            let values = counted(values.len(), "value");
             return Err(value.wrong(&format!("{what} has {values}, `sensor.bands` has {bands}")));
         }
         match values.iter().find(|&value| !(0.0..=1.0).contains(value)) {

@@ -1,12 +1,12 @@
 //! SOILSPECT parameters of the ground.
 
 use std::fmt::Write as _;
+use sunfleck::counts::counted;
 
 use anyhow::Result;
 use sunfleck::components::{DirectionalOptics, SoilspectParameters};
 
 use super::conf::Node;
-use super::light::counted;
 use super::report::Report;
 use super::text::list;
 
@@ -100,7 +100,7 @@ impl Parameter {
             values.resize(bands, values[0]);
         }
         if values.len() != bands {
-            let values = counted(values.len());
+            let values = counted(values.len(), "value");
             return Err(node.wrong(&format!("has {values}, `sensor.bands` has {bands}")));
         }
         match values.iter().find(|&value| !(minimum..=maximum).contains(value)) {

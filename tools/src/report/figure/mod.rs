@@ -8,7 +8,7 @@ mod stack;
 use maud::{Markup, html};
 
 pub(super) use self::plot::{Across, ErrorStyle, Line, Mark, NORMAL_95, Panel, Plot, Point};
-pub(super) use self::polar::{Hemisphere, View};
+pub(super) use self::polar::{Hemisphere, View, colour_bar, common_range};
 pub(super) use self::stack::{Bar, Segment, stack};
 
 /// Number of colours of lines and segments in the style sheet.
@@ -20,6 +20,8 @@ pub(super) struct Figure {
     pub(super) panels: Vec<Markup>,
     /// Names of the colours.
     pub(super) legend: Vec<String>,
+    /// Colour bar of all panels, if they share one.
+    pub(super) bar: Option<Markup>,
     /// Name of what is shown.
     pub(super) title: String,
     /// Sentences below it.
@@ -40,6 +42,7 @@ impl Figure {
         html! {
             figure.plot.several[self.panels.len() > 1] {
                 div.panels { @for panel in &self.panels { (panel) } }
+                @if let Some(bar) = &self.bar { (bar) }
                 @if !self.legend.is_empty() {
                     ul.legend {
                         @for (number, name) in self.legend.iter().enumerate() {

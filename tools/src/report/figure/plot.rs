@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use maud::{Markup, html};
-use sunfleck::output::range_of;
+use sunfleck::output::{are_unlike, range_of};
 
 use super::scale::{Scale, Tick};
 use super::{colour, px, symbol};
@@ -12,7 +12,7 @@ use crate::report::words::{cut, measured};
 /// Size of a panel, units of the drawing.
 const SIZE: (f64, f64) = (400.0, 262.0);
 /// Margins of the axes.
-const LEFT: f64 = 58.0;
+const LEFT: f64 = 72.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 26.0;
 const BOTTOM: f64 = 44.0;
@@ -60,8 +60,11 @@ pub(crate) struct Plot {
 #[derive(Clone, Debug)]
 pub(crate) struct Panel {
     pub(crate) title: String,
-    /// Panels of the same number have the same range of values.
+    /// Panels of the same number have the same range of values, unless these are so unlike in size that some would not be
+    /// legible.
     pub(crate) scale: usize,
+    /// Title of the axis that values are drawn against, if it differs from that of the plot.
+    pub(crate) x_title: Option<String>,
     pub(crate) lines: Vec<Line>,
     pub(crate) marks: Vec<Mark>,
 }
@@ -83,11 +86,14 @@ pub(crate) struct Point {
     pub(crate) error: f64,
 }
 
-/// A named place on the axis that values are drawn against.
-#[derive(Clone, Debug)]
+/// A place on the axis that values are drawn against.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mark {
     pub(crate) at: f64,
+    /// Empty of a mark that the caption explains.
     pub(crate) name: String,
+    /// Number of the colour of the line that it belongs to; `None` of one for all lines.
+    pub(crate) colour: Option<usize>,
 }
 
 impl Point {
@@ -96,20 +102,38 @@ impl Point {
     }
 }
 
+impl Panel {
+    /// Largest absolute value; 0 without values.
+    pub(crate) fn peak(&self) -> f64 {
+        let points = self.lines.iter().flat_map(|line| &line.points);
+        points.map(|point| point.value.abs()).filter(|size| size.is_finite()).fold(0.0, f64::max)
+    }
+}
+
 impl Plot {
+    /// Numbers of the panels that have the same range of values as a panel.
+    fn alike(&self, number: usize) -> Vec<usize> {
+        let scale = self.panels[number].scale;
+        let same: Vec<usize> =
+            (0..self.panels.len()).filter(|&at| self.panels[at].scale == scale).collect();
+        let peaks = same.iter().map(|&at| self.panels[at].peak());
+        if self.guides.is_empty() && are_unlike(peaks) { vec![number] } else { same }
+    }
+
+    /// Range of the values of some panels with their errors.
+    fn range(&self, panels: &[usize]) -> Range<f64> {
+        let lines = panels.iter().flat_map(|&at| &self.panels[at].lines);
+        let ends = lines.flat_map(|line| &line.points).flat_map(|point| {
+            let spread = point.spread(NORMAL_95);
+            [point.value - spread, point.value + spread]
+        });
+        range_of(ends.chain(self.guides.iter().copied()))
+    }
+
     /// A drawing for each panel.
     pub(crate) fn draw(&self) -> Vec<Markup> {
         let points =
             || self.panels.iter().flat_map(|panel| &panel.lines).flat_map(|line| &line.points);
-        let values = |scale: usize| {
-            let panels = self.panels.iter().filter(move |panel| panel.scale == scale);
-            let points = panels.flat_map(|panel| &panel.lines).flat_map(|line| &line.points);
-            let ends = points.flat_map(|point| {
-                let spread = point.spread(NORMAL_95);
-                [point.value - spread, point.value + spread]
-            });
-            range_of(ends.chain(self.guides.iter().copied()))
-        };
         let places = match &self.across {
             Across::Labels(labels) => -0.5..labels.len() as f64 - 0.5,
             Across::Numbers => padded(points().map(|point| point.at), 0.02),
@@ -118,23 +142,38 @@ impl Plot {
                 logs.start.exp()..logs.end.exp()
             }
         };
-        self.panels.iter().map(|panel| self.panel(panel, &places, &values(panel.scale))).collect()
+        let numbers = 0..self.panels.len();
+        numbers
+            .map(|number| {
+                let values = self.range(&self.alike(number));
+                self.panel(&self.panels[number], &places, &values)
+            })
+            .collect()
+    }
+
+    /// Text about axes of values that differ from panel to panel.
+    pub(crate) fn scale_note(&self) -> Option<String> {
+        let has_own = (0..self.panels.len()).any(|at| self.alike(at).len() < self.panels.len());
+        has_own.then(|| "Panels have axes of their own: mind their numbers.".to_owned())
     }
 
     /// Text about the size of the errors.
     pub(crate) fn error_note(&self) -> Option<String> {
-        let points =
-            || self.panels.iter().flat_map(|panel| &panel.lines).flat_map(|line| &line.points);
-        let values = range_of(points().map(|point| point.value));
-        let widest = points().map(|point| point.spread(NORMAL_95)).fold(0.0, f64::max);
-        if widest == 0.0 {
+        let widest = |panel: &Panel| {
+            let points = panel.lines.iter().flat_map(|line| &line.points);
+            points.map(|point| point.spread(NORMAL_95)).fold(0.0, f64::max)
+        };
+        if self.panels.iter().map(widest).fold(0.0, f64::max) == 0.0 {
             return None;
         }
         let drawn = match self.errors {
             ErrorStyle::Areas => "Areas are ± 1 (darker) and ± 1.96 standard errors",
             ErrorStyle::Bars => "Bars are ± 1.96 standard errors (95 %)",
         };
-        let is_small = widest < 0.012 * (values.end - values.start);
+        let is_small = self.panels.iter().enumerate().all(|(number, panel)| {
+            let values = self.range(&self.alike(number));
+            widest(panel) < 0.012 * (values.end - values.start)
+        });
         let small = if is_small { ", here smaller than the symbols" } else { "" };
         Some(format!("{drawn}{small}."))
     }
@@ -157,10 +196,11 @@ impl Plot {
             (Scale::new(places.clone(), across, is_log), Scale::new(values.clone(), up, false))
         };
         let frame = Frame { plot: self, place, value, floor };
+        let place_title = panel.x_title.as_ref().unwrap_or(&self.x_title);
         let (x_title, y_title) = if self.is_profile {
-            (&self.y_title, &self.x_title)
+            (&self.y_title, place_title)
         } else {
-            (&self.x_title, &self.y_title)
+            (place_title, &self.y_title)
         };
         let names: Vec<&str> = panel
             .lines
@@ -178,7 +218,7 @@ impl Plot {
                 }
                 (frame.axes())
                 text.name x=(px(0.5 * (LEFT + SIZE.0 - RIGHT))) y=(px(SIZE.1 - 6.0)) text-anchor="middle" { (cut(x_title, 60)) }
-                text.name transform={ "translate(13 " (px(0.5 * (TOP + floor))) ") rotate(-90)" } text-anchor="middle" { (cut(y_title, 38)) }
+                text.name transform={ "translate(11 " (px(0.5 * (TOP + floor))) ") rotate(-90)" } text-anchor="middle" { (cut(y_title, 38)) }
                 @for mark in &panel.marks { (frame.mark(mark)) }
                 @for line in &panel.lines { (frame.line(line)) }
             }
@@ -254,7 +294,7 @@ impl Frame<'_> {
         // The name stands on the side where there is room.
         let (anchor, aside) = if x > 0.6 * SIZE.0 { ("end", -5.0) } else { ("start", 5.0) };
         html! {
-            path.mark d=(format!("M{} {TOP}V{}", px(x), self.floor)) {}
+            g class=[mark.colour.map(colour)] { path.mark d=(format!("M{} {TOP}V{}", px(x), self.floor)) {} }
             text.note x=(px(x + aside)) y=(px(TOP + 10.0)) text-anchor=(anchor) { (mark.name) }
         }
     }

@@ -1,5 +1,7 @@
 //! Values by direction, as seen from above.
 
+use std::ops::Range;
+
 use maud::{Markup, html};
 use sunfleck::output::tick;
 
@@ -55,19 +57,56 @@ struct Sector {
     view: View,
 }
 
+/// Fraction of a range that the values of a panel must fill at least to share its colours.
+const FILLED: f64 = 1.0 / 3.0;
+
+/// Range of values of several hemispheres that are legible with the same colours; `None` of others and of a single one.
+pub(crate) fn common_range(all: &[Hemisphere]) -> Option<Range<f64>> {
+    let ranges: Vec<Range<f64>> = all.iter().map(Hemisphere::range).collect();
+    let low = ranges.iter().map(|range| range.start).fold(f64::INFINITY, f64::min);
+    let high = ranges.iter().map(|range| range.end).fold(f64::NEG_INFINITY, f64::max);
+    let is_legible = |range: &Range<f64>| range.end - range.start >= FILLED * (high - low);
+    (all.len() > 1 && ranges.iter().all(is_legible)).then_some(low..high)
+}
+
+/// Colour bar of several hemispheres, with the quantity and its unit.
+pub(crate) fn colour_bar(range: &Range<f64>, title: &str) -> Markup {
+    html! {
+        svg.bars viewBox="0 0 330 52" role="img" aria-label={ (cut(title, 200)) ", from " (tick(range.start)) " to " (tick(range.end)) } {
+            text x="165" y="12" text-anchor="middle" { (cut(title, 44)) }
+            (bar(range, 18.0))
+        }
+    }
+}
+
 impl Hemisphere {
-    /// The drawing, with north at the top and east on the right: zenith angles are distances from the centre.
-    pub(crate) fn draw(&self) -> Markup {
+    /// Range of its values, not empty.
+    fn range(&self) -> Range<f64> {
         let finite = self.views.iter().map(|view| view.value).filter(|value| value.is_finite());
         let (low, high) =
             finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        let (low, high) = if low < high { (low, high) } else { (low - 0.5, low + 0.5) };
+        if low < high {
+            low..high
+        } else if low.is_finite() {
+            low - 0.5..high + 0.5
+        } else {
+            0.0..1.0
+        }
+    }
+
+    /// The drawing, with north at the top and east on the right: zenith angles are distances from the centre.
+    ///
+    /// - `common`: range of the colours of all panels, which have one bar then; without it, the panel has its own bar
+    pub(crate) fn draw(&self, common: Option<&Range<f64>>) -> Markup {
+        let range = common.cloned().unwrap_or_else(|| self.range());
+        let (low, high) = (range.start, range.end);
+        let height = if common.is_some() { SIDE.1 - 42.0 } else { SIDE.1 };
         let fraction = |value: f64| (value - low) / (high - low);
         let fill = |view: &View| {
             if view.value.is_finite() { colour(fraction(view.value)) } else { "none".to_owned() }
         };
         html! {
-            svg.polar viewBox={ "0 0 " (SIDE.0) " " (SIDE.1) } role="img" aria-label={ (cut(&self.title, 200)) " by view direction, from " (tick(low)) " to " (tick(high)) } {
+            svg.polar viewBox={ "0 0 " (SIDE.0) " " (height) } role="img" aria-label={ (cut(&self.title, 200)) " by view direction, from " (tick(low)) " to " (tick(high)) } {
                 text.head x="8" y="16" { (cut(&self.title, 44)) }
                 @if self.are_cells {
                     @for sector in self.sectors() {
@@ -89,7 +128,7 @@ impl Hemisphere {
                     text x=(px(x)) y=(px(y + 4.0)) text-anchor="middle" { (name) }
                 }
                 @if let Some([zenith, azimuth]) = self.sun { (sun(zenith, azimuth)) }
-                (bar(low, high))
+                @if common.is_none() { (bar(&range, 334.0)) }
             }
         }
     }
@@ -178,9 +217,10 @@ fn sun(zenith: f64, azimuth: f64) -> Markup {
 }
 
 /// Colour bar with the numbers of its ends and its middle.
-fn bar(low: f64, high: f64) -> Markup {
+fn bar(range: &Range<f64>, top: f64) -> Markup {
     const STEPS: usize = 40;
-    let (left, width, top) = (35.0, 260.0, 334.0);
+    let (left, width) = (35.0, 260.0);
+    let (low, high) = (range.start, range.end);
     let step = width / STEPS as f64;
     html! {
         @for number in 0..STEPS {
@@ -230,6 +270,22 @@ mod tests {
         assert!(
             (sectors[1].azimuth[0]).abs() < 1e-9 && (sectors[3].azimuth[1] - 360.0).abs() < 1e-9
         );
+    }
+
+    #[test]
+    fn panels_share_a_bar_if_each_fills_a_third_of_it() {
+        let of = |low: f64, high: f64| {
+            let views = [low, high].map(|value| View { value, ..view(10.0, 0.0) }).to_vec();
+            Hemisphere { title: String::new(), views, sun: None, are_cells: false }
+        };
+        assert_eq!(common_range(&[of(0.1, 0.3), of(0.2, 0.4)]), Some(0.1..0.4));
+        assert_eq!(common_range(&[of(0.01, 0.03), of(0.2, 0.4)]), None, "red and near infrared");
+        assert_eq!(common_range(&[of(0.1, 0.3)]), None, "a single panel has its own");
+        let bars = |common: Option<&Range<f64>>| {
+            of(0.1, 0.3).draw(common).into_string().matches("<rect").count()
+        };
+        assert_eq!([bars(None), bars(Some(&(0.1..0.4)))], [40, 0]);
+        assert_eq!(colour_bar(&(0.1..0.4), "BRF (–)").into_string().matches("<rect").count(), 40);
     }
 
     #[test]
