@@ -90,6 +90,6 @@ mod tests {
         assert_eq!(texts, expected);
         assert_eq!([1_u64, 3].map(|count| agreeing(count, "has", "have")), ["has", "have"]);
         assert_eq!([1_u64, 3].map(|count| existing(count, "cell")), ["is 1 cell", "are 3 cells"]);
-        assert_eq!(noun_of(&12_u32, "triangle or disc"), "triangles and discs");
+        assert_eq!(noun_of(12_u32, "triangle or disc"), "triangles and discs");
     }
 }

@@ -26,8 +26,8 @@ impl SweptScene {
     /// Title of the axis of a parameter, with the unit of what it sets: `sza: sun zenith (°)`.
     pub(super) fn param_title(&self, name: &str) -> String {
         let plain = axis_title(&short(name));
-        let uses = self.parsed.iter().flat_map(|parsed| parsed.uses_of_param(name));
-        let meaning = uses.filter_map(|path| meaning(&path)).next();
+        let mut uses = self.parsed.iter().flat_map(|parsed| parsed.uses_of_param(name));
+        let meaning = uses.find_map(|path| meaning(&path));
         match meaning {
             Some(meaning) if meaning != plain => format!("{}: {meaning}", short(name)),
             _ => plain,

@@ -79,9 +79,7 @@ fn band_of(
     path: &ScenePath,
     resources: &mut Resources,
 ) -> Option<usize> {
-    let count = match raster.len() {
-        count => counted(count, "band"),
-    };
+    let count = counted(raster.len(), "band");
     let name = match band {
         Param::Number(number) => {
             // `document::check` takes whole numbers from 1 alone.
