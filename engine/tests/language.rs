@@ -6,6 +6,8 @@ mod advice;
 mod broken;
 #[path = "language/crowns.rs"]
 mod crowns;
+#[path = "language/editing.rs"]
+mod editing;
 #[path = "language/formatting.rs"]
 mod formatting;
 #[path = "language/hostile.rs"]

@@ -583,7 +583,7 @@ fn ground() -> BoxedStrategy<(Frame, Terrain, Boundary)> {
     (frame, terrain, prop_oneof![Just(Boundary::Periodic), Just(Boundary::Isolated)]).boxed()
 }
 
-fn scene() -> BoxedStrategy<Scene> {
+pub(crate) fn scene() -> BoxedStrategy<Scene> {
     let source = prop::sample::select(vec![
         BandSource::Auto,
         BandSource::Sunlight,
@@ -676,7 +676,7 @@ fn scene() -> BoxedStrategy<Scene> {
         .boxed()
 }
 
-fn read_back(text: &str) -> Scene {
+pub(crate) fn read_back(text: &str) -> Scene {
     match read_text("written.ron", text, &ReadOptions::default()) {
         Ok(reading) => reading.scene,
         Err(error) => panic!("{error}\n{text}"),

@@ -12,6 +12,7 @@ mod strange;
 #[cfg(test)]
 mod tests;
 
+pub(super) use comments::{Comment, comments};
 pub(super) use layout::{Group, Item, Text, quoted};
 pub(super) use normal::normal_form;
 pub(super) use parser::parse;
