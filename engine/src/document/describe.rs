@@ -72,6 +72,14 @@ pub(super) fn types() -> Vec<(String, Value)> {
         .collect()
 }
 
+/// All types of the language as JSON: pairs of a name and a schema, in the order in which `Scene` leads to them. Beside
+/// what [`json_schema`] says, records have `x-keys`: name, schema, default and example of each key as RON, in the order
+/// of their declaration; variants have `x-variant`: name, and `x-keys` or `holds`.
+#[must_use]
+pub fn types_json() -> String {
+    json!(types()).to_string()
+}
+
 /// Takes out what is not part of JSON schemas.
 fn leave_out_annotations(schema: &mut Value) {
     match schema {

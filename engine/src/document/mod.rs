@@ -30,7 +30,7 @@ pub use check::check;
 pub(crate) use check::{
     HEIGHT, IRRADIANCE, LENGTH, LawfulRange, SCALE, check_maps, rounded_up, too_many_pixels,
 };
-pub use describe::json_schema;
+pub use describe::{json_schema, types_json};
 pub(crate) use diagnostic::suggestion;
 pub use diagnostic::{Diagnostic, Place, Severity, nearest, unknown_name};
 pub use discrete::discrete_difference;
@@ -40,8 +40,8 @@ pub use keys::{keys_about, keys_page};
 pub(crate) use legible::legible;
 pub use parsed::ParsedScene;
 pub use path::{ScenePath, Step};
-pub use read::{ReadError, ReadOptions, Reading, read_file, read_text};
-pub use ron_text::Span;
+pub use read::{ReadError, ReadOptions, Reading, read_file, read_text, tree_of_text};
+pub use ron_text::{BadNumber, Field, Named, Node, Span, Value};
 pub use scene::*;
 pub use source::Source;
 pub use sun::SunDay;

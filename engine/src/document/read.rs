@@ -148,6 +148,15 @@ pub(super) fn text_of_file(path: &Path, only_files: bool) -> Result<String, Read
     Ok(text)
 }
 
+/// The tree of a scene's text as it stands: formulas and includes are values. `name` stands for its file in messages.
+///
+/// # Errors
+/// Where the text is not RON.
+pub fn tree_of_text(name: &str, text: &str) -> Result<Node, ReadError> {
+    refuse_odd(name, text)?;
+    parse_text(&Source::new(name, text))
+}
+
 /// The tree of a text.
 pub(super) fn parse_text(source: &Source) -> Result<Node, ReadError> {
     parse(source.text()).map_err(|error| {

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::dataset::{ImageRasters, of_sensor};
+use super::dataset::{ImageFiles, of_sensor};
 use super::names::SensorNames;
 use super::staging::Staging;
 use super::{OfSensor, OutputError, netcdf, zarr};
@@ -10,11 +10,11 @@ use crate::document::FileFormat;
 
 /// Writes the data sets that are asked for; returns their size in bytes.
 ///
-/// - `rasters`: rasters of each product, if it is an image
+/// - `files`: files of each product, if it is an image
 pub(super) fn put(
     measured: &OfSensor<'_>,
     planned: &SensorNames,
-    rasters: &[Option<ImageRasters>],
+    files: &[Option<ImageFiles>],
     staging: &mut Staging,
 ) -> Result<u64, OutputError> {
     let mut size = 0;
@@ -23,6 +23,9 @@ pub(super) fn put(
     for format in asked {
         let Some(name) = planned.dataset(format) else { continue };
         let fail = |source: io::Error| OutputError::Write { path: staging.shown(&name), source };
+        let rasters =
+            |files: &Option<ImageFiles>| files.as_ref().map(ImageFiles::rasters).transpose();
+        let rasters = files.iter().map(rasters).collect::<io::Result<_>>().map_err(fail)?;
         let dataset = of_sensor(measured, planned, rasters).map_err(fail)?;
         size += if format == FileFormat::Zarr {
             let folder = staging.folder(&name)?;

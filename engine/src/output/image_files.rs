@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 
 use super::band_rows::BandRows;
-use super::dataset::ImageRasters;
+use super::dataset::ImageFiles;
 use super::envi::ImageRaster;
 use super::figure::{Caption, Figure};
 use super::picture::PicturePainter;
@@ -23,7 +23,7 @@ pub(super) fn put(
     image: &Image,
     names: &names::ProductNames,
     staging: &mut Staging,
-) -> Result<(u64, Option<ImageRasters>), OutputError> {
+) -> Result<(u64, Option<ImageFiles>), OutputError> {
     let has = |format| source.report.formats.contains(&format);
     let mut exr = has(FileFormat::Exr).then(|| staging.begin(&names.exr())).transpose()?;
     let mut rasters = None;
@@ -68,7 +68,7 @@ pub(super) fn put(
             file.try_clone()
                 .map_err(|source| OutputError::Read { path: staging.shown(&names.img()), source })
         };
-        kept = Some(ImageRasters { values: again(&values)?, errors: again(&errors)? });
+        kept = Some(ImageFiles { values: again(&values)?, errors: again(&errors)? });
     }
     if has(FileFormat::Png) {
         let wavelengths = source.wavelengths(image);

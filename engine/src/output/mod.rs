@@ -4,6 +4,7 @@
 //! `GeoTIFF`, a PNG with a legend and one without), for each sensor a Zarr store or a `NetCDF` file if it asks for that, for values of triangles a PLY, and for each other product a CSV, with an SVG of values by direction
 //! or height. They take the place of older results all at once (`staging`, `swap`).
 
+mod arrays;
 mod axes;
 mod band_rows;
 mod chart;
@@ -59,8 +60,10 @@ use std::{fs, io};
 use crate::products::{Image, Product, Report, SensorReport};
 use provenance::RecipeTexts;
 
+pub use arrays::{ArrayValues, NamedArray, SensorArrays, sensor_arrays};
 pub use axes::{AxisCells, AxisColumns, ProductCells};
 pub use daily::{DailySums, daily_sums};
+pub use dataset::Attribute;
 pub use derivatives::{DERIVATIVES, DerivativeTable};
 pub(crate) use geotiff::escaped;
 pub(crate) use lettering::{Canvas, INK, Letters};

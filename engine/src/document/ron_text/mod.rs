@@ -46,21 +46,30 @@ impl Span {
 
 /// A value and where it stands.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
-    pub(super) span: Span,
-    pub(super) value: Value,
+pub struct Node {
+    /// Its bytes.
+    pub span: Span,
+    /// Value.
+    pub value: Value,
 }
 
+/// Value of a text.
 #[derive(Clone, Debug)]
-pub(super) enum Value {
+pub enum Value {
+    /// `true` or `false`.
     Bool(bool),
+    /// Number without a point.
     Integer {
+        /// True of a number below 0.
         negative: bool,
+        /// Its magnitude.
         magnitude: u64,
     },
+    /// Number with a point or an exponent.
     Float(f64),
     /// A number that no scene can hold.
     BadNumber(BadNumber),
+    /// Text in quotes.
     Text(String),
     /// Text that starts with `=`, without it.
     Formula(String),
@@ -76,25 +85,35 @@ pub(super) enum Value {
     Map(Vec<(Node, Node)>),
 }
 
+/// Number that no scene can hold.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum BadNumber {
+pub enum BadNumber {
+    /// Infinite, or not a number.
     NotFinite,
+    /// Beyond 64 bits.
     TooLarge,
 }
 
+/// Key of a record with its value.
 #[derive(Clone, Debug)]
-pub(super) struct Field {
-    pub(super) name: String,
-    pub(super) name_span: Span,
-    pub(super) value: Node,
+pub struct Field {
+    /// Key.
+    pub name: String,
+    /// Bytes of the key.
+    pub name_span: Span,
+    /// Value.
+    pub value: Node,
 }
 
+/// Word with what it holds.
 #[derive(Clone, Debug)]
-pub(super) struct Named {
-    pub(super) name: String,
-    pub(super) name_span: Span,
-    /// [`Value::Tuple`] or [`Value::Record`].
-    pub(super) body: Option<Node>,
+pub struct Named {
+    /// Word.
+    pub name: String,
+    /// Bytes of the word.
+    pub name_span: Span,
+    /// [`Value::Tuple`] or [`Value::Record`], or none.
+    pub body: Option<Node>,
 }
 
 impl Node {

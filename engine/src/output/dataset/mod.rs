@@ -16,7 +16,7 @@ mod values;
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 mod tests;
 
-pub(super) use pixels::ImageRasters;
+pub(super) use pixels::{ImageFiles, ImageRasters, PixelArrays};
 pub(super) use sensor::of_sensor;
 pub(super) use sweep::{SweptProduct, of_sweep};
 pub(super) use values::{ByteOrder, ValueType, Values};
@@ -64,8 +64,10 @@ pub(super) struct Attributes(pub(super) Vec<(String, Attribute)>);
 
 /// Value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Attribute {
+pub enum Attribute {
+    /// Text.
     Text(String),
+    /// Numbers.
     Numbers(Vec<f64>),
     /// Numbers of the type of a variable of pixels.
     Floats(Vec<f32>),

@@ -8,7 +8,7 @@ use super::super::{OfSensor, length};
 use super::axes::{AlongDimension, DatasetAxes};
 use super::grid_mapping::grid_mapping;
 use super::names::{VariableNames, describe, in_words, standard_name};
-use super::pixels::ImageRasters;
+use super::pixels::{ImageRasters, PixelValues};
 use super::{Attribute, Attributes, Dataset, Values, Variable};
 use crate::products::{Class, Image, Product, Rendering, Report};
 
@@ -24,7 +24,7 @@ pub(super) const CONVENTIONS: &str = "CF-1.10";
 pub(in crate::output) fn of_sensor<'a>(
     measured: &OfSensor<'a>,
     planned: &SensorNames,
-    rasters: &[Option<ImageRasters>],
+    rasters: Vec<Option<ImageRasters>>,
 ) -> io::Result<Dataset<'a>> {
     let OfSensor { report, sensor, recipe } = *measured;
     let mut names = VariableNames::default();
@@ -134,25 +134,18 @@ impl<'a: 'v, 'v> ProductVariables<'a, 'v, '_, '_> {
     }
 
     /// Adds the pixels of an image, their errors and coverage, and the mean over the image.
-    fn add_image(
-        &mut self,
-        image: &Image,
-        rasters: &ImageRasters,
-        mapping: &str,
-    ) -> io::Result<()> {
+    fn add_image(&mut self, image: &Image, rasters: ImageRasters, mapping: &str) -> io::Result<()> {
         let of_mean = self.along();
         let of_pixels = self.axes.of_pixels(image, &self.keys.values);
         let along: Vec<_> = of_mean.iter().cloned().chain(of_pixels.clone()).collect();
         let first = self.variables.len();
         let name = in_words(&self.keys.values);
         let names = [self.keys.values.clone(), self.keys.errors.clone()];
-        let errors = image.has_errors.then(|| rasters.errors()).transpose()?;
-        let values = (rasters.values(image)?, errors);
-        self.add_pair(names, &name, &along, values, &self.keys.coverage.clone());
+        let PixelValues { values, errors, coverage } = rasters.into_values(image)?;
+        self.add_pair(names, &name, &along, (values, errors), &self.keys.coverage.clone());
         let mut attributes = Attributes::default();
         attributes.text("long_name", "fraction of the pixel that shows the scene");
         attributes.text("units", "1");
-        let coverage = rasters.coverage(image)?;
         self.add(self.keys.coverage.clone(), &of_pixels, attributes, coverage);
         for variable in &mut self.variables[first..] {
             variable.is_raster = true;

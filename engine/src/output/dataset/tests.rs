@@ -45,7 +45,7 @@ fn of(report: &Report) -> OfSensor<'_> {
 /// Each variable with its dimensions and the coordinates that it names.
 fn shown(report: &Report) -> Vec<String> {
     let none: Vec<Option<ImageRasters>> = report.sensors[0].products.iter().map(|_| None).collect();
-    let dataset = of_sensor(&of(report), &plan(report)[0], &none).unwrap();
+    let dataset = of_sensor(&of(report), &plan(report)[0], none).unwrap();
     let line = |variable: &Variable<'_>| {
         let dimensions = variable.dimensions.iter().map(|&place| &dataset.dimensions[place]);
         let dimensions: Vec<String> =
@@ -110,7 +110,7 @@ fn names_are_distinct_and_begin_with_a_letter() {
     let names = ["band", "brf", "brf_standard_error", "2 ways", "ö"];
     let report = report_of(names.map(|name| table(name, bands())).into());
     let none: Vec<Option<ImageRasters>> = names.iter().map(|_| None).collect();
-    let dataset = of_sensor(&of(&report), &plan(&report)[0], &none).unwrap();
+    let dataset = of_sensor(&of(&report), &plan(&report)[0], none).unwrap();
     let mut names: Vec<&str> = dataset.variables.iter().map(|one| one.name.as_str()).collect();
     let is_lawful = |name: &&str| {
         name.starts_with(|letter: char| letter.is_ascii_alphabetic())

@@ -9,6 +9,8 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(in crate::output) enum Values<'a> {
     Doubles(Cow<'a, [f64]>),
+    /// Pixels in memory.
+    Floats(Vec<f32>),
     Texts(Vec<String>),
     /// Values in a file.
     Stored(StoredValues),
@@ -62,7 +64,7 @@ impl Values<'_> {
             Self::Doubles(_) | Self::Stored(StoredValues { form: StoredForm::Doubles, .. }) => {
                 ValueType::Double
             }
-            Self::Stored(_) => ValueType::Float,
+            Self::Stored(_) | Self::Floats(_) => ValueType::Float,
             Self::Nothing => ValueType::Integer,
             Self::Texts(texts) => {
                 let longest = |length: fn(&String) -> usize| {
@@ -86,6 +88,9 @@ impl Values<'_> {
     ) -> io::Result<Vec<u8>> {
         Ok(match self {
             Self::Doubles(all) => doubles(&all[places], order),
+            Self::Floats(all) => {
+                all[places].iter().flat_map(|&value| float(value, order)).collect()
+            }
             Self::Stored(stored) => stored.bytes(places, order)?,
             Self::Nothing => vec![0; size_of::<i32>()],
             Self::Texts(texts) => match (self.value_type(), order) {
