@@ -99,6 +99,7 @@ impl Editor<'_> {
     }
 
     fn node(&mut self, old: &Node, new: &Node) {
+        let (old, new) = (without_some(old), without_some(new));
         if is_same(old, new) {
             return;
         }
@@ -329,8 +330,22 @@ fn items(node: &Node) -> Option<Vec<GroupItem<'_>>> {
     }
 }
 
+/// The value in `Some(..)`, which need not be written.
+fn without_some(node: &Node) -> &Node {
+    match &node.value {
+        Value::Named(named) if named.name == "Some" => {
+            match named.body.as_ref().map(|b| &b.value) {
+                Some(Value::Tuple(items)) if items.len() == 1 => &items[0],
+                _ => node,
+            }
+        }
+        _ => node,
+    }
+}
+
 /// Returns whether two values are the same, wherever they stand.
 fn is_same(a: &Node, b: &Node) -> bool {
+    let (a, b) = (without_some(a), without_some(b));
     let all =
         |a: &[Node], b: &[Node]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same(a, b));
     match (&a.value, &b.value) {
@@ -355,7 +370,10 @@ fn is_same(a: &Node, b: &Node) -> bool {
                 && match (&a.body, &b.body) {
                     (Some(a), Some(b)) => is_same(a, b),
                     (None, None) => true,
-                    _ => false,
+                    // A word with keys that have defaults may go without parentheses.
+                    (Some(body), None) | (None, Some(body)) => {
+                        matches!(&body.value, Value::Tuple(items) if items.is_empty())
+                    }
                 }
         }
         _ => false,

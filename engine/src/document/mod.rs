@@ -40,7 +40,7 @@ pub use keys::{keys_about, keys_page};
 pub(crate) use legible::legible;
 pub use parsed::ParsedScene;
 pub use path::{ScenePath, Step};
-pub use read::{ReadError, ReadOptions, Reading, read_file, read_text, tree_of_text};
+pub use read::{ReadError, ReadOptions, Reading, read_file, read_text, text_of_file, tree_of_text};
 pub use ron_text::{BadNumber, Field, Named, Node, Span, Value};
 pub use scene::*;
 pub use source::Source;

@@ -113,7 +113,10 @@ fn nearby(path: &Path) -> String {
 
 /// The text of a scene file. What is no file on a disk (a pipe, say) might never end or never start:
 /// whether that will do is for the caller to say.
-pub(super) fn text_of_file(path: &Path, only_files: bool) -> Result<String, ReadError> {
+///
+/// # Errors
+/// If it cannot be read, or is not UTF-8 text.
+pub fn text_of_file(path: &Path, only_files: bool) -> Result<String, ReadError> {
     let file = path.display().to_string();
     let io_error = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => ReadError::Missing { file: file.clone(), near: nearby(path) },

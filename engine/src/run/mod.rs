@@ -76,7 +76,7 @@ use checkpoint::CheckpointStore;
 use clock::Clock;
 use pool::in_pool;
 use provenance::FileHashes;
-use reading::{folder_of, read};
+use reading::{folder_of, read, read_as};
 use reports::{CommonResults, SharedReports, reports};
 use respectrum::{KeptCoefficients, paths_hash, without_coefficients};
 use sensors::MeasureContext;
@@ -93,6 +93,23 @@ pub fn run_file(
     progress: &dyn Progress,
 ) -> Result<Report, Failure> {
     report_of(path, options, progress, None)
+}
+
+/// Runs the text of a scene. Paths in it are relative to the folder of `path`, which stands for its file in messages and
+/// need not be there.
+///
+/// # Errors
+/// All errors of the scene, rendered for a person.
+pub fn run_text(
+    path: &Path,
+    text: &str,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Report, Failure> {
+    let start = Instant::now();
+    progress.stage("reading the scene");
+    let reading = read_as(path, text, options)?;
+    report_of_reading(&reading, folder_of(path), options, progress, None, start)
 }
 
 /// Report of a scene file, perhaps from coefficients that a run has kept.

@@ -14,6 +14,16 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Reading, Failure> {
     sound(reading, path, options)
 }
 
+/// Reads the text of a scene that stands for a file, which need not be there.
+///
+/// # Errors
+/// All errors of the scene, rendered for a person.
+pub(super) fn read_as(path: &Path, text: &str, options: &Options) -> Result<Reading, Failure> {
+    let reading = document::read_text(&path.display().to_string(), text, &options.document)
+        .map_err(|error| Failure::Scene(error.to_string()))?;
+    sound(reading, path, options)
+}
+
 /// Reading without errors, with the sensors that are asked for.
 pub(super) fn sound(
     mut reading: Reading,
