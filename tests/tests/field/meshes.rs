@@ -92,11 +92,11 @@ fn outlines_that_cross_themselves_enclose_once() {
     const CASES: &[Case<'_>] = &[
         case(
             "03-obj-ngon-slit-hole/bowtie.ron",
-            &[absorbs(2.0), Warns(&["cross themselves", "first: line 5", "check the order"])],
+            &[absorbs(2.0), Warns(&["crosses itself", "first: line 5", "check the order"])],
         ),
         case(
             "03-obj-ngon-slit-hole/near_star_of_crossings.ron",
-            &[absorbs(1.12257), Warns(&["cross themselves", "first: line 6"])],
+            &[absorbs(1.12257), Warns(&["crosses itself", "first: line 6"])],
         ),
     ];
     hold(CASES);
